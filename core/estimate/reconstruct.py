@@ -213,6 +213,7 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         "timing_frames": np.array(result.evidence.timing_frames),
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
+        **_keypoint_diagnostics(result),
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
     unseen = unobserved_variance(
@@ -223,6 +224,18 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         return motion
     undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
+
+
+def _keypoint_diagnostics(result: WholeClipResult) -> dict[str, Array]:
+    """How far keypoints are from the motion, and their weight, in the order of the record of a conversion."""
+    if not result.problem.keypoints.names:
+        return {}
+    fit = result.keypoints
+    return {
+        "keypoint_residual_px": fit.residual_px,
+        "keypoint_weight": fit.weight,
+        "keypoint_swapped": fit.swapped.astype(np.float64),
+    }
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

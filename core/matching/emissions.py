@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from .frame_likelihood import FrameLikelihood, square_root
 from .marker_moments import MarkerMoments
 from .noise_scales import DEGREES_OF_FREEDOM
@@ -15,6 +15,8 @@ EXTENT_COST = 6.0
 """Additional margin before the markers' extents are compared, which may change the order by this much."""
 VARIANT_COST = 6.0
 """The same before each group of points in turn is hardly counted for the hips' place."""
+EXCHANGED_COST = np.float32(3.0)
+"""Cost of taking a detector's left for right in a frame: one in twenty."""
 MOST_STATES = 1500
 """States kept of a frame."""
 
@@ -64,6 +66,8 @@ class FrameEmissions:
     """(3, K) places of the hips [m]."""
     ground: SingleArray
     """(3, K) the floor below them, by each posture's height above it [m]."""
+    exchanged: BoolArray
+    """(K,) whether left and right of the keypoints are exchanged for it."""
 
     def index_of(self, state: int) -> int:
         """Index of a state among the K; that of the cheapest where it was pruned."""
@@ -109,7 +113,21 @@ def evaluate_emissions(
     kept = _prune(cost, PRUNING_COST, MOST_STATES)
     ground = hips[:, kept]
     ground[2] -= vectors[-2, kept]
-    return FrameEmissions(states[kept], cost[kept], hips[:, kept], ground)
+    return FrameEmissions(states[kept], cost[kept], hips[:, kept], ground, np.zeros(len(kept), dtype=bool))
+
+
+def with_exchanged(plain: FrameEmissions, exchanged: FrameEmissions) -> FrameEmissions:
+    """The likelier hypothesis for each state: keypoints as they are, or with left and right exchanged."""
+    count = len(plain.states)
+    states = np.concatenate([plain.states, exchanged.states])
+    cost = np.concatenate([plain.cost, exchanged.cost + EXCHANGED_COST])
+    order = np.lexsort((cost, states))
+    _, first = np.unique(states[order], return_index=True)
+    best = order[first]
+    best = best[_prune(cost[best], PRUNING_COST, MOST_STATES)]
+    hips = np.concatenate([plain.hips, exchanged.hips], axis=1)
+    ground = np.concatenate([plain.ground, exchanged.ground], axis=1)
+    return FrameEmissions(states[best], cost[best], hips[:, best], ground[:, best], best >= count)
 
 
 def _variant_costs(

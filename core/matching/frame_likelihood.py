@@ -69,6 +69,9 @@ class FrameLikelihood:
     """(A,) points found in the frame."""
     unclipped: BoolArray
     """(M,) markers found whose region is not cut off by the picture's edge."""
+    stretch: Array
+    """(A, 2) how the points' rows err together where keypoints have the performer larger or smaller; see
+    `unstretched`."""
     share: float
     """Weight of each point's cost, since they do not differ independently."""
 
@@ -126,6 +129,8 @@ def _frame_likelihood(
     sight = _line_of_sight(ray[visible], backward)
     depth_m, depth_weight = _guessed_depths(evidence, frame, visible, noise_scales)
     rows = _Rows.of_points(weight, image_axes, len(depth_m))
+    stretch = _stretch(weight[:, None] * evidence.size_error_m[frame])
+    rows.disregard(stretch)
     rows.add_depths(len(weight), evidence.marker_count, sight, depth_m, depth_weight)
     rows.add_place(location, floor_m, floor_std_m, hips)
     by_hips, by_posture = rows.by_hips, rows.by_posture
@@ -161,8 +166,29 @@ def _frame_likelihood(
         pixel_size,
         visible,
         unclipped,
+        stretch,
         evidence.share,
     )
+
+
+def _stretch(shift: Array) -> Array:
+    """`FrameLikelihood.stretch` of displacements (A, 2) in standard deviations.
+
+    With rows r of unit covariance and u their displacement by an error of the size, (1 + u uᵀ)^-½ r =
+    r - s sᵀ r are rows in which that error counts as noise.
+    """
+    squared = float((shift**2).sum())
+    if squared == 0.0:
+        return shift
+    return np.asarray(shift * np.sqrt((1.0 - 1.0 / np.sqrt(1.0 + squared)) / squared))
+
+
+def unstretched(rows: Array, stretch: Array) -> Array:
+    """Rows (..., A, 2) with an error of the size in `stretch` (..., A, 2) counted as noise."""
+    if not stretch.any():
+        return rows
+    along = (rows * stretch).sum(axis=(-2, -1), keepdims=True)
+    return np.asarray(rows - stretch * along)
 
 
 def _line_of_sight(ray: Array, backward: Array) -> Array:
@@ -211,6 +237,13 @@ class _Rows:
             by_hips[2 * index : 2 * index + 2] = pair
             by_posture[2 * index : 2 * index + 2, 3 * index : 3 * index + 3] = pair
         return cls(by_hips, by_posture)
+
+    def disregard(self, stretch: Array) -> None:
+        """Take a share of a common error out of the points' rows; see `unstretched`."""
+        flat = stretch.ravel()
+        if flat.any():
+            for matrix in (self.by_hips, self.by_posture):
+                matrix[: len(flat)] -= np.outer(flat, flat @ matrix[: len(flat)])
 
     def add_depths(self, points: int, markers: int, sight: Array, depth_m: Array, weight: Array) -> None:
         """Set the rows of the guessed depths, which the hips' place does not change."""

@@ -16,7 +16,7 @@ from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
 from .candidates import MatchedFrame, frame_candidates
 from .coarse_pass import FLOOR_STD_M, CoarsePass, coarse_pass
-from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features
+from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features, with_exchanged
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .hidden_markov_model import HiddenMarkovModel
 from .marker_moments import MarkerMoments, marker_moments
@@ -156,22 +156,29 @@ def _solve(
     """Find and refine the most probable path, given the noise scales; 0.45 of the work."""
     evidence, sampled, states = match_input.evidence, prepared.sampled, prepared.states
     time_s, posed = evidence.tracks.time_s[sampled], match_input.constraints
-    likelihoods = frame_likelihoods(
-        match_input.camera,
-        evidence,
-        sampled,
-        floor_m,
-        FLOOR_STD_M,
-        noise_scales,
-        posed,
+    hypotheses = list(
+        zip(
+            *(
+                frame_likelihoods(
+                    match_input.camera, each, sampled, floor_m, FLOOR_STD_M, noise_scales, posed
+                )
+                for each in ((evidence, evidence.exchanged()) if len(evidence.points) else (evidence,))
+            ),
+            strict=True,
+        )
     )
+    likelihoods = [hypothesis[0] for hypothesis in hypotheses]
     costs = [posed.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled]
     # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
     posed_costs = [None if cost is None else cost / np.float32(tempering) for cost in costs]
-    emissions = yield from scaled(_evaluate_all(likelihoods, states, posed_costs), begun, begun + 0.2)
+    emissions = yield from scaled(_evaluate_all(hypotheses, states, posed_costs), begun, begun + 0.2)
     model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, tempering, time_s)
     yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
     best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
+    likelihoods = [
+        hypothesis[int(emission.exchanged[emission.index_of(state)])]
+        for hypothesis, emission, state in zip(hypotheses, emissions, best, strict=True)
+    ]
     path = StatePath(prepared.sequences, states, likelihoods, emissions, best, time_s)
     rows = np.searchsorted(sampled, posed.frames)
     refinement = Refinement(table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, posed, rows)
@@ -180,14 +187,17 @@ def _solve(
 
 
 def _evaluate_all(
-    likelihoods: Sequence[FrameLikelihood], states: StateFeatures, posed_costs: Sequence[SingleArray | None]
+    hypotheses: Sequence[Sequence[FrameLikelihood]],
+    states: StateFeatures,
+    posed_costs: Sequence[SingleArray | None],
 ) -> Part[list[FrameEmissions]]:
-    """Emissions of each frame."""
+    """Emissions of each frame; with keypoints the second hypothesis is that left and right are exchanged."""
     emissions = []
-    for index, (likelihood, cost) in enumerate(zip(likelihoods, posed_costs, strict=True)):
-        emissions.append(evaluate_emissions(likelihood, states, cost))
+    for index, (hypothesis, cost) in enumerate(zip(hypotheses, posed_costs, strict=True)):
+        found = [evaluate_emissions(likelihood, states, cost) for likelihood in hypothesis]
+        emissions.append(found[0] if len(found) == 1 else with_exchanged(found[0], found[1]))
         if index % FRAMES_A_YIELD == 0:
-            yield index / len(likelihoods)
+            yield index / len(hypotheses)
     return emissions
 
 

@@ -14,7 +14,7 @@ from ..body.human import HUMAN
 from ..body.limbs import limb_of
 from ..footage.keypoints.body_points import mirrored_point
 from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.principal_keypoints import principal_keypoints
+from ..footage.keypoints.principal_keypoints import performer_size_px, principal_keypoints
 from ..footage.region_tracks import RegionTracks
 
 CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
@@ -32,6 +32,11 @@ POINT_STD_M = {
 """The same of points: halfway between those of the segments that meet there."""
 KEYPOINT_ERROR_M = 0.04
 """Where detectors put a point beside the joint, and how far they miss it."""
+SIZE_STD = 0.05
+"""Error of all keypoints' size together, as a share: a detector's points lie farther in or out than an
+average body's joints, and an actor's lengths may be average ones."""
+USUAL_SPAN_M = 1.45
+"""From head to ankles of someone who stands; only the weight of `SIZE_STD` follows from it."""
 HINT_ERROR_M = 0.12
 """Error of a network's depths: 6 to 18 cm, alike for many frames."""
 INDEPENDENT_POINTS = 5.0
@@ -109,6 +114,27 @@ class MatchEvidence:
         return np.hypot(own, HINT_ERROR_M)
 
     @cached_property
+    def size_error_m(self) -> Array:
+        """(F, A, 2) what a usual error of the size moves each keypoint by, to the right and upwards [m].
+
+        About the hips, or the middle of what is seen; zero for markers.
+        """
+        names = self.keypoints.names
+        pixel = np.where(self.visible[..., None], self.pixel, np.nan)[:, self.marker_count :]
+        own = [index for index, name in enumerate(names) if name.startswith("hip.")]
+        shift = np.zeros((*self.visible.shape, 2))
+        if not names:
+            return shift
+        middle = _mean_seen(pixel)
+        if len(own) == 2:
+            hips = pixel[:, own].mean(axis=1)
+            middle = np.where(np.isfinite(hips), hips, middle)
+        meters = USUAL_SPAN_M / np.maximum(performer_size_px(self.keypoints), 1.0)[:, None, None]
+        away = meters * (pixel - middle[:, None]) * np.array([1.0, -1.0])
+        shift[:, self.marker_count :] = np.nan_to_num(SIZE_STD * away)
+        return shift
+
+    @cached_property
     def groups(self) -> tuple[IndexArray, ...]:
         """Indices of what performers may hold otherwise together: single markers, or limbs with keypoints."""
         if not len(self.points):
@@ -123,8 +149,8 @@ class MatchEvidence:
             return 1.0
         return min(1.0, INDEPENDENT_KEYPOINTS / (self.marker_count + len(self.points)))
 
-    def exchanged(self, frames: BoolArray) -> "MatchEvidence":
-        """The evidence with left and right of the keypoints exchanged in some frames (F,)."""
+    def exchanged(self) -> "MatchEvidence":
+        """The evidence with left and right of the keypoints exchanged."""
         known = self.keypoints
         absent = len(known.names)
         other = [
@@ -132,16 +158,15 @@ class MatchEvidence:
             for name in map(mirrored_point, known.names)
         ]
 
-        def mixed(values: Array, missing: float) -> Array:
+        def mirrored(values: Array, missing: float) -> Array:
             nothing = np.full((len(values), 1, *values.shape[2:]), missing)
-            mirrored = np.concatenate([values, nothing], axis=1)[:, other]
-            return np.where(frames.reshape(-1, *[1] * (values.ndim - 1)), mirrored, values)
+            return np.concatenate([values, nothing], axis=1)[:, other]
 
         changed = replace(
             known,
-            pixel=mixed(known.pixel, np.nan),
-            score=mixed(known.score, 0.0),
-            hint_m=mixed(known.hint_m, np.nan),
+            pixel=mirrored(known.pixel, np.nan),
+            score=mirrored(known.score, 0.0),
+            hint_m=mirrored(known.hint_m, np.nan),
         )
         return replace(self, keypoints=changed)
 
@@ -154,6 +179,13 @@ def _selected(keypoints: Keypoints, index: IndexArray) -> Keypoints:
         keypoints.score[:, index],
         keypoints.hint_m[:, index],
     )
+
+
+def _mean_seen(pixel: Array) -> Array:
+    """(F, 2) mean of the pixels (F, K, 2) that are seen; NaN without any."""
+    seen = np.isfinite(pixel)
+    count = seen.sum(axis=1)
+    return np.where(count > 0, np.where(seen, pixel, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
 def _marker_deviation(segment: str) -> float:

@@ -13,7 +13,7 @@ from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.heading import yaw_rotation
-from .frame_likelihood import FrameLikelihood, square_root
+from .frame_likelihood import FrameLikelihood, square_root, unstretched
 from .match_evidence import INDEPENDENT_POINTS
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales, student_scales
 from .posed_constraints import PosedConstraints
@@ -99,6 +99,7 @@ class Refinement:
             "sight",
             "depth_m",
             "depth_weight",
+            "stretch",
         )
         return tuple(
             np.array([getattr(likelihood, name) for likelihood in self.likelihoods]) for name in names
@@ -138,7 +139,7 @@ class Refinement:
 
     def noise_scales(self, path: ContinuousPath) -> NoiseScales:
         """The performer's noise scales over the whole clip."""
-        weight, _, _, unclipped, *_, depth_weight = self._observations
+        weight, _, _, unclipped, *_, depth_weight, _ = self._observations
         size = self._sizes(path.sequence, path.values)
         centroid_residual, extent_residual, depth_residual, _ = self.residuals(
             path.sequence, path.values, size
@@ -163,6 +164,7 @@ class Refinement:
         from_hips = samples.centroid @ np.swapaxes(turn, -1, -2)
         centroid = from_hips + (values[:, 2:] - location)[:, None]
         centroid_residual = np.einsum("tmki,tmi->tmk", image_axes, centroid) * weight[..., None]
+        centroid_residual = unstretched(centroid_residual, guessed[-1])
         predicted, depth = self._predicted_extents(sequence, values)
         predicted = predicted * size[:, None]
         deviation = np.hypot(extent_std, pixel_size[:, None] * depth)
@@ -172,7 +174,7 @@ class Refinement:
             * np.array([1.0, np.sqrt(2.0), 1.0])
         )
         extent_residual = np.where(unclipped[..., None], extent_residual, 0.0)
-        sight, depth_m, depth_weight = guessed
+        sight, depth_m, depth_weight, _ = guessed
         behind = np.einsum("tki,ti->tk", from_hips[:, from_hips.shape[1] - depth_m.shape[1] :], sight)
         depth_residual = ((behind - depth_m) * depth_weight)[..., None]
         if self.floor_m is None:

@@ -44,7 +44,7 @@ def draw_keypoints(
     thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
     size = _size(predicted)
     for index, color in enumerate(colors):
-        if not thrown_out[index] and not swapped[index]:
+        if not thrown_out[index]:
             canvas.line([seen[index], predicted[index]], color, 1.0)
     for place, color in zip(predicted, colors, strict=True):
         _ring(canvas, place, color, size)

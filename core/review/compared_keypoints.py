@@ -39,19 +39,19 @@ class ComparedKeypoints:
     sources: tuple[str, ...]
     """(N,) what saw each."""
     seen: Array
-    """(F, N, 2) where each was seen [px]."""
+    """(F, N, 2) where each was seen [px]; left and right are exchanged back where they were swapped."""
     predicted: Array
-    """(F, N, 2) where the motion puts it [px]; NaN where that is hidden or unknown."""
-    score: Array
-    """(F, N) confidence of its source, 0 where not seen."""
+    """(F, N, 2) where the motion puts it [px]."""
+    confidence: Array
+    """(F, N) of its source, 1 for what it is sure of, 0 where not seen."""
     distance_px: Array
-    """(F, N) between the two, of a swapped one to its own side's; NaN where not compared."""
+    """(F, N) between the two; NaN where not compared."""
     expected_px: Array
-    """(F, N) standard deviation of each coordinate of that distance."""
+    """(F, N) standard deviation of each coordinate of that distance; infinite for what is left out."""
     thrown_out: BoolArray
     """(F, N) seen, but not believed."""
     swapped: BoolArray
-    """(F, N) believed to be the other side's: the detector took left for right."""
+    """(F, N) seen on the other side of the body by its source."""
 
     @classmethod
     def none(cls, frames: int) -> "ComparedKeypoints":
@@ -62,31 +62,36 @@ class ComparedKeypoints:
     @property
     def misfit(self) -> Array:
         """(F, N) reduced squared distances: 1 on average where the noise is as assumed; NaN if unknown."""
-        return misfits(self.distance_px, self.expected_px)
+        known = np.where(np.isfinite(self.expected_px), self.distance_px, np.nan)
+        return misfits(known, self.expected_px)
 
     def parts(self) -> tuple[str, ...]:
         """The K parts of the body that any keypoint stands for, in the order of the keypoints."""
-        return tuple(dict.fromkeys(part_of(name) for name in self.names))
+        return tuple(self._columns())
 
     def by_part(self, values: Array) -> Array:
         """(F, K) medians over each part's keypoints of values (F, N); NaN where all are.
 
         A detector errs alike on neighbors, and hides them together: five points of the face are one witness.
         """
-        parts = [part_of(name) for name in self.names]
-        result = np.full((len(values), len(self.parts())), np.nan)
-        for column, part in enumerate(self.parts()):
-            own = values[:, [index for index, other in enumerate(parts) if other == part]]
-            known = np.isfinite(own).any(axis=1)
-            result[known, column] = np.nanmedian(own[known], axis=1)
+        columns = self._columns()
+        result = np.full((len(values), len(columns)), np.nan)
+        for part, own in enumerate(columns.values()):
+            known = np.isfinite(values[:, own]).any(axis=1)
+            result[known, part] = np.nanmedian(values[known][:, own], axis=1)
         return result
 
     def quality(self) -> Array:
         """(F, K) confidence of the best keypoint of each part, 0 where none is seen."""
-        parts = [part_of(name) for name in self.names]
-        columns = [[i for i, other in enumerate(parts) if other == part] for part in self.parts()]
-        best = [self.score[:, own].max(axis=1) for own in columns]
-        return np.stack(best, axis=1) if best else np.zeros((len(self.score), 0))
+        best = [self.confidence[:, own].max(axis=1) for own in self._columns().values()]
+        return np.stack(best, axis=1) if best else np.zeros((len(self.confidence), 0))
+
+    def _columns(self) -> dict[str, list[int]]:
+        """The keypoints of each part, without those that are left out all along, which nobody misses."""
+        columns: dict[str, list[int]] = {}
+        for index in np.flatnonzero(np.isfinite(self.expected_px).any(axis=0)).tolist():
+            columns.setdefault(part_of(self.names[index]), []).append(index)
+        return columns
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`."""
@@ -104,7 +109,7 @@ class ComparedKeypoints:
         """
         if PREFIX + "names" not in arrays:
             return cls.none(frames)
-        numbers = ("seen", "predicted", "score", "distance_px", "expected_px")
+        numbers = ("seen", "predicted", "confidence", "distance_px", "expected_px")
         return cls(
             names=tuple(arrays[PREFIX + "names"].tolist()),
             sources=tuple(arrays[PREFIX + "sources"].tolist()),

@@ -1,16 +1,18 @@
-"""Evidence of each frame from markers and keypoints together: what is hidden, what contradicts the motion.
+"""Evidence of each frame of any kind together: what is hidden, what contradicts the motion.
 
-A marker covers a segment, keypoints show its ends: what one of them sees is not hidden because the other
-misses it.
+A marker or a contour covers a segment, keypoints show its ends: what one of them sees is not hidden because
+another misses it.
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
 from ..arrays import Array
 from .compared_keypoints import ComparedKeypoints
+from .contour_sight import ContourSight
 from .weak_frames import FrameEvidence
 
 LIMBS: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -37,55 +39,66 @@ ENDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Body points that lie at the ends of a segment."""
 
 
-def believed_misfits(markers: Array, keypoints: ComparedKeypoints) -> Array:
-    """Misfits (F, M + K) of M markers and of the body points whose keypoints are believed.
+@dataclass(frozen=True, eq=False)
+class MarkerSight:
+    """M markers in F frames."""
+
+    segments: tuple[str, ...]
+    """(M,) the segment of each."""
+    quality: Array
+    """(F, M) of its regions, 0 where hidden."""
+    misfit: Array
+    """(F, M) as in `confidence`; NaN where not compared."""
+
+
+def believed_misfits(markers: Array, contours: ContourSight, keypoints: ComparedKeypoints) -> Array:
+    """Misfits (F, M + O + K) of markers, contours, and the body points whose keypoints are believed.
 
     Args:
         markers: (F, M) misfits; NaN where not compared.
-        keypoints: The keypoints.
+        contours: Those of O parts.
+        keypoints: Those of K body points.
     """
     believed = np.where(keypoints.thrown_out, np.nan, keypoints.misfit)
-    return np.concatenate([markers, keypoints.by_part(believed)], axis=1)
+    return np.concatenate([markers, contours.misfit, keypoints.by_part(believed)], axis=1)
 
 
 def frame_evidence(
     squared_error: Array,
     confidence: Array,
     speed: Array,
-    segments: tuple[str, ...],
-    quality: Array,
-    misfit: Array,
+    markers: MarkerSight,
+    contours: ContourSight,
     keypoints: ComparedKeypoints,
 ) -> FrameEvidence:
-    """Evidence of F frames from M markers and N keypoints.
+    """Evidence of F frames.
 
     Args:
         squared_error: (F,) as in `FrameEvidence`, like the next two.
         confidence: (F,).
         speed: (F,).
-        segments: (M,) the segment of each marker.
-        quality: (F, M) of the markers' regions, 0 where hidden.
-        misfit: (F, M) of the markers; NaN where not compared.
-        keypoints: The keypoints.
+        markers: Those of M markers.
+        contours: Those of O parts.
+        keypoints: Those of K body points.
     """
-    points = keypoints.parts()
-    by_point = keypoints.quality()
-    marked = quality.copy()
-    for marker, segment in enumerate(segments):
+    segments = (*markers.segments, *contours.parts)
+    covered = np.concatenate([markers.quality, contours.quality], axis=1)
+    points, by_point = keypoints.parts(), keypoints.quality()
+    shown, seen = covered.copy(), by_point.copy()
+    for column, segment in enumerate(segments):
         ends = ENDS.get(segment, ())
         if ends and set(ends) <= set(points):
-            shown = by_point[:, [points.index(end) for end in ends]].min(axis=1)
-            marked[:, marker] = np.maximum(marked[:, marker], shown)
-    seen = by_point.copy()
+            both = by_point[:, [points.index(end) for end in ends]].min(axis=1)
+            shown[:, column] = np.maximum(shown[:, column], both)
     for column, point in enumerate(points):
-        covering = [m for m, segment in enumerate(segments) if point in ENDS.get(segment, ())]
+        covering = [index for index, segment in enumerate(segments) if point in ENDS.get(segment, ())]
         if covering:
-            seen[:, column] = np.maximum(seen[:, column], quality[:, covering].max(axis=1))
+            seen[:, column] = np.maximum(seen[:, column], covered[:, covering].max(axis=1))
     return FrameEvidence(
         squared_error,
         confidence,
-        np.concatenate([marked, seen], axis=1),
-        np.concatenate([misfit, keypoints.by_part(keypoints.misfit)], axis=1),
+        np.concatenate([shown, seen], axis=1),
+        np.concatenate([markers.misfit, contours.misfit, keypoints.by_part(keypoints.misfit)], axis=1),
         speed,
-        points,
+        (*contours.parts, *points),
     )

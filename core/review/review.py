@@ -19,7 +19,8 @@ from ..take.take import Take
 from .compare_keypoints import compare_keypoints
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .frame_evidence import believed_misfits, frame_evidence
+from .contour_sight import contour_sight
+from .frame_evidence import MarkerSight, believed_misfits, frame_evidence
 from .weak_frames import Reason, WeakFrame, find_weak_frames
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
@@ -141,13 +142,15 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
     pose = take.body.pose(motion.posture)
-    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 1.0)
+    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 0.5)
+    contours = yield from within(STAGE, contour_sight(reconstruction), 0.5, 1.0)
     noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
     variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
     misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
     keypoints = compare_keypoints(reconstruction)
     moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
-    expected = expected_covariance(motion.point_covariance, moved, believed_misfits(misfit, keypoints))
+    believed_misfit = believed_misfits(misfit, contours, keypoints)
+    expected = expected_covariance(motion.point_covariance, moved, believed_misfit)
     believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
     wrong = WRONG_SHARE * take.body.actor.stature_m
     squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
@@ -156,9 +159,8 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         np.where(np.isfinite(squared), squared, 1.0),
         believed,
         reconstruction.speed,
-        take.marker_segments,
-        np.where(tracks.visible, tracks.quality, 0.0),
-        misfit,
+        MarkerSight(take.marker_segments, np.where(tracks.visible, tracks.quality, 0.0), misfit),
+        contours,
         keypoints,
     )
     return Review(

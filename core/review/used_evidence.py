@@ -20,15 +20,14 @@ def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
 
 
 def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]:
-    """The sources of keypoints that saw the performer."""
+    """The sources of keypoints, in their order."""
     compared = compare_keypoints(reconstruction)
     seen = reconstruction.keypoints.seen
     used = []
     for source in dict.fromkeys(compared.sources):
         own = [index for index, other in enumerate(compared.sources) if other == source]
         count = int(seen[:, own].sum())
-        if count:
-            believed = 1.0 - float((seen & compared.thrown_out)[:, own].sum()) / count
-            names = tuple(dict.fromkeys(compared.names[index] for index in own if seen[:, index].any()))
-            used.append(UsedKeypoints(source, names, believed))
+        believed = 1.0 - float((seen & compared.thrown_out)[:, own].sum()) / max(count, 1)
+        names = tuple(dict.fromkeys(compared.names[index] for index in own))
+        used.append(UsedKeypoints(source, names, believed if count else 0.0))
     return tuple(used)

@@ -39,13 +39,13 @@ class Reason(StrEnum):
     """Why a frame is worth another keyframe."""
 
     HIDDEN = "hidden"
-    """A marker or a keypoint is hidden there."""
+    """A marker, a keypoint or a contour is hidden there."""
     FAST = "fast"
     """The performer moves fast there."""
     FAR = "far"
     """The next keyframe is far."""
     FOOTAGE = "footage"
-    """A marker or a keypoint is not where the motion puts it."""
+    """A marker, a keypoint or a contour is not where the motion puts it."""
 
 
 @dataclass(frozen=True)
@@ -60,25 +60,25 @@ class WeakFrame:
     marker: int | None = None
     """The marker that is hidden or misplaced, where one is the reason."""
     point: str | None = None
-    """The body point whose keypoints are hidden or misplaced, where they are the reason."""
+    """The body point whose keypoints are hidden or misplaced, or the segment whose contour is."""
 
 
 @dataclass(frozen=True, eq=False)
 class FrameEvidence:
-    """Errors, confidence and observations of F frames: of M markers, and of keypoints of K body points."""
+    """Errors, confidence and observations of F frames: of M markers and K points or segments of the body."""
 
     squared_error: Array
     """(F,) expected squared error of a frame, in any unit."""
     confidence: Array
     """(F,) 0 to 1; NaN where unknown, which counts as weak."""
     quality: Array
-    """(F, M + K) quality of the regions and confidence of the keypoints, 0 where hidden."""
+    """(F, M + K) quality of regions, contours and keypoints, 0 where hidden."""
     misfit: Array
     """(F, M + K) as in `confidence`; NaN where not compared."""
     speed: Array
     """(F,) V_sum."""
     points: tuple[str, ...] = ()
-    """(K,) the body points of the last columns."""
+    """(K,) the points and segments of the last columns."""
 
 
 def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[WeakFrame, ...]:

@@ -27,6 +27,9 @@ MARKER_STD, HAND_STD = 0.15, 0.1
 """Of a marker's center from the middle of its segment, and of a click, as shares of a person's size."""
 POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
 """Of the frames in which a person has said where the performer is; all others count once."""
+FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
+"""Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
+ELSEWHERE = "nobody in it is where most posed keyframes have the performer, so it is left out; it must be of this clip"
 TRUNK_ENDS = ("shoulder.L", "shoulder.R", "hip.L", "hip.R")
 ENDS = {
     "upper_arm": ("shoulder", "elbow"),
@@ -44,7 +47,8 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
 
     Args:
         take: The take.
-        prior: F postures, roughly where the performer is; None before there are keyframes.
+        prior: F postures, roughly where the performer is; None where there are too few keyframes for it, of
+            which posed ones still count in their own frames.
         tracks: The markers' regions, where the clip has been read.
     """
     frames = _frame_count(take, prior, tracks)
@@ -57,7 +61,11 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
             expected = _expected(take, prior, tracks, hand, points, seen, frames)
             if expected is not None or people.most_people > 1:
                 chosen = choose_performer(seen, expected, take.fps)
-                notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+                if _is_somebody_else(take, people, chosen):
+                    chosen = np.full(frames, NOBODY, dtype=np.intp)
+                    notes += (f"{people.source}: {ELSEWHERE}",)
+                else:
+                    notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
         parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
 
@@ -68,6 +76,17 @@ def _frame_count(take: Take, prior: Posture | None, tracks: RegionTracks | None)
     if tracks is not None:
         return tracks.frame_count
     return take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
+
+
+def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
+    """Whether most posed keyframes say that none of the people is the performer."""
+    fits = [
+        chosen[keyframe.index] != NOBODY
+        for keyframe in take.keyframes
+        if keyframe.matched is None and keyframe.index < min(len(people.frames), len(chosen))
+        if len(people.frames[keyframe.index].pixel)
+    ]
+    return len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING
 
 
 def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:
@@ -128,10 +147,11 @@ def _expected(
     pixel = np.full((frames, len(names) + markers, 2), np.nan)
     std_px = np.full(pixel.shape[:2], 1.0)
     weight = np.ones(frames)
-    if prior is not None and take.keyframes:
+    if take.keyframes:
         posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
         weight[[index for index in posed if index < frames]] = POSED_WEIGHT
-        pixel[:, : len(names)], std_px[:, : len(names)] = _from_keyframes(take, prior, names)
+        place, deviation_px, at = _from_keyframes(take, prior, names, frames)
+        pixel[at, : len(names)], std_px[at, : len(names)] = place, deviation_px
     if tracks is not None and markers:
         pixel[:, len(names) :], std_px[:, len(names) :] = tracks.centroid[:frames], MARKER_STD * size_px
     for people in hand:
@@ -146,28 +166,42 @@ def _expected(
     return Expected(pixel, std_px, weight) if np.isfinite(pixel).any() else None
 
 
-def _from_keyframes(take: Take, prior: Posture, names: tuple[str, ...]) -> tuple[Array, Array]:
-    """(F, N, 2) pixels of the interpolated body's points, NaN for others; (F, N) their deviations [px]."""
-    body, index = take.body, np.arange(prior.batch[0])
-    points = body.points(body.pose(prior))  # (F, 13, 3)
-    joints = body.skeleton.point_names
+def _from_keyframes(
+    take: Take, prior: Posture | None, names: tuple[str, ...], frames: int
+) -> tuple[Array, Array, IndexArray]:
+    """(G, N, 2) pixels of the body's points, NaN for others, (G, N) their deviations [px], and (G,) frames.
+
+    They are those of the prior's postures in all frames, or else of the posed keyframes' own.
+    """
+    keyframes = [
+        keyframe
+        for keyframe in take.keyframes
+        if keyframe.index < frames and (prior is not None or keyframe.matched is None)
+    ]
+    keyed = np.array([keyframe.index for keyframe in keyframes], dtype=np.intp)
+    index = keyed if prior is None else np.arange(frames)
+    if not len(index):
+        return np.zeros((0, len(names), 2)), np.zeros((0, len(names))), index
+    posture = Posture.stack([keyframe.posture for keyframe in keyframes]) if prior is None else prior
+    body, joints = take.body, take.body.skeleton.point_names
+    points = body.points(body.pose(posture))  # (G, 13, 3)
     place = np.full((len(index), len(names), 3), np.nan)
     for number, name in enumerate(names):
         ends = MIDDLES.get(name, ("head",) if name in (*FACE, "crown") else (name,))
         if set(ends) <= set(joints):
             place[:, number] = points[:, [joints.index(end) for end in ends]].mean(axis=1)
     pixel, depth = take.camera.project(place, index[:, None])
-    keyed = np.array([keyframe.index for keyframe in take.keyframes])
-    at_key = np.array([POSED_STD_M if key.matched is None else MATCHED_STD_M for key in take.keyframes])
+    at_key = np.array([POSED_STD_M if key.matched is None else MATCHED_STD_M for key in keyframes])
     away_s = np.abs(index[:, None] - keyed) / take.fps
-    std_m = np.minimum((at_key + SPEED_M_PER_S * away_s).min(axis=1), FARTHEST_STD_M)
-    return pixel, std_m[:, None] * take.camera.focal_px / np.where(depth > 0.0, depth, 1.0)
+    std_m = np.minimum((at_key + SPEED_M_PER_S * away_s).min(axis=1, initial=FARTHEST_STD_M), FARTHEST_STD_M)
+    return pixel, std_m[:, None] * take.camera.focal_px / np.where(depth > 0.0, depth, 1.0), index
 
 
 def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, hand: list[People]) -> str:
     """Who says which of several people the performer is."""
     voices = ["the clicked or tracked points"] if hand else []
-    voices += ["the keyframes"] if prior is not None and take.keyframes else []
+    keyed = any(prior is not None or keyframe.matched is None for keyframe in take.keyframes)
+    voices += ["the keyframes"] if keyed else []
     voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     if voices:
         return f"the performer is the one that {' and '.join(voices)} show"

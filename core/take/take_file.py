@@ -191,21 +191,25 @@ def _copy_clip(take: Take, folder: Path) -> str:
 
 def _write_keypoints(take: Take, folder: Path) -> list[str]:
     """Write keypoints into `folder`, but for those that lie there; returns their paths within."""
-    names: list[str] = []
-    others: list[People] = []
-    for people in take.keypoints:
-        source = Path(people.file).resolve()
-        if people.file and source.exists() and source.is_relative_to(folder.resolve()):
-            names.append(source.relative_to(folder.resolve()).as_posix())
-        else:
-            others.append(people)
-    ending = Path(KEYPOINT_FILE)
-    for people in others:
-        free = (f"{ending.stem}{number}{ending.suffix}" for number in ("", *map(str, range(2, 10**3))))
-        name = next(name for name in free if name not in names)
+    names = [_name_within(people, folder) for people in take.keypoints]
+    ending, number = Path(KEYPOINT_FILE), 1
+    for index, people in enumerate(take.keypoints):
+        if names[index]:
+            continue
+        name = ending.name
+        while name in names:
+            number += 1
+            name = f"{ending.stem}{number}{ending.suffix}"
         write_keypoints(folder / name, people, take.frame_start, take.fps)
-        names.append(name)
+        names[index] = name
     return names
+
+
+def _name_within(people: People, folder: Path) -> str:
+    """The path in `folder` of the file that keypoints were read from; empty where it lies elsewhere."""
+    source, within = Path(people.file).resolve(), folder.resolve()
+    there = people.file and source.exists() and source.is_relative_to(within)
+    return source.relative_to(within).as_posix() if there else ""
 
 
 def _with_clip_fields(fields: Fields, path: Path) -> Fields:

@@ -24,7 +24,7 @@ class UsedKeypoints:
     points: tuple[str, ...]
     """The body points it shows."""
     believed: float
-    """Share of all keypoints it saw that were followed, 0 to 1; the others contradict the rest."""
+    """Share of all keypoints it saw that were followed, 0 to 1; 0 too where it saw nobody."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,8 @@ class UsedEvidence:
 
     @property
     def words(self) -> str:
-        """The kinds in words: `5 markers, 33 keypoints, depth hints, contours`."""
-        points = sum(len(source.points) for source in self.keypoints)
+        """The kinds that counted, in words: `5 markers, 33 keypoints, depth hints, contours`."""
+        points = sum(len(source.points) for source in self.keypoints if source.believed > 0.0)
         counted = ((len(self.markers), "marker"), (points, "keypoint"))
         kinds = [pluralize(count, word) for count, word in counted if count]
         flags = ((self.depth_hints, "depth hints"), (self.contours, "contours"))

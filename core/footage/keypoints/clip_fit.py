@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...errors import InputError
-from .detected_frames import MOST_POINTS, DetectedFrames, DetectedPerson
+from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_numbers import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .people import People, SeenPeople
 from .scores import confidences
@@ -48,11 +48,7 @@ def held_against_clip(
         )
     aligned = _aligned(detected, frame_count, fps, frame_start)
     persons = [person for people in detected.people.values() for person in people]
-    if len(persons) * detected.layout.count > MOST_POINTS:
-        raise InputError(
-            f"{detected.where}: has {len(persons)} people in all its frames; it may have at most "
-            f"{MOST_POINTS} points"
-        )
+    check_points(len(persons) * detected.layout.count, detected.where)
     place = np.stack([person.place for person in persons])[:, detected.layout.numbers]
     scale, size_notes = _scale(detected, place, size)
     place *= scale

@@ -93,6 +93,16 @@ def check_people(count: int, where: str) -> None:
         raise InputError(f"{where} has {count} people; at most {MOST_PEOPLE} in a frame are read")
 
 
+def check_points(count: int, where: str) -> None:
+    """Refuse more points of all people in all frames than are read.
+
+    Raises:
+        InputError: There are more.
+    """
+    if count > MOST_POINTS:
+        raise InputError(f"{where}: has {count} points in all frames; at most {MOST_POINTS} are read")
+
+
 def known_layout(count: int, where: str) -> Layout:
     """The layout with so many points.
 

@@ -13,6 +13,7 @@ from .detected_frames import (
     DetectedFrames,
     DetectedPerson,
     check_people,
+    check_points,
     person_array,
     same_layout,
 )
@@ -41,6 +42,7 @@ def read_openpose_folder(folder: Path) -> DetectedFrames:
     check_symlinks(files.values(), [folder])
     layout: Layout | None = None
     people: dict[int, tuple[DetectedPerson, ...]] = {}
+    total = 0
     for number, path in sorted(files.items()):
         value = read_json_value(path, LARGEST_FILE_BYTES)
         if not is_openpose_frame(value):
@@ -63,6 +65,8 @@ def read_openpose_folder(folder: Path) -> DetectedFrames:
             points = flat.reshape(-1, 3)
             layout = same_layout(layout, len(points), where)
             seen.append(DetectedPerson(points[:, :2], points[:, 2]))
+            total += len(points)
+            check_points(total, str(folder))  # before the next file is read
         people[number] = tuple(seen)
     if layout is None:
         raise InputError(f"{folder}: nobody is seen in any of its {len(files)} files; one must show a person")

@@ -105,7 +105,7 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
 
 def _by_hand(fields: Fields) -> bool:
     value = fields.values.get("by_hand")
-    if value not in (None, True, False) or isinstance(value, int) and not isinstance(value, bool):
+    if value is not None and not isinstance(value, bool):
         raise InputError(f"{fields.where}: by_hand is {shown(value)}; it must be true or false")
     return bool(value)
 
@@ -161,6 +161,8 @@ def _size(fields: Fields) -> tuple[int, int]:
 
 def _frame(row: Any, hints: Any, layout: Layout, where: str, hint_where: str) -> tuple[DetectedPerson, ...]:
     if row is None:
+        if hints is not None:
+            raise InputError(f"{hint_where} guesses depths where nobody is seen; it must be null there")
         return ()
     if not isinstance(row, list):
         raise InputError(f"{where} is {shown(row)}; it must be a list of people or null")

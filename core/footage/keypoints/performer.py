@@ -1,10 +1,10 @@
 """Who of the people that a detector saw is the performer: the likeliest path through all frames.
 
 A detector counts people anew in every frame, swaps them where they cross, and misses them where they are
-hidden. The path is found by the Viterbi algorithm, which may pass over frames. A person's cost is the distance
-from where the performer is expected; a step's cost is the distance from where the last sighting was heading
-and the change of its shape, both of which may grow with the time between. All are half squares of deviations,
-each limited, so that one wrong point or frame decides nothing.
+hidden. The path is found by the Viterbi algorithm, which may pass over frames. A person's cost is the
+distance from where the performer is expected; a step's cost is the distance from where the last sighting was
+heading and the change of its shape, both of which may grow with the time between. All are half squares of
+deviations, each limited, so that one wrong point or frame decides nothing.
 """
 
 from dataclasses import dataclass
@@ -124,17 +124,18 @@ def _step(
     reached: _Reached, kept: list[_Reached], frame: int, window: int, before: Array, fps: float
 ) -> None:
     """Continue the paths of the last frames where that costs less than to begin one."""
-    sources = [index for index in range(max(0, frame - window), frame) if len(kept[index].cost)]
-    if not sources:
+    first = max(0, frame - window)
+    where = np.array([(index, row) for index in range(first, frame) for row in range(len(kept[index].cost))])
+    if not len(where):
         return
-    where = np.array([(index, row) for index in sources for row in range(len(kept[index].cost))])
-    pixel = np.concatenate([kept[index].pixel for index in sources])
-    velocity = np.concatenate([kept[index].velocity for index in sources])
-    cost = np.concatenate([kept[index].cost for index in sources])
-    passed = before[frame] - before[where[:, 0] + 1]
+    cost = np.concatenate([one.cost for one in kept[first:frame]]) + before[frame] - before[where[:, 0] + 1]
+    useful = cost <= cost.min() + JUMP_COST  # no step costs more
+    where, cost = where[useful], cost[useful]
+    pixel = np.stack([kept[index].pixel[row] for index, row in where])
+    velocity = np.stack([kept[index].velocity[row] for index, row in where])
     time_s = (frame - where[:, 0]) / fps
     step, moved = _step_cost(pixel, velocity, time_s, reached.pixel)
-    total = cost + passed + step  # (H, S)
+    total = cost + step  # (H, S)
     best = total.argmin(axis=1)
     row = np.arange(len(best))
     better = total[row, best] < reached.cost

@@ -59,31 +59,27 @@ def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[Keypoi
     """
     readouts = []
     for people in take.keypoints:
-        performer = _performer(take, people, frames)
         findings.warn(*people.notes)
-        readouts.append(_readout(take, people, performer, findings))
+        readouts.append(_readout(replace(take, keypoints=(people,), frame_count=frames), people, findings))
     return tuple(readouts)
 
 
-def _performer(take: Take, people: People, frames: int) -> Keypoints:
-    """The performer's keypoints of one file: of whom the keyframes show, or is seen best."""
-    prior = interpolate(take.keyframes, frames) if len(take.keyframes) > 1 else None
-    return performer_keypoints(replace(take, keypoints=(people,), frame_count=frames), prior)
-
-
-def _readout(take: Take, people: People, performer: Keypoints, findings: Findings) -> KeypointReadout:
+def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
+    """Check one file, the only one of the take."""
     name = Path(people.file).name or people.source
+    prior = interpolate(take.keyframes, take.frame_count or 0) if len(take.keyframes) > 1 else None
+    performer = performer_keypoints(take, prior)
+    # One person all along is compared even where the keyframes have somebody else perform.
+    compared = performer if people.most_people > 1 else performer_keypoints(replace(take, keyframes=()), None)
+    error = _check_agreement(take, compared, name, findings)
     found = performer.seen.any(axis=1)
     share = float(found.mean())
-    if not found.any():
-        findings.problem(f"{name}: the performer is seen in no frame; are they keypoints of this clip?")
-    elif share < FEWEST_FRAMES:
+    if share < FEWEST_FRAMES:
         findings.warn(f"{name}: the performer is seen in {share:.0%} of the frames only")
     if people.most_people > 1 and not take.keyframes and not people.by_hand:
         findings.warn(
             f"{name}: shows up to {people.most_people} people, and no keyframe says which of them performs"
         )
-    error = _check_agreement(take, performer, name, findings) if found.any() else None
     return KeypointReadout(
         file=name,
         source=people.source,

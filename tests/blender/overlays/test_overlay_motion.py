@@ -86,7 +86,7 @@ def words(items: list) -> list[str]:
 def switch(scene: bpy.types.Scene, *on: str) -> None:
     """Show these parts alone."""
     settings = scene.keymark.overlays
-    for part in ("observed", "predicted", "skeleton", "paths", "legend"):
+    for part in ("observed", "predicted", "keypoints", "skeleton", "paths", "legend"):
         setattr(settings, f"show_{part}", part in on)
 
 

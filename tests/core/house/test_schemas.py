@@ -19,7 +19,7 @@ from referencing import Registry, Resource
 
 NAMES = (
     *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
-    "truth",
+    *("keypoints", "truth"),
 )
 
 
@@ -228,6 +228,20 @@ MISTAKES: list[tuple[str, Change]] = [
     ("retarget", at("roles", "hips", "bones", to=[])),
     ("retarget", at("files", "../up", to="ab" * 32)),
     ("retarget", at("character", "sha256", to="x")),
+    ("keypoints", lambda v: v.pop("layout")),
+    ("keypoints", at("layout", to="coco")),
+    ("keypoints", at("names", to=["shoulder.L", "shoulder.L"])),
+    ("keypoints", at("names", 1, to="tail")),
+    ("keypoints", at("size", to=[320.5, 240])),
+    ("keypoints", at("people", to=[None])),
+    ("keypoints", lambda v: v.pop("frames")),
+    ("keypoints", at("frames", 0, to={})),
+    ("keypoints", at("frames", 0, 1, to=[1, 2])),
+    ("keypoints", at("frames", 0, 1, 2, to=None)),
+    ("keypoints", at("frames", 0, 1, 0, to=True)),
+    ("keypoints", at("world", 0, 0, 2, to=1e3)),
+    ("keypoints", at("by_hand", to=1)),
+    ("keypoints", at("fps", to=0)),
     ("truth", at("points", "head", 0, to=[0, None, 1])),
 ]
 

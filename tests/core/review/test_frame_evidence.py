@@ -7,7 +7,8 @@ import pytest
 from _review import made_up_keypoints
 from keymark.core.footage.keypoints.body_points import BODY_POINTS
 from keymark.core.review.compared_keypoints import ComparedKeypoints, part_of
-from keymark.core.review.frame_evidence import believed_misfits, frame_evidence
+from keymark.core.review.contour_sight import ContourSight
+from keymark.core.review.frame_evidence import MarkerSight, believed_misfits, frame_evidence
 from keymark.core.review.weak_frames import FrameEvidence
 
 FRAMES = 6
@@ -26,8 +27,8 @@ def evidence_of(
     segments: tuple[str, ...], quality: np.ndarray, misfit: np.ndarray, keypoints: ComparedKeypoints
 ) -> FrameEvidence:
     """Of frames that differ in nothing else."""
-    alike = np.ones(FRAMES)
-    return frame_evidence(alike, alike, alike, segments, quality, misfit, keypoints)
+    alike, markers = np.ones(FRAMES), MarkerSight(segments, quality, misfit)
+    return frame_evidence(alike, alike, alike, markers, ContourSight.none(FRAMES), keypoints)
 
 
 @pytest.mark.parametrize("name", BODY_POINTS)
@@ -43,7 +44,7 @@ def test_points_of_the_face_are_one_witness() -> None:
     keypoints = of_names(("nose", "ear.L", "ear.R", "wrist.L"))
     keypoints.distance_px[:] = [1.0, 2.0, 30.0, 3.0]
     keypoints.distance_px[1, 0], keypoints.distance_px[2, :3] = np.nan, np.nan
-    keypoints.score[:, 1] = 1.0
+    keypoints.confidence[:, 1] = 1.0
     assert keypoints.parts() == ("head", "wrist.L")
     assert keypoints.by_part(keypoints.distance_px)[:3] == pytest.approx(
         np.array([[2.0, 3.0], [16.0, 3.0], [np.nan, 3.0]]), nan_ok=True
@@ -51,12 +52,20 @@ def test_points_of_the_face_are_one_witness() -> None:
     assert keypoints.quality()[0].tolist() == [1.0, 0.9]
 
 
+def test_points_that_are_left_out_all_along_are_missed_by_nobody() -> None:
+    """They are no part, and neither agree nor disagree."""
+    keypoints = of_names(("wrist.L", "knee.R"))
+    keypoints.expected_px[:, 0], keypoints.confidence[:, 0] = np.inf, 0.0
+    assert keypoints.parts() == ("knee.R",) and keypoints.quality().shape == (FRAMES, 1)
+    assert np.isnan(keypoints.misfit[:, 0]).all() and np.isfinite(keypoints.misfit[:, 1]).all()
+
+
 def test_what_is_thrown_out_has_no_say_in_the_confidence() -> None:
     """Yet it is told where the motion and the keypoint differ."""
     keypoints = made_up_keypoints(FRAMES)
     keypoints.distance_px[1, [0, 2]], keypoints.thrown_out[1, [0, 2]] = 40.0, True
     markers = np.full((FRAMES, 1), 0.5)
-    believed = believed_misfits(markers, keypoints)
+    believed = believed_misfits(markers, ContourSight.none(FRAMES), keypoints)
     assert believed.shape == (FRAMES, 3)
     assert np.isnan(believed[1, 1]) and believed[0, 1] == pytest.approx(0.125)
     told = evidence_of(("trunk",), np.ones((FRAMES, 1)), markers, keypoints)
@@ -68,7 +77,7 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
     """A sleeve shows the wrist, elbow and wrist together show the sleeve; one end alone does not."""
     names = ("elbow.L", "wrist.L", "knee.R")
     keypoints = of_names(names)
-    keypoints.score[1, 1] = keypoints.score[1:3, 2] = 0.0
+    keypoints.confidence[1, 1] = keypoints.confidence[1:3, 2] = 0.0
     quality = np.ones((FRAMES, 2))
     quality[:2, 0] = 0.0
     nothing = np.full((FRAMES, 2), np.nan)
@@ -80,6 +89,19 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
     ]
     alone = evidence_of(("forearm.L", "shin.L"), quality, nothing, of_names(()))
     assert np.array_equal(alone.quality, quality) and alone.points == ()
+
+
+def test_contours_are_evidence_as_markers_are() -> None:
+    """Their segments come after the markers, before the body points; keypoints may show what they miss."""
+    contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), np.full((FRAMES, 2), 7.0))
+    keypoints = of_names(("elbow.L", "wrist.L"))
+    none = MarkerSight((), np.zeros((FRAMES, 0)), np.zeros((FRAMES, 0)))
+    alike = np.ones(FRAMES)
+    told = frame_evidence(alike, alike, alike, none, contours, keypoints)
+    assert told.points == ("forearm.L", "shin.L", "elbow.L", "wrist.L")
+    assert told.quality[0].tolist() == [0.9, 0.0, 0.9, 0.9]
+    assert told.misfit[0].tolist() == [7.0, 7.0, 0.0, 0.0]
+    assert believed_misfits(none.misfit, contours, keypoints)[0].tolist() == [7.0, 7.0, 0.0, 0.0]
 
 
 def test_swapped_flags_and_places_keep_their_kind_in_a_cache() -> None:

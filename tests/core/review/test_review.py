@@ -11,12 +11,16 @@ from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
+from keymark.core.review.contour_sight import contour_sight
 from keymark.core.review.review import Review, review
 from keymark.core.review.used_evidence import used_evidence
 from keymark.core.take.evidence import with_evidence
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+
+ASIDE = 0.04 * np.eye(34)[0]
+"""A step of the posture that moves the performer by four centimeters."""
 
 
 def same(first: Review | ComparedKeypoints, second: Review | ComparedKeypoints) -> bool:
@@ -142,6 +146,20 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
         filtered = used_evidence(run(reconstruct(partly, "ekf", result.reading)))
         assert (filtered.markers, filtered.keypoints, filtered.contours) == (used.markers, (), False)
     assert same(Review.from_arrays(found.to_arrays()), found)
+
+
+def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
+    """A motion beside the performer shows fewer edges, farther away, and is believed less."""
+    bare = with_evidence(take, ("contours",))
+    good = run(reconstruct(bare))
+    moved = replace(good.motion, posture=good.motion.posture.plus(ASIDE))
+    bad = replace(good, motion=moved)
+    sights = [run(contour_sight(result)) for result in (good, bad)]
+    assert sights[0].parts == sights[1].parts and "shin.L" in sights[0].parts
+    assert np.nanmedian(sights[1].misfit) > 2.0 * np.nanmedian(sights[0].misfit)
+    believed = [run(review(bare, result, np.arange(24) + 1.0)).confidence.mean() for result in (good, bad)]
+    assert believed[1] < believed[0]
+    assert run(contour_sight(run(reconstruct(take)))).parts == ()
 
 
 def test_few_keyframes_are_told_with_the_frames_that_lack_one(take: Take) -> None:

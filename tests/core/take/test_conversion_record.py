@@ -132,4 +132,6 @@ def test_evidence_is_told_in_words() -> None:
         UsedEvidence(("trunk",), sources, True, True).words == "1 marker, 3 keypoints, depth hints, contours"
     )
     assert UsedEvidence(contours=True).words == "contours"
+    astray = (UsedKeypoints("a", ("nose",), 0.0),)
+    assert UsedEvidence(("trunk",), astray).words == "1 marker"
     assert UsedEvidence().words == "keyframes alone"
