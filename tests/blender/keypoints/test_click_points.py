@@ -36,14 +36,8 @@ def test_clicks_are_kept_by_frame_and_point(plain: bpy.types.Scene) -> None:
     assert seen.pixel[0, seen.names.index("wrist.L")].tolist() == [44.0, 52.0]
     (people,) = scene_evidence(take).people(footage_of(plain, take), 1.0 + np.arange(FRAMES))
     column = people.names.index("wrist.L")
-    assert people.by_hand and [len(frame.pixel) for frame in people.frames] == [
-        0,
-        0,
-        1,
-        *[0] * 5,
-        1,
-        *[0] * 4,
-    ]
+    assert people.by_hand
+    assert [index for index, frame in enumerate(people.frames) if len(frame.pixel)] == [2, 8]
     assert people.frames[8].pixel[0, column].tolist() == [70.0, 50.0]
     assert np.isnan(people.frames[8].pixel[0, people.names.index("head")]).all()
 

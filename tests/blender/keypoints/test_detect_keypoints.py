@@ -36,7 +36,7 @@ def test_what_a_detector_finds_is_written_beside_the_clip_and_listed(
 
 
 @pytest.mark.parametrize(
-    ("how", "sentence"), [("fail", "no weights"), ("garbage", "unusable"), ("nothing", "nothing")]
+    ("how", "sentence"), [("fail", "no weights"), ("garbage", "unusable"), ("nothing", "wrote no keypoints")]
 )
 def test_a_detector_that_fails_changes_nothing(
     plain: bpy.types.Scene, plain_take: Take, monkeypatch: pytest.MonkeyPatch, how: str, sentence: str
