@@ -73,7 +73,7 @@ def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
         read(folder, 13)
     with pytest.raises(InputError, match="ends with frame 18"):
         read(folder, 30)
-    with pytest.raises(InputError, match=r"before the clip's last.*a share of 2"):
+    with pytest.raises(InputError, match=r"before the clip's last.*one for every 2"):
         read(write_openpose(tmp_path / "half", person), 24)
     with pytest.raises(InputError, match="must begin with 0, 1 or"):
         read(folder, None)
@@ -357,7 +357,7 @@ def broken(tmp_path: Path, kind: str) -> Path:
         ("shares", "must be pixels of the clip"),
         ("larger picture", "outside the clip's picture"),
         ("in space", "points in space"),
-        ("half the frames", "has 6 frames, the clip 12.*a share of 2"),
+        ("half the frames", "has 6 frames, the clip 12.*one for every 2"),
         ("far", "a number beyond 1e"),
     ],
 )
