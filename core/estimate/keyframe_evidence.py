@@ -24,9 +24,10 @@ from .calibration import (
     placement_values,
     placements_from,
 )
+from .depth_evidence import read_depths
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std
-from .posing_error import posing_covariance, velocities
+from .posing_error import POINT_STD_M, posing_covariance, velocities
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import student_weight
@@ -97,7 +98,8 @@ def read_keyframes(
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
     keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
-    if not model.placements and (points is None or not points.seen.any()):
+    believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
+    if not model.placements and not believed:
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
         found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
         return replace(found, keypoints=keypoints)
@@ -108,8 +110,9 @@ def read_keyframes(
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
     calibrated, groups = model, [FEATURES] * len(model.placements)
     seen_points = None
-    if points is not None and points.seen.any():
+    if points is not None and believed:
         seen_points = KnownKeypoints(pose, frame[judged], points[judged])
+        seen_points = replace(seen_points, observed=seen_points.observed.only(keypoints.trust > 0.0))
         groups += [2] * len(keypoints.model.names)
     usual, placed, std_m = keypoints.model, keypoints.model, keypoints.std_m
     size = np.array(groups)
@@ -129,8 +132,8 @@ def read_keyframes(
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
             scale, timing = yield from _most_likely_sizes(seen, weight)
-        change, left = _calibrate(seen, weight, scale, timing)
-        squared = _squared(seen, left, size, scale, timing)
+        change, left = seen.calibrated(weight, scale, timing)
+        squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
         ends = markers * PARAMETER_COUNT
         calibrated = _changed(model, np.append(change[:ends], change[-1]))
@@ -145,7 +148,12 @@ def read_keyframes(
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     information = keyframe_information(posing, velocity, scale, timing)
-    found_points = replace(keypoints, model=replace(placed, camera=calibrated.camera), std_m=std_m)
+    placed = replace(placed, camera=calibrated.camera)
+    found_points = replace(keypoints, model=placed, std_m=std_m)
+    if points is not None and believed and np.isfinite(points.depth_m).any():
+        every = model.body.pose(posture)
+        depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
+        found_points = replace(found_points, depths=depths)
     return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
 
 
@@ -248,7 +256,7 @@ def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
 
     Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
     """
-    inverse, information, right = _gather(seen, noise)
+    inverse, information, right = seen.gathered(noise)
     _, determinants = np.linalg.slogdet(noise)
     misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
     weighted = (inverse @ seen.velocity[..., None])[..., 0]
@@ -264,35 +272,6 @@ def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
         spread = determinants.sum() + np.log1p(timing**2 * gain).sum() + np.linalg.slogdet(known)[1]
         result[i] = -0.5 * (rest + spread)
     return result
-
-
-def _gather(seen: KeyframeRows, noise: Array) -> tuple[Array, Array, Array]:
-    """Inverse noise, information (X, X) of the parameters with their prior, right-hand side (X,)."""
-    inverse = np.linalg.inv(noise)
-    weighted = np.swapaxes(seen.parameter_jacobian, -1, -2) @ inverse
-    information = (weighted @ seen.parameter_jacobian).sum(axis=0) + seen.prior
-    return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
-
-
-def _calibrate(seen: KeyframeRows, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (X,) of the parameters, and the rows (J, R) that it leaves."""
-    _, information, right = _gather(seen, seen.noise(weight, scale, timing))
-    change = -np.linalg.solve(information, right)
-    return change, seen.residual + seen.parameter_jacobian @ change
-
-
-def _squared(seen: KeyframeRows, left: Array, size: IndexArray, scale: float, timing: float) -> Array:
-    """(J, G) squares of groups of rows in standard deviations, `size` (G,) rows each."""
-    expected = seen.noise(np.ones_like(left), scale, timing)
-    squared = np.empty((len(left), len(size)))
-    first = np.cumsum(size) - size
-    for count in np.unique(size):
-        index = first[size == count][:, None] + np.arange(count)
-        rows = left[:, index]  # (J, G', count)
-        own = expected[:, index[:, :, None], index[:, None, :]]
-        solved = np.linalg.solve(own, rows[..., None])
-        squared[:, size == count] = (rows[..., None, :] @ solved)[..., 0, 0]
-    return squared
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:

@@ -54,7 +54,8 @@ def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGro
         try:
             people = read_keypoint_file(path, None, size, footage.rate, footage.first_frame)
         except InputError as error:
-            return KeypointReading(None, str(error), is_missing=state is None)
+            sentence = str(error).replace(str(path), path.name)
+            return KeypointReading(None, sentence, is_missing=state is None)
         hints = any(bool(np.isfinite(frame.hint_m).any()) for frame in people.frames)
         return KeypointReading(people, has_changed=state != entry.contents, has_hints=hints)
 

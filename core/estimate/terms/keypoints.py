@@ -28,6 +28,8 @@ class ObservedKeypoints:
     """(F, N, 2) [px], NaN where not seen."""
     confidence: Array
     """(F, N) 0.1 to 1; 0 where not seen."""
+    depth_m: Array
+    """(F, N) guessed distance behind the hips' middle [m]; NaN where there is none."""
 
     @classmethod
     def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
@@ -39,16 +41,28 @@ class ObservedKeypoints:
             if seen[:, own].any():
                 sure = max(float(np.quantile(scores[seen[:, own]], SURE_QUANTILE)), 1e-6)
                 confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
-        return cls(np.where(seen[..., None], keypoints.pixel, np.nan), np.where(seen, confidence, 0.0))
+        return cls(
+            np.where(seen[..., None], keypoints.pixel, np.nan),
+            np.where(seen, confidence, 0.0),
+            np.where(seen, keypoints.hint_m[..., 2], np.nan),
+        )
 
     @property
     def seen(self) -> BoolArray:
         """(F, N) whether each is seen."""
         return np.asarray(self.confidence > 0.0)
 
+    def only(self, kept: BoolArray) -> "ObservedKeypoints":
+        """The same without those points that are not among `kept` (N,)."""
+        return ObservedKeypoints(
+            np.where(kept[:, None], self.pixel, np.nan),
+            np.where(kept, self.confidence, 0.0),
+            np.where(kept, self.depth_m, np.nan),
+        )
+
     def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
         """Those of some frames."""
-        return ObservedKeypoints(self.pixel[index], self.confidence[index])
+        return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])
 
 
 @dataclass(frozen=True, eq=False)
