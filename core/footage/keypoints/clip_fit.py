@@ -1,5 +1,7 @@
 """What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
 
+from pathlib import Path
+
 import numpy as np
 
 from ...arrays import Array, BoolArray
@@ -65,8 +67,13 @@ def held_against_clip(
         tuple(frames),
         file=detected.where,
         by_hand=detected.by_hand,
-        notes=aligned.notes + notes,
+        notes=tuple(_with_name(note, detected.where) for note in aligned.notes + notes),
     )
+
+
+def _with_name(note: str, where: str) -> str:
+    """A sentence that names the file alone: notes go into results, which are the same in any folder."""
+    return note.replace(where, Path(where).name or where, 1)
 
 
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
