@@ -146,8 +146,11 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
     for said in used.keypoints:
         assert said.points == names and 0.5 < said.believed <= 1.0
     if used.markers:
-        filtered = used_evidence(run(reconstruct(partly, "ekf", result.reading)))
+        by_filter = run(reconstruct(partly, "ekf", result.reading))
+        filtered = used_evidence(by_filter)
         assert (filtered.markers, filtered.keypoints, filtered.contours) == (used.markers, (), False)
+        beside = run(review(partly, by_filter, np.arange(frames) + 1.0)).keypoints
+        assert beside.names == names and np.nanmedian(beside.distance_px) < 6.0 and not beside.swapped.any()
     assert same(Review.from_arrays(found.to_arrays()), found)
 
 
