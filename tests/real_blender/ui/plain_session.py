@@ -1,4 +1,4 @@
-"""A person's session with a performer in plain clothes: footage, keypoints, actor, keyframes, the motion.
+"""A person's session with plain clothes: footage, keypoints, actor, keyframes, the motion.
 
 Usage: as of session.py, without a step; TAKE has no markers, and a file keypoints.json that is loaded by hand.
 """
