@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
 from .calibration import (
@@ -131,7 +132,8 @@ def read_keyframes(
         seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
-            scale, timing = yield from _most_likely_sizes(seen, weight)
+            judging, tied = _judging(markers, keypoints, len(size) > markers)
+            scale, timing = yield from _most_likely_sizes(seen.part(judging, tied), weight[:, judging])
         change, left = seen.calibrated(weight, scale, timing)
         squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
@@ -236,6 +238,20 @@ def _area_ratios(ratio: Array) -> Array:
     """(M,) upper quartile of (J, M) observed areas relative to predicted ones; 1 for markers never seen."""
     filled = np.where(np.isfinite(ratio).any(axis=0), ratio, 1.0)
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
+
+
+def _judging(markers: int, keypoints: KeypointEvidence, used: bool) -> tuple[BoolArray, BoolArray]:
+    """Which rows (R,) judge keyframes, with their parameters (X,): markers, and keypoints of the joints.
+
+    The others, of face, hands and feet, err along with these.
+    """
+    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * PARAMETER_COUNT, bool)
+    if used:
+        points = np.array([name in HUMAN.point_names for name in keypoints.model.names])
+        points |= not points.any()
+        rows = np.concatenate([rows, np.repeat(points, 2)])
+        parameters = np.concatenate([parameters, np.repeat(points, 3)])
+    return rows, np.append(parameters, True)
 
 
 def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, None, tuple[float, float]]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array, BoolArray, IndexArray
 
 UNUSED = 1e6
 """Variance of a row that does not count [px²]."""
@@ -79,6 +79,17 @@ class KeyframeRows:
             jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
             (jacobian @ velocity[..., None])[..., 0],
             block_diag(*(part.prior for part in parts), LENS_STD**-2),
+        )
+
+    def part(self, rows: BoolArray, parameters: BoolArray) -> "KeyframeRows":
+        """Some of the rows (R,), with the parameters (X,) that they depend on."""
+        return KeyframeRows(
+            self.residual[:, rows],
+            self.parameter_jacobian[:, rows][:, :, parameters],
+            self.variance[:, rows],
+            self.posing[:, rows][:, :, rows],
+            self.velocity[:, rows],
+            self.prior[np.ix_(parameters, parameters)],
         )
 
     def gathered(self, noise: Array) -> tuple[Array, Array, Array]:

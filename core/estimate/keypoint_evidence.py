@@ -171,7 +171,7 @@ def learned_std(
     own = np.repeat((scale * std_m) ** 2, 2, axis=1)
     inverse = np.linalg.inv(noise)
     mean = own * (inverse @ left[..., None])[..., 0]
-    spread = own - own**2 * np.diagonal(inverse, axis1=1, axis2=2)
+    spread = own * np.clip(1.0 - own * np.diagonal(inverse, axis1=1, axis2=2), 0.0, 1.0)
     squared = (mean**2 + spread).reshape(judged, points, 2).sum(-1) / scale**2  # of both axes [m²]
     used = known.observed.seen
     bounded = np.minimum(squared, LARGEST_ERROR**2 * 2.0 * std_m**2)

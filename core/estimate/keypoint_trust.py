@@ -21,6 +21,8 @@ LIMB_WIDTH_M = 0.07
 """About the half-width of a thigh and the width of an arm [m]."""
 TURNED = 2.0
 """How many of a point's usual errors are added to it: hands and feet turn."""
+USUAL_QUANTILE = 0.4
+"""Of the distances at the keyframes: a few that are far off are outliers, of a point that is believed."""
 FEWEST_BELIEVED = 0.5
 """A source of whose principal points a smaller share is believed is left out."""
 LONGEST_LAG = 15
@@ -39,7 +41,7 @@ class KeypointTrust:
     trust: Array
     """(N,) 1 for points that are believed, 0 for others."""
     distance_m: Array
-    """(N,) median distance across the view from where keyframes have each [m]; NaN where not seen at any."""
+    """(N,) usual distance across the view from where keyframes have each [m]; NaN where not seen at any."""
     lag: Mapping[str, int]
     """By source: frames by which it is late, or early where negative; 0 for one that is neither."""
 
@@ -76,11 +78,12 @@ def keypoint_trust(
 
 
 def _distances(points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray) -> Array:
-    """(N,) median distance [m] of the points seen in given frames from what is predicted, (K, N, 2) [m]."""
+    """(N,) usual distance [m] of the points seen in given frames from what is predicted, (K, N, 2) [m]."""
     distance = np.linalg.norm(points.pixel[frame] * scale[..., None] - predicted, axis=-1)
-    distance[:, ~np.isfinite(distance).any(axis=0)] = np.inf
-    median = np.nanmedian(distance, axis=0)
-    return np.where(np.isfinite(median), median, np.nan)
+    usual = np.full(distance.shape[1], np.nan)
+    known = np.isfinite(distance).any(axis=0)
+    usual[known] = np.nanquantile(distance[:, known], USUAL_QUANTILE, axis=0)
+    return usual
 
 
 def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray, own: BoolArray) -> int:

@@ -16,6 +16,8 @@ from ..footage.keypoints.keypoints import Keypoints
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
+FACE = ("eye", "ear")
+"""Too near each other to tell: exchanged where arms and legs are."""
 STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
 """Whether arms, and whether legs, are exchanged."""
 PLACE_STD_M = 0.04
@@ -71,9 +73,9 @@ def find_swaps(
             differs = exchanged[:, None] != exchanged
             move += np.where(differs, (turns - np.log(CHANGE))[:, None, None], stays[:, None, None])
         exchanged = STATES[_most_probable(place, move)]  # (F, 2)
-        for own, state in zip(pairs, exchanged.T, strict=True):
-            if len(own):
-                swapped[:, own.ravel()] |= state[:, None]
+        pairs.append(_pairs(keypoints, source, FACE))
+        for own, state in zip(pairs, [*exchanged.T, exchanged.all(axis=1)], strict=True):
+            swapped[:, own.ravel()] |= state[:, None]
     return swapped & keypoints.seen
 
 

@@ -74,10 +74,11 @@ class DepthLinks:
 
     def jacobian(self, model: KeypointModel, pose: Pose, frame: IndexArray) -> Array:
         """(F, L, D) derivative of the depths by the posture's tangent."""
-        world = model.world(pose)
+        used = np.flatnonzero(self.ends.any(axis=0))
+        world = model.world(pose)[:, used]
         axis = model.camera.depth_jacobian(world, frame[:, None])
         rows = np.concatenate([axis, cross(world, axis)], axis=-1) @ pose.screws
-        return np.asarray(self.ends @ (rows * pose.posture.skeleton.moved_by[model.joint]))
+        return np.asarray(self.ends[:, used] @ (rows * pose.posture.skeleton.moved_by[model.joint[used]]))
 
 
 def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:

@@ -34,6 +34,6 @@ class DepthHintTerm:
         error = (self.links.depths(self.model, state.pose, state.frame) - self.expected) / self.std_m
         used = np.isfinite(error) & np.isfinite(self.std_m)
         rows = drift(error[..., None], used, self.kept, temperature)
-        jacobian = self.links.jacobian(self.model, state.pose, state.frame) @ state.tangent_jacobian
-        jacobian = np.where(used, 1.0 / self.std_m, 0.0)[..., None] * jacobian
-        add_drift(equations, jacobian[:, :, None], rows)
+        jacobian = self.links.jacobian(self.model, state.pose, state.frame)
+        jacobian *= np.where(used, 1.0 / self.std_m, 0.0)[..., None]
+        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)

@@ -80,9 +80,9 @@ class KeypointTerm:
         """Add two rows for each keypoint."""
         error, std_px, used = self.errors(state.pose, state.frame)
         rows = drift(error, used, self.kept, temperature)
-        jacobian = self.model.pixels_jacobian(state.pose, state.frame) / std_px[..., None, None]
-        jacobian = np.where(used[..., None, None], jacobian, 0.0)
-        add_drift(equations, jacobian @ state.tangent_jacobian[:, None], rows)
+        factor = np.where(used, 1.0 / std_px, 0.0)
+        jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
+        add_drift(equations, jacobian, rows, state.tangent_jacobian)
 
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""
