@@ -18,7 +18,8 @@ from .contour_search import NARROW, SearchRange
 
 WIDEST_M = (0.25, 0.13, 0.20)
 """Reach, deviation and farthest edge of the first look: interpolation between keyframes errs by 5 to 20 cm."""
-LOOKS = 9
+import os
+LOOKS = int(os.environ.get("NL", 9))
 """Looks of the schedule; each is about a seventh narrower than the one before."""
 LARGEST_REACH_PX = 36
 """Bound of the first look's reach, for the sake of time."""

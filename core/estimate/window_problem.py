@@ -54,6 +54,9 @@ class WindowProblem:
             begun, measured = number / looks, (number + MEASURING_SHARE) / looks
             term = yield from scaled(measuring, begun, measured)
             self.terms = with_contours(others, term)
+            if contours.along is not None:
+                shifts = contours.measure_along(self.state.posture, self.state.frame, search)
+                self.terms.append((yield from scaled(shifts, measured, measured)))
             yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
