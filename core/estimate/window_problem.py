@@ -1,7 +1,7 @@
 """Gauss-Newton on one window of a clip: first by the markers, then with the contours."""
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,8 @@ LARGEST_STEP = 0.5
 """Largest change of a posture's unknown in one step [m, rad]."""
 CONVERGED = 3e-3
 """Converged once no unknown of any posture changes by more in a step [m, rad]."""
+MOST_UNPACKED = 256 << 20
+"""Bytes of pictures that are unpacked once instead of at every look: those of half a minute at 320 x 240."""
 MEASURING_SHARE = 0.5
 """Share of following the contours that measuring their edges is."""
 
@@ -48,6 +50,7 @@ class WindowProblem:
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
         others = list(self.terms)
+        contours = replace(contours, album=contours.album.opened(MOST_UNPACKED))
         looks = len(contours.schedule.looks)
         for number, search in enumerate(contours.schedule.looks):
             measuring = contours.measure(self.state.posture, self.state.frame, search)
