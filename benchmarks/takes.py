@@ -12,6 +12,8 @@ NAMED_PLACES = "KEYMARK_TAKES"
 OUTPUT = ROOT / "out" / "bench"
 GIVEN_PLACES = (ROOT.parent / "shared" / "takes", ROOT / "presets" / "demo")
 """Folders of the takes with which methods are developed and tuned."""
+PLAIN_PLACE = ROOT.parent / "shared" / "plain_takes"
+"""Folder of takes whose performers wear no markers."""
 GROUPS = ("given", "studio")
 """Names of the takes in those folders, and of all others."""
 
@@ -27,14 +29,18 @@ def load_project() -> None:
     boot.load_package()
 
 
-def take_names() -> dict[str, Path]:
-    """Folders of takes with truth by the name in tables; the demonstration's begins with `demo`."""
+def take_names(plain: bool = False) -> dict[str, Path]:
+    """Folders of takes with truth by the name in tables; the demonstration's begins with `demo`.
+
+    Takes without markers, which not every method can use, come on request.
+    """
     named = [Path(place) for place in os.environ.get(NAMED_PLACES, "").split(os.pathsep) if place]
     found: dict[str, Path] = {}
     for place in (
         GIVEN_PLACES[0],
         ROOT / "out" / "takes",
         *named,
+        *((PLAIN_PLACE,) if plain else ()),
         GIVEN_PLACES[1],
     ):
         for truth in sorted(place.glob("*/truth.json")):
@@ -45,15 +51,15 @@ def take_names() -> dict[str, Path]:
     return found
 
 
-def chosen_takes(wanted: Sequence[str]) -> dict[str, Path]:
+def chosen_takes(wanted: Sequence[str], plain: bool = False) -> dict[str, Path]:
     """Folders of the takes given by name, as in tables, or by folder; all takes found if none is given."""
     if not wanted:
-        return take_names()
+        return take_names(plain)
     chosen: dict[str, Path] = {}
     for name in wanted:
         if (Path(name) / "truth.json").is_file():
             chosen[Path(name).resolve().name] = Path(name)
-        elif name in (known := take_names()):
+        elif name in (known := take_names(plain)):
             chosen[name] = known[name]
         else:
             print(

@@ -10,8 +10,16 @@ from typing import Any
 import numpy as np
 from _character_maps import full_map, full_record
 from _libraries import small_library
-from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
+from _synthetic_take import (
+    BODY,
+    SIZE,
+    true_postures,
+    write_json,
+    write_keypoints,
+    write_synthetic_take,
+)
 from keymark.core.body.posture_fields import posture_to_json
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints
 from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.retarget.maps.character_map_file import map_to_json, read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
@@ -58,6 +66,7 @@ class Format:
 def formats(folder: Path) -> dict[str, Format]:
     """All formats by name; the files around them are written into `folder`."""
     take = write_synthetic_take(folder / "take", FRAMES, 4)
+    write_keypoints(take / "keypoints.json", true_postures(FRAMES))
     said = _said(take)
     all_formats = [
         Format("take", said, _take(take), whole=True),
@@ -75,6 +84,7 @@ def formats(folder: Path) -> dict[str, Format]:
             record_to_json(full_record()),
             _plain(folder, "retarget.json", lambda path: read_retarget_record(path.parent)),
         ),
+        Format("keypoints", _keypoints(), _plain(folder, "keypoints.json", _read_keypoints)),
         Format(
             "truth",
             _read(take / "truth.json"),
@@ -96,6 +106,7 @@ def _said(take: Path) -> dict[str, Any]:
     said["actor"]["height_m"] = 1.75
     said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
     said["character"] = dict(CHARACTER)
+    said |= {"keypoints": ["keypoints.json"], "evidence": ["markers", "keypoints", "contours"]}
     return said | {"keyframes": "keyframes.json", "note": "of no meaning"}
 
 
@@ -109,13 +120,26 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
-    settings["character"] = {"file": "anna.VRM"}
+    settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 
 
 def _line(said: dict[str, Any]) -> dict[str, Any]:
     return {"take": "listed"} | {name: value for name, value in said.items() if name != "note"}
+
+
+def _keypoints() -> dict[str, Any]:
+    """Two points of one person in all frames but the last, one of them not seen in the first, with hints."""
+    frames = [[[10.0 + frame, 20.5, 0.9], [30.0, 40.0, 0.1 * frame]] for frame in range(FRAMES)]
+    world = [[[0.1, -0.4, 0.01 * frame], [-0.1, None, 0.2]] for frame in range(FRAMES)]
+    value = {"detector": "A detector", "layout": "own", "names": ["shoulder.L", "heel.R"], "by_hand": False}
+    value |= {"size": list(SIZE), "frame_start": 1, "fps": 30.0, "note": "free text"}
+    return value | {"frames": [*frames[:-1], None], "world": [*world[:-1], None]}
+
+
+def _read_keypoints(path: Path) -> object:
+    return read_keypoints(path, FRAMES, SIZE, 30.0, 1)
 
 
 def _truth(path: Path) -> object:
@@ -155,6 +179,12 @@ def _record() -> dict[str, Any]:
         "matched": [5],
     }
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
+    value["evidence"] = {
+        "markers": ["trunk"],
+        "keypoints": [{"source": "a detector", "points": ["nose", "wrist.L"], "believed": 0.97}],
+        "depth_hints": False,
+        "contours": True,
+    }
     return value | {"files": {"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32}}
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
+from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 
 FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
 RECORD = ConversionRecord(
@@ -24,6 +25,7 @@ RECORD = ConversionRecord(
     weak_frames=(87, 31),
     notes=("the frames are unevenly spaced in time",),
     files=dict.fromkeys(FILES, 64 * "0"),
+    evidence=UsedEvidence(("trunk", "shin.L"), (UsedKeypoints("a detector", ("nose", "wrist.L"), 1.0),)),
 )
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 from keymark.core.body.human import HUMAN
+from keymark.core.review.compared_keypoints import ComparedKeypoints
 from keymark.core.review.review import Reason, Review, WeakFrame
 
 
@@ -28,4 +29,21 @@ def made_up_review(frames: int = 13, first: float = 1.0) -> Review:
         confidence=1.0 - 0.6 * middle,
         keyframe_indices=np.array([0, frames - 1]),
         weak_frames=(WeakFrame(frames // 2, Reason.HIDDEN, 1.0, 1), WeakFrame(3, Reason.FAR, 0.25)),
+        keypoints=made_up_keypoints(frames),
     )
+
+
+def made_up_keypoints(frames: int = 13) -> ComparedKeypoints:
+    """F frames of a wrist and a knee of one source, and the same wrist of another, a pixel from the motion.
+
+    The first wrist is thrown out in frame 1, hidden in frame 2, and taken for the other one in frame 4.
+    """
+    seen = np.random.default_rng(5).uniform(20.0, 100.0, size=(frames, 3, 2))
+    seen[2, 0] = np.nan
+    predicted, thrown_out, swapped = seen + [1.0, 0.0], *np.zeros((2, frames, 3), dtype=bool)
+    predicted[1, 0] += 30.0
+    thrown_out[1, 0], swapped[4, 0] = True, True
+    score = np.where(np.isfinite(seen[..., 0]), 0.9, 0.0)
+    distance, expected = np.linalg.norm(seen - predicted, axis=-1), np.full((frames, 3), 2.0)
+    names, sources = ("wrist.L", "knee.R", "wrist.L"), ("a detector", "a detector", "Blender's tracks")
+    return ComparedKeypoints(names, sources, seen, predicted, score, distance, expected, thrown_out, swapped)

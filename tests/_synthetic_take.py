@@ -75,6 +75,15 @@ def write_keyframes(path: Path, points: np.ndarray, every: int) -> None:
     write_json(path, {"keyframes": rows})
 
 
+def write_keypoints(path: Path, posture: Posture, **changes: Any) -> Path:
+    """Write what a perfect detector of the principal points would see; `changes` are other fields."""
+    pixel, _ = Camera.from_dict(CAMERA).project(BODY.points(BODY.pose(posture)))
+    frames = [[[round(x, 2), round(y, 2), 0.9] for x, y in frame] for frame in pixel.tolist()]
+    fields = {"detector": "drawn", "layout": "own", "names": list(BODY.skeleton.point_names)}
+    write_json(path, {**fields, "size": list(SIZE), "frame_start": 1, "frames": frames, **changes})
+    return path
+
+
 def named(rows: np.ndarray) -> dict[str, Any]:
     """Rows by name of principal point."""
     return dict(zip(BODY.skeleton.point_names, rows.tolist(), strict=True))

@@ -1,9 +1,10 @@
 """Make takes with truth: compose a performance, film it, and write its take, keyframe and truth files.
 
-Usage: make_takes.py [--output FOLDER] [--threads N] [NAME ...], with the Python of a virtual environment that
-has `bpy`; by default all takes of studio/catalogue.py into out/takes. The one called `aerobic` is the
-demonstration of presets/demo. A take needs some minutes. Equal seeds give equal motion, keyframes and, in one
-version of Blender, equal pictures.
+Usage: make_takes.py [--output FOLDER] [--threads N] [--keypoints] [NAME ...], with the Python of a virtual
+environment that has `bpy`; by default all takes of studio/catalogue.py into out/takes. The one called
+`aerobic` is the demonstration of presets/demo. A take needs some minutes; with --keypoints nothing is filmed,
+and only what the studio's detector sees is written anew. Equal seeds give equal motion, keyframes, keypoints
+and, in one version of Blender, equal pictures.
 """
 
 import argparse
@@ -23,13 +24,18 @@ load_package()
 
 from keymark.core.arrays import BoolArray  # noqa: E402
 from keymark.core.body.posture_fields import rounded  # noqa: E402
+from keymark.core.files.json_file import write_json  # noqa: E402
+from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
 from keymark.core.footage.marker_style import MarkerStyle  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.take import evidence_kinds  # noqa: E402
+from keymark.core.take.description import KEYPOINT_FILE  # noqa: E402
 from keymark.core.take.keyframe_file import write_keyframes  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import write_take  # noqa: E402
 from studio.catalogue import TAKES  # noqa: E402
 from studio.described import Described  # noqa: E402
+from studio.detector import detect  # noqa: E402
 from studio.filming import (  # noqa: E402
     add_sensor_noise,
     encode,
@@ -46,6 +52,8 @@ from studio.posing import pose_by_hand  # noqa: E402
 from studio.room import BuiltRoom, build_room  # noqa: E402
 
 FRAME_START = 1
+WORN = (evidence_kinds.MARKERS, evidence_kinds.CONTOURS)
+"""Evidence that a take is held against where its keypoints are for comparison."""
 SIDE_EXPOSURE = {"moments": 2, "samples": 2}
 LICENSE = (
     "The take in this folder (clip, camera, keyframes, truth) was made by\n"
@@ -60,12 +68,20 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(TAKES)}; by default all")
     parser.add_argument("--output", type=Path, default=ROOT / "out" / "takes")
     parser.add_argument("--threads", type=int, default=None, help="of rendering; by default one a core")
+    parser.add_argument(
+        "--keypoints",
+        action="store_true",
+        help="write the keypoints of takes that are there, without filming",
+    )
     chosen = parser.parse_args(arguments)
     unknown = [name for name in chosen.names if name not in TAKES]
     if unknown:
         parser.error(f"no take is called {', '.join(unknown)}; there are {', '.join(TAKES)}")
     for name in chosen.names or TAKES:
-        make(TAKES[name], chosen.output / name, chosen.threads)
+        if not chosen.keypoints:
+            make(TAKES[name], chosen.output / name, chosen.threads)
+        elif TAKES[name].detected:
+            detect_again(TAKES[name], chosen.output / name)
     return 0
 
 
@@ -90,6 +106,20 @@ def make(described: Described, output: Path, threads: int | None) -> None:
         noisy = [add_sensor_noise(image, random, described.noise) for image in images]
         encode(noisy, output / "side.mp4", "MEDIUM")
         _write_json(output / "side.json", {"clip": "side.mp4", "camera": described.side.to_dict()})
+
+
+def detect_again(described: Described, output: Path) -> None:
+    """Let the studio's detector look at a take that was filmed before, whose clip stays as it is."""
+    write_keypoint_file(output, described.perform(described.seed), described)
+    fields = json.loads((output / "take.json").read_text(encoding="utf-8"))
+    actor = fields.pop("actor")
+    write_json(output / "take.json", {**fields, "evidence": list(WORN), "actor": actor}, indent=1)
+
+
+def write_keypoint_file(output: Path, performance: Performance, described: Described) -> None:
+    """Write what the studio's detector sees."""
+    people = detect(performance, described.camera, np.random.default_rng(described.seed))
+    write_keypoints(output / KEYPOINT_FILE, people, FRAME_START, FPS)
 
 
 def _masks(
@@ -130,7 +160,9 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
         markers=_eyedropper(output / "clip.mp4", masks),
         keyframes=tuple(Keyframe(index, exact[row]) for row, index in enumerate(at)),
     )
-    write_take(take, output)
+    if described.detected:
+        write_keypoint_file(output, performance, described)
+    write_take(take, output, WORN if described.detected else None)
     by_hand = [Keyframe(index, noisy[row]) for row, index in enumerate(at)]
     write_keyframes(output / "keyframes_noisy.json", by_hand, body, FRAME_START)
     if not described.postures:

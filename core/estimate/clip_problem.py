@@ -11,6 +11,7 @@ from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise
 from .windows import Window
 
@@ -42,7 +43,11 @@ class ClipProblem:
     ankle_height_m: Array | None
     """(F,) usual height of the lower ankle [m]; None where no floor is known."""
     keypoints: Keypoints
-    """Of the performer, N of them."""
+    """Of the performer, N of them; left and right exchanged back where they were swapped."""
+    points: ObservedKeypoints
+    """The same, as they are compared."""
+    swapped: BoolArray
+    """(F, N) which of them were exchanged."""
 
     @property
     def frames(self) -> int:

@@ -24,7 +24,10 @@ from .calibration import (
     placement_values,
     placements_from,
 )
+from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
+from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std
 from .posing_error import posing_covariance, velocities
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import student_weight
 
@@ -42,11 +45,8 @@ TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
 TIMING_MEAN = 0.7
 """Mean of its exponential prior [frames]."""
-LENS_STD = 0.03
-"""Standard deviation of a stated focal length, as a share."""
 LENS_DIFFERENCE = 1e-3
-UNUSED = 1e6
-"""Variance of a row that does not count [px²]."""
+PARAMETER_COUNT = len(PRIOR_STD)
 MOST_DISTRUST = 10.0
 
 
@@ -66,31 +66,8 @@ class KeyframeEvidence:
     """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
     information: Array
     """(K, D, D) inverse covariance of each keyframe's posing error."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Residuals:
-    """Residuals at J judged keyframes, R = M * 5 rows each, and their derivatives."""
-
-    residual: Array
-    """(J, R) predicted minus observed, at the average placements."""
-    parameter_jacobian: Array
-    """(J, R, X) by the fitted parameters: M * P of the placements and the logarithm of the focal length."""
-    variance: Array
-    """(J, R) of the rows at a perfectly posed keyframe."""
-    posing: Array
-    """(J, R, R) covariance that a person's usual posing error adds."""
-    velocity: Array
-    """(J, R) change of the rows per frame."""
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
-
-    def noise(self, weight: Array, scale: float, timing: float) -> Array:
-        """(J, R, R) covariance of the rows without the placements' own."""
-        total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
-        rows = np.arange(total.shape[-1])
-        total[:, rows, rows] += self.variance / weight
-        return total
+    keypoints: KeypointEvidence
+    """The calibrated model of keypoints, none where there are none."""
 
 
 def read_keyframes(
@@ -100,8 +77,10 @@ def read_keyframes(
     width_px: Array,
     posture: Posture,
     frame: IndexArray,
+    keypoints: KeypointEvidence | None = None,
+    points: ObservedKeypoints | None = None,
 ) -> Generator[None, None, KeyframeEvidence]:
-    """Calibrate the markers on the keyframes and judge the keyframes by the markers.
+    """Calibrate markers and keypoints on the keyframes and judge the keyframes by them.
 
     It yields now and then, so that a job can be canceled.
 
@@ -112,38 +91,76 @@ def read_keyframes(
         width_px: (K, M) half-width of each marker's limb there [px].
         posture: The K posed postures.
         frame: (K,) their indices in the clip.
+        keypoints: Usual evidence of the N keypoints; None for none.
+        points: Those seen at the K keyframes.
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
-    if not model.placements:
+    keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
+    if not model.placements and (points is None or not points.seen.any()):
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
-        return replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
+        found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
+        return replace(found, keypoints=keypoints)
     judged = evenly_spread(frame, MOST_JUDGED)
-    known = KnownFrames(model.body.pose(posture[judged]), frame[judged], observed[judged])
+    pose = model.body.pose(posture[judged])
+    known = KnownFrames(pose, frame[judged], observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
-    calibrated, weight = model, np.ones(variance.reshape(len(judged), -1).shape)
-    distrust = np.ones(len(model.placements))
+    calibrated, groups = model, [FEATURES] * len(model.placements)
+    seen_points = None
+    if points is not None and points.seen.any():
+        seen_points = KnownKeypoints(pose, frame[judged], points[judged])
+        groups += [2] * len(keypoints.model.names)
+    usual, placed, std_m = keypoints.model, keypoints.model, keypoints.std_m
+    size = np.array(groups)
+    weight = np.ones((len(judged), int(size.sum())))
+    markers = len(model.placements)
+    distrust = np.ones(markers)
     scale, timing = SCALE_MEDIAN, 0.0
     for iteration in range(ITERATIONS):
         yield
-        seen = _residuals(calibrated, model, known, variance, posing[judged], velocity[judged])
+        parts, area_ratio = [], np.ones(0)
+        if markers:
+            regions, area_ratio = _region_rows(calibrated, model, known, variance)
+            parts.append(regions)
+        if seen_points is not None:
+            parts.append(keypoint_rows(placed, usual, seen_points, std_m))
+        seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
             scale, timing = yield from _most_likely_sizes(seen, weight)
-        change, squared = _calibrate(seen, weight, scale, timing)
-        calibrated = _changed(model, change)
-        distrust = _distrust(squared, (seen.variance < UNUSED).reshape(*squared.shape, FEATURES)[..., 0])
-        trust = student_weight(squared / distrust**2, DEGREES, FEATURES) / distrust**2
-        weight = np.repeat(trust, FEATURES, axis=1)
+        change, left = _calibrate(seen, weight, scale, timing)
+        squared = _squared(seen, left, size, scale, timing)
+        usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
+        ends = markers * PARAMETER_COUNT
+        calibrated = _changed(model, np.append(change[:ends], change[-1]))
+        if markers:
+            distrust = _distrust(squared[:, :markers], usable[:, :markers])
+        doubt = np.append(distrust, np.ones(len(size) - markers))
+        trust = student_weight(squared / doubt**2, DEGREES, size) / doubt**2
+        weight = np.repeat(trust, size, axis=1)
+        if seen_points is not None:
+            placed = usual.changed(change[ends:-1].reshape(-1, 3), calibrated.camera)
+            own = slice(markers * FEATURES, None)
+            spread = seen.noise(weight, scale, timing)[:, own, own]
+            std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     information = keyframe_information(posing, velocity, scale, timing)
-    return KeyframeEvidence(calibrated, scale, timing, distrust, seen.area_ratio, information)
+    found_points = replace(keypoints, model=replace(placed, camera=calibrated.camera), std_m=std_m)
+    return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
 
 
 def uncalibrated(model: RegionModel) -> KeyframeEvidence:
     """Evidence before any keyframe is posed: average placements, full trust in all markers."""
     markers, dofs = len(model.placements), model.body.skeleton.dof_count
-    return KeyframeEvidence(model, 1.0, 0.0, np.ones(markers), np.ones(markers), np.zeros((0, dofs, dofs)))
+    return KeyframeEvidence(
+        model,
+        1.0,
+        0.0,
+        np.ones(markers),
+        np.ones(markers),
+        np.zeros((0, dofs, dofs)),
+        KeypointEvidence.usual(model.body, model.camera, (), ()),
+    )
 
 
 def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
@@ -167,14 +184,10 @@ def _changed(model: RegionModel, change: Array) -> RegionModel:
     return RegionModel(model.body, camera, placements_from(model.placements, values))
 
 
-def _residuals(
-    model: RegionModel,
-    average: RegionModel,
-    known: KnownFrames,
-    variance: Array,
-    posing: Array,
-    velocity: Array,
-) -> _Residuals:
+def _region_rows(
+    model: RegionModel, average: RegionModel, known: KnownFrames, variance: Array
+) -> tuple[EvidenceRows, Array]:
+    """Rows of the regions, and the area (M,) of each unhidden one relative to the predicted one."""
     predicted = model.evaluate(known.pose, known.frame, jacobian=True)
     residual, jacobian = feature_rows(known.observed, predicted)
     assert jacobian is not None
@@ -198,14 +211,15 @@ def _residuals(
     own = np.zeros((judged, markers, FEATURES, markers, parameter_jacobian.shape[-1]))
     index = np.arange(markers)
     own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], parameter_jacobian, 0.0), 1, 0)
-    by_lens = np.where(usable[..., None], by_lens, 0.0).reshape(*rows, 1)
-    jacobian = np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, -1)
-    return _Residuals(
-        np.where(usable[..., None], residual, 0.0).reshape(rows),
-        np.concatenate([own.reshape(*rows, -1), by_lens], axis=-1),
-        np.where(usable[..., None], variance, UNUSED).reshape(rows),
-        jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
-        (jacobian @ velocity[..., None])[..., 0],
+    return (
+        EvidenceRows(
+            np.where(usable[..., None], residual, 0.0).reshape(rows),
+            own.reshape(*rows, markers * PARAMETER_COUNT),
+            np.where(usable[..., None], by_lens, 0.0).reshape(rows),
+            np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, jacobian.shape[-1]),
+            np.where(usable[..., None], variance, UNUSED).reshape(rows),
+            np.diag(np.tile(PRIOR_STD, markers) ** -2),
+        ),
         area_ratio,
     )
 
@@ -216,7 +230,7 @@ def _area_ratios(ratio: Array) -> Array:
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
-def _most_likely_sizes(seen: _Residuals, weight: Array) -> Generator[None, None, tuple[float, float]]:
+def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, None, tuple[float, float]]:
     """Means over the posterior of the posing error's size and of the timing error."""
     logarithm = np.empty((len(SCALES), len(TIMINGS)))
     for row, scale in zip(logarithm, SCALES, strict=True):
@@ -229,7 +243,7 @@ def _most_likely_sizes(seen: _Residuals, weight: Array) -> Generator[None, None,
     return float(scale), float(probability.sum(axis=0) @ TIMINGS)
 
 
-def _log_likelihoods(seen: _Residuals, noise: Array) -> Array:
+def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
     """(T,) log likelihood of all rows for each of `TIMINGS`, the fitted parameters integrated out.
 
     Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
@@ -252,28 +266,33 @@ def _log_likelihoods(seen: _Residuals, noise: Array) -> Array:
     return result
 
 
-def _gather(seen: _Residuals, noise: Array) -> tuple[Array, Array, Array]:
+def _gather(seen: KeyframeRows, noise: Array) -> tuple[Array, Array, Array]:
     """Inverse noise, information (X, X) of the parameters with their prior, right-hand side (X,)."""
     inverse = np.linalg.inv(noise)
     weighted = np.swapaxes(seen.parameter_jacobian, -1, -2) @ inverse
-    prior = np.append(np.tile(PRIOR_STD, seen.parameter_jacobian.shape[-1] // len(PRIOR_STD)), LENS_STD) ** -2
-    information = (weighted @ seen.parameter_jacobian).sum(axis=0) + np.diag(prior)
+    information = (weighted @ seen.parameter_jacobian).sum(axis=0) + seen.prior
     return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
 
 
-def _calibrate(seen: _Residuals, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (X,) of the parameters, squared residuals (J, M) in standard deviations."""
-    noise = seen.noise(weight, scale, timing)
-    _, information, right = _gather(seen, noise)
+def _calibrate(seen: KeyframeRows, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
+    """Most probable change (X,) of the parameters, and the rows (J, R) that it leaves."""
+    _, information, right = _gather(seen, seen.noise(weight, scale, timing))
     change = -np.linalg.solve(information, right)
-    left = seen.residual + seen.parameter_jacobian @ change
-    expected = seen.noise(np.ones_like(weight), scale, timing)
-    judged, rows = left.shape
-    by_marker = left.reshape(judged, -1, FEATURES)
-    index = np.arange(rows).reshape(-1, FEATURES)
-    own = expected[:, index[:, :, None], index[:, None, :]]  # (J, M, 5, 5)
-    squared = by_marker[..., None, :] @ np.linalg.solve(own, by_marker[..., None])
-    return change, np.asarray(squared[..., 0, 0])
+    return change, seen.residual + seen.parameter_jacobian @ change
+
+
+def _squared(seen: KeyframeRows, left: Array, size: IndexArray, scale: float, timing: float) -> Array:
+    """(J, G) squares of groups of rows in standard deviations, `size` (G,) rows each."""
+    expected = seen.noise(np.ones_like(left), scale, timing)
+    squared = np.empty((len(left), len(size)))
+    first = np.cumsum(size) - size
+    for count in np.unique(size):
+        index = first[size == count][:, None] + np.arange(count)
+        rows = left[:, index]  # (J, G', count)
+        own = expected[:, index[:, :, None], index[:, None, :]]
+        solved = np.linalg.solve(own, rows[..., None])
+        squared[:, size == count] = (rows[..., None, :] @ solved)[..., 0, 0]
+    return squared
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:

@@ -14,8 +14,10 @@ from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
+from .keypoint_evidence import KeypointEvidence
 from .match_error import match_covariance
 from .posing_error import posing_covariance
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise
 
 FEWEST_POSED = 2
@@ -30,6 +32,8 @@ def read_mixed_keyframes(
     posture: Posture,
     frame: IndexArray,
     match_scale: Array,
+    keypoints: KeypointEvidence,
+    points: ObservedKeypoints,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
@@ -42,17 +46,29 @@ def read_mixed_keyframes(
         frame: (K,) their places in the clip.
         match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
             0 for posed ones.
+        keypoints: Usual evidence of the N keypoints.
+        points: Those seen at the K keyframes.
     """
     if not match_scale.any():
-        return (yield from read_keyframes(model, noise, observed, width_px, posture, frame))
+        reading = read_keyframes(model, noise, observed, width_px, posture, frame, keypoints, points)
+        return (yield from reading)
     posed = np.flatnonzero(match_scale == 0.0)
     information = np.linalg.inv(match_covariance(posture, model.camera, frame))
     information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
     if len(posed) >= FEWEST_POSED:
-        reading = read_keyframes(model, noise, observed[posed], width_px[posed], posture[posed], frame[posed])
+        reading = read_keyframes(
+            model,
+            noise,
+            observed[posed],
+            width_px[posed],
+            posture[posed],
+            frame[posed],
+            keypoints,
+            points[posed],
+        )
         evidence = yield from reading
         information[posed] = evidence.information
         return replace(evidence, information=information)
     if len(posed):
         information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(posture[posed])))
-    return replace(uncalibrated(model), information=information)
+    return replace(uncalibrated(model), information=information, keypoints=keypoints)

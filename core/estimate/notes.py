@@ -47,7 +47,7 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     if evidence.posing_scale > DOUBTED_POSING:
         notes.append(
             "the keyframes differ from the footage by much more than the usual posing error; "
-            "check the camera, the actor's lengths and the markers' segments"
+            f"check the camera, the actor's lengths{_and_what_is_seen(take)}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > DOUBTED_MARKER:
@@ -56,6 +56,13 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
                 "check whether another thing has its color"
             )
     return tuple(notes)
+
+
+def _and_what_is_seen(take: Take) -> str:
+    """The end of a list of what to check: which of its evidence a take may have wrong."""
+    given = [("the markers' segments", take.markers), ("whom the keypoints show", take.keypoints)]
+    *first, last = [what for what, one in given if one] or ["the poses"]
+    return "".join(f", {what}" for what in first) + f" and {last}"
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
@@ -78,7 +85,7 @@ def match_notes(take: Take) -> tuple[str, ...]:
     if posed == 0:
         notes = [
             f"no keyframe was posed: the motion rests on {len(matched)} postures of the library {libraries}, "
-            "another performer's; what the markers do not show, depth above all, is like that performer's"
+            "another performer's; what the footage does not show, depth above all, is like that performer's"
         ]
     else:
         notes = [

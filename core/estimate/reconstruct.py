@@ -15,8 +15,8 @@ from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
+from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
-from ..prior.marker_speed import marker_speed
 from ..prior.performer_offset import with_offset
 from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
@@ -28,6 +28,7 @@ from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
+from .keypoint_fit import KeypointFit
 from .match_error import undetermined_covariance
 from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .unobserved_variance import unobserved_variance
@@ -48,7 +49,7 @@ class Reconstruction:
     reading: Reading
     """Data read from the clip, for another reconstruction of it."""
     speed: Array
-    """(F,) V_sum of paper eq. 8 [px per frame]."""
+    """(F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]."""
     notes: tuple[str, ...]
     """Notes on the result for people, one sentence each."""
     keypoints: Keypoints
@@ -57,6 +58,11 @@ class Reconstruction:
     """The markers' region model: calibrated on the keyframes, or of average placements."""
     solution: WholeClipResult | None = None
     """Result of method `map`, for another to start from."""
+
+    @property
+    def keypoint_fit(self) -> KeypointFit | None:
+        """How the keypoints agree with the motion, point by point; None without keypoints or `map`."""
+        return self.solution.keypoints if self.solution is not None and self.keypoints.names else None
 
     @property
     def tracks(self) -> RegionTracks:
@@ -97,15 +103,30 @@ def reconstruct(
 
 
 def check_reconstructible(take: Take, method: str) -> None:
-    """Check method and keyframes, which do not depend on the clip.
+    """Check method, keyframes and evidence, which do not depend on the clip.
 
     Raises:
-        InputError: The method is unknown, or there are too few keyframes.
+        InputError: The method is unknown or needs markers that the take has not got, or there are too few
+            keyframes.
+    """
+    check_method(take, method)
+    if len(take.keyframes) < 2:
+        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
+
+
+def check_method(take: Take, method: str) -> None:
+    """Check that a take can be reconstructed by a method, once it has keyframes.
+
+    Raises:
+        InputError: The method is unknown, or needs markers that the take has not got.
     """
     if method not in METHODS:
         raise InputError(f"method is '{method}'; valid are {', '.join(METHODS)}")
-    if len(take.keyframes) < 2:
-        raise InputError(f"{take.name} has {len(take.keyframes)} keyframes; at least 2 are needed")
+    if method == "ekf" and not take.markers:
+        raise InputError(
+            f"{take.name}: method is ekf, the paper's filter, which follows markers alone, and this take is "
+            "held against none; map is valid, which uses keypoints and contours too"
+        )
 
 
 def _reconstruct(
@@ -124,7 +145,8 @@ def _reconstruct(
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    keypoints = performer_keypoints(take, prior)
+    keypoints = performer_keypoints(take, prior, tracks)
+    notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None
     if method == "map":
@@ -135,10 +157,11 @@ def _reconstruct(
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
+    moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
+    speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
     notes += marker_notes(tracks)
-    speed = marker_speed(tracks)
-    return Reconstruction(motion, baseline, reading, speed, notes, keypoints, model, solution)
+    return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 
 
 def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult | None:
@@ -190,6 +213,7 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         "timing_frames": np.array(result.evidence.timing_frames),
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
+        **_keypoint_diagnostics(result),
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
     unseen = unobserved_variance(
@@ -200,6 +224,18 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         return motion
     undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
+
+
+def _keypoint_diagnostics(result: WholeClipResult) -> dict[str, Array]:
+    """How far keypoints are from the motion, and their weight, in the order of the record of a conversion."""
+    if not result.problem.keypoints.names:
+        return {}
+    fit = result.keypoints
+    return {
+        "keypoint_residual_px": fit.residual_px,
+        "keypoint_weight": fit.weight,
+        "keypoint_swapped": fit.swapped.astype(np.float64),
+    }
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:

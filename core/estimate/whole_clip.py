@@ -8,6 +8,7 @@ annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -27,7 +28,10 @@ from .contour_evidence import ContourEvidence, learn_contours
 from .contour_schedule import contour_schedule
 from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import read_mixed_keyframes
+from .keypoint_evidence import KeypointEvidence
+from .keypoint_fit import KeypointFit, keypoint_fit
 from .match_error import depth_std_m
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
 from .window_problem import WindowProblem
@@ -62,6 +66,13 @@ class WholeClipResult:
     """The problem it solves."""
     contours: ContourEvidence | None
     """The look of performer and background; None where no background can be trusted."""
+
+    @cached_property
+    def keypoints(self) -> KeypointFit:
+        """How the keypoints agree with the estimate."""
+        problem = self.problem
+        evidence = problem.evidence.keypoints
+        return keypoint_fit(evidence, problem.keypoints, problem.points, problem.swapped, self.posture)
 
     @property
     def evidence(self) -> KeyframeEvidence:
@@ -112,8 +123,18 @@ def estimate_whole_clip(
     index = np.array(keyframe_indices, dtype=np.intp)
     match_scale = np.zeros(len(index)) if match_scale is None else match_scale
     matched = match_scale > 0.0
+    keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
+    points = ObservedKeypoints.of(keypoints)
     reading = read_mixed_keyframes(
-        model, options.regions, observed[index], width_px[index], prior[index], index, match_scale
+        model,
+        options.regions,
+        observed[index],
+        width_px[index],
+        prior[index],
+        index,
+        match_scale,
+        KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources),
+        points[index],
     )
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = process_noise_factor(prior[index], tracks.time_s[index])
@@ -133,7 +154,9 @@ def estimate_whole_clip(
         depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
         lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
-        Keypoints.none(tracks.frame_count) if keypoints is None else keypoints,
+        keypoints,
+        points,
+        np.zeros(points.seen.shape, dtype=bool),
     )
     return (yield from _solve(problem, options, album, earlier))
 

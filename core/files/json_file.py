@@ -52,6 +52,17 @@ def read_json(path: Path, largest_bytes: int = LARGEST_BYTES) -> dict[str, Any]:
     return parse_json(_read_text(path, largest_bytes), str(path))
 
 
+def read_json_value(path: Path, largest_bytes: int = LARGEST_BYTES) -> Any:
+    """Read any JSON value from a file of another program, as strictly as `read_json`; NaN becomes null.
+
+    Programs write NaN for what they did not find; no other number that is not finite means anything.
+
+    Raises:
+        InputError: As `read_json`, but the value need be no object.
+    """
+    return _parse(_read_text(path, largest_bytes), str(path), _null_for_nan)
+
+
 def parse_json(text: str, where: str) -> dict[str, Any]:
     """The JSON object in a text, with finite numbers only.
 
@@ -63,12 +74,20 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
         InputError: It is no JSON object, is nested too deeply, names a field twice or holds a number that is
             not finite.
     """
+    value = _parse(text, where, _refuse_constant)
+    if not isinstance(value, dict):
+        raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
+    return value
+
+
+def _parse(text: str, where: str, parse_constant: Callable[[str], Any]) -> Any:
+    """Any JSON value in a text; `parse_constant` gives the value of NaN and Infinity, or refuses it."""
     _check_nesting(text, where)
     try:
         value = json.loads(
             text,
             object_pairs_hook=_unique_fields,
-            parse_constant=_refuse_constant,
+            parse_constant=parse_constant,
             parse_float=_float,
             parse_int=_int,
         )
@@ -80,8 +99,6 @@ def parse_json(text: str, where: str) -> dict[str, Any]:
     except ValueError as error:
         raise InputError(f"{where}: {error}") from error
     _check_surrogates(text, value, where)
-    if not isinstance(value, dict):
-        raise InputError(f"{where}: holds {shown(value)}; it must hold an object, {{...}}")
     return value
 
 
@@ -193,6 +210,11 @@ def _unique_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is no number in JSON; every number must be finite")
+
+
+def _null_for_nan(name: str) -> None:
+    if name != "NaN":
+        _refuse_constant(name)
 
 
 def _float(text: str) -> float:

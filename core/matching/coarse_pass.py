@@ -6,9 +6,9 @@ import numpy as np
 
 from ..arrays import IndexArray
 from ..footage.camera import Camera
-from ..footage.region_tracks import RegionTracks
 from .emissions import FrameEmissions, StateFeatures, evaluate_emissions
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
+from .match_evidence import MatchEvidence
 from .noise_scales import NoiseScales, student_scales
 
 FLOOR_STD_M = 0.05
@@ -27,37 +27,36 @@ class CoarsePass:
     """Result of the coarse pass."""
 
     floor_m: float
-    """Height of the floor, by the markers' sizes and the feet; 0 where that is about right."""
+    """Height of the floor, by the sizes in the picture and the feet; 0 where that is about right."""
     cost: float
     """Mean negative log likelihood of a frame's best posture, with the noise scales that these frames
     suggest; an order in time hardly lowers it."""
 
 
 def coarse_pass(
-    camera: Camera, tracks: RegionTracks, segments: tuple[str, ...], frames: IndexArray, states: StateFeatures
+    camera: Camera, evidence: MatchEvidence, frames: IndexArray, states: StateFeatures
 ) -> CoarsePass:
     """Fit single postures to some frames without knowing the floor.
 
     Args:
         camera: The camera.
-        tracks: The markers' regions.
-        segments: The segment of each marker.
+        evidence: The markers' regions and the keypoints.
         frames: Frames to choose from.
         states: The library's postures in all headings.
     """
     chosen = frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
-    likelihoods = frame_likelihoods(camera, tracks, segments, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
+    likelihoods = frame_likelihoods(camera, evidence, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
     emissions = [evaluate_emissions(likelihood, states) for likelihood in likelihoods]
     floor = _floor_height_m(likelihoods, emissions, states)
     if abs(floor) > WORLD_FLOOR_M:
-        on_ground = frame_likelihoods(camera, tracks, segments, chosen, 0.0, FLOOR_STD_M)
+        on_ground = frame_likelihoods(camera, evidence, chosen, 0.0, FLOOR_STD_M)
         ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
         if _mean_cost(ground_emissions) - _mean_cost(emissions) < FLOOR_COST_MARGIN:
             floor = 0.0
     else:
         floor = 0.0
-    noise_scales = _noise_scales(likelihoods, emissions, states)
-    refined = frame_likelihoods(camera, tracks, segments, chosen, floor, FLOOR_STD_M, noise_scales)
+    noise_scales = _noise_scales(evidence, likelihoods, emissions, states)
+    refined = frame_likelihoods(camera, evidence, chosen, floor, FLOOR_STD_M, noise_scales)
     return CoarsePass(floor, _mean_cost([evaluate_emissions(likelihood, states) for likelihood in refined]))
 
 
@@ -68,7 +67,7 @@ def _mean_cost(emissions: list[FrameEmissions]) -> float:
 def _floor_height_m(
     likelihoods: list[FrameLikelihood], emissions: list[FrameEmissions], states: StateFeatures
 ) -> float:
-    """Median of the floor's height over the frames [m], each weighed by its number of visible markers."""
+    """Median of the floor's height over the frames [m], each weighed by its number of visible points."""
     heights, weights = np.empty(len(likelihoods)), np.empty(len(likelihoods))
     for frame, (likelihood, emission) in enumerate(zip(likelihoods, emissions, strict=True)):
         share = np.exp(emission.cost.min() - emission.cost)
@@ -82,7 +81,10 @@ def _floor_height_m(
 
 
 def _noise_scales(
-    likelihoods: list[FrameLikelihood], emissions: list[FrameEmissions], states: StateFeatures
+    evidence: MatchEvidence,
+    likelihoods: list[FrameLikelihood],
+    emissions: list[FrameEmissions],
+    states: StateFeatures,
 ) -> NoiseScales:
     """Scales of the centroids' noise, from the residuals of each frame's best posture."""
     residuals = []
@@ -93,9 +95,8 @@ def _noise_scales(
             "mki,mi->mk", likelihood.image_axes, centroid + emission.hips[:, best] - likelihood.location
         )
         residuals.append(residual * likelihood.weight[:, None])
-    unit = NoiseScales.unit(len(likelihoods[0].visible))
     return replace(
-        unit,
+        NoiseScales.of(evidence),
         centroid=student_scales(
             np.array(residuals), np.array([likelihood.visible for likelihood in likelihoods]), 1.0
         ),

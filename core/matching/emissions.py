@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from .frame_likelihood import FrameLikelihood, square_root
 from .marker_moments import MarkerMoments
 from .noise_scales import DEGREES_OF_FREEDOM
@@ -13,6 +13,10 @@ PRUNING_COST = 15.0
 """States whose cost exceeds the frame's least by more are pruned, whatever precedes them."""
 EXTENT_COST = 6.0
 """Additional margin before the markers' extents are compared, which may change the order by this much."""
+VARIANT_COST = 6.0
+"""The same before each group of points in turn is hardly counted for the hips' place."""
+EXCHANGED_COST = np.float32(3.0)
+"""Cost of taking a detector's left for right in a frame: one in twenty."""
 MOST_STATES = 1500
 """States kept of a frame."""
 
@@ -24,8 +28,8 @@ class StateFeatures:
     heading_rad: Array
     """(H,)."""
     vectors: SingleArray
-    """(3 M + 2, N H) the markers' centroids relative to the hips, the hips' height above the floor [m], and
-    1."""
+    """(3 A + 2, N H) the places of markers and keypoints relative to the hips, the hips' height above the
+    floor [m], and 1."""
     second_moment: SingleArray
     """(M, 6, N H) entries xx, yy, zz, xy, xz, yz of each marker's [m²]."""
     shape: tuple[int, int]
@@ -38,14 +42,15 @@ def state_features(moments: MarkerMoments, headings: int) -> StateFeatures:
     c, s = np.cos(angle), np.sin(angle)
     turn = np.zeros((headings, 3, 3))
     turn[:, 0, 0], turn[:, 0, 1], turn[:, 1, 0], turn[:, 1, 1], turn[:, 2, 2] = c, -s, s, c, 1.0
-    postures, markers = moments.centroid.shape[:2]
+    postures, points = moments.centroid.shape[:2]
     centroid = np.einsum("hij,nmj->minh", turn, moments.centroid)
-    flat = np.ones((3 * markers + 2, postures * headings), dtype=np.float32)
-    flat[:-2] = centroid.reshape(3 * markers, -1)
+    flat = np.ones((3 * points + 2, postures * headings), dtype=np.float32)
+    flat[:-2] = centroid.reshape(3 * points, -1)
     flat[-2] = np.repeat(moments.hip_height_m, headings)
     second_moment = np.einsum("hia,nmab,hjb->mijnh", turn, moments.second_moment, turn, optimize=True)
     entries = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
-    rows = np.stack([second_moment[:, i, j] for i, j in entries], axis=1).reshape(markers, 6, -1)
+    rows = np.stack([second_moment[:, i, j] for i, j in entries], axis=1)
+    rows = rows.reshape(len(rows), 6, postures * headings)
     return StateFeatures(angle, flat, rows.astype(np.float32), (postures, headings))
 
 
@@ -61,6 +66,8 @@ class FrameEmissions:
     """(3, K) places of the hips [m]."""
     ground: SingleArray
     """(3, K) the floor below them, by each posture's height above it [m]."""
+    exchanged: BoolArray
+    """(K,) whether left and right of the keypoints are exchanged for it."""
 
     def index_of(self, state: int) -> int:
         """Index of a state among the K; that of the cheapest where it was pruned."""
@@ -79,17 +86,17 @@ def evaluate_emissions(
         features: The states.
         posed_cost: (N H,) cost of each state's difference from a posed keyframe; None where none is posed.
     """
-    residual = likelihood.residual_map.astype(np.float32) @ features.vectors  # (V, 2 M + 4, N H)
-    residual *= residual
-    variant_cost = _student_cost(residual[:, -1], 1) + np.float32(likelihood.normalization)
-    for marker in np.flatnonzero(likelihood.visible):
-        variant_cost += _student_cost(residual[:, 2 * marker] + residual[:, 2 * marker + 1], 2)
-    if posed_cost is not None:
-        variant_cost += _student_cost(residual[:, -4:-1].sum(axis=1), 3) + posed_cost
+    first = np.arange(features.vectors.shape[1])
+    if len(likelihood.visible) > len(likelihood.unclipped):  # with keypoints, too many for all variants
+        plain = _variant_costs(likelihood, features.vectors, posed_cost, slice(0, 1))[0]
+        first = _prune(plain, PRUNING_COST + EXTENT_COST + VARIANT_COST, 4 * MOST_STATES)
+        posed_cost = None if posed_cost is None else posed_cost[first]
+    vectors = features.vectors if len(first) == features.vectors.shape[1] else features.vectors[:, first]
+    variant_cost = _variant_costs(likelihood, vectors, posed_cost, slice(None))
     cost = variant_cost.min(axis=0)
-    states = _prune(cost, PRUNING_COST + EXTENT_COST, 2 * MOST_STATES)
-    cost, variant = cost[states], variant_cost[:, states].argmin(axis=0)
-    vectors = features.vectors[:, states]
+    kept = _prune(cost, PRUNING_COST + EXTENT_COST, 2 * MOST_STATES)
+    cost, variant = cost[kept], variant_cost[:, kept].argmin(axis=0)
+    states, vectors = first[kept], vectors[:, kept]
     hips = np.empty((3, len(states)), dtype=np.float32)
     for index, hips_map in enumerate(likelihood.hips_map.astype(np.float32)):
         own = variant == index
@@ -106,7 +113,45 @@ def evaluate_emissions(
     kept = _prune(cost, PRUNING_COST, MOST_STATES)
     ground = hips[:, kept]
     ground[2] -= vectors[-2, kept]
-    return FrameEmissions(states[kept], cost[kept], hips[:, kept], ground)
+    return FrameEmissions(states[kept], cost[kept], hips[:, kept], ground, np.zeros(len(kept), dtype=bool))
+
+
+def with_exchanged(plain: FrameEmissions, exchanged: FrameEmissions) -> FrameEmissions:
+    """The likelier hypothesis for each state: keypoints as they are, or with left and right exchanged."""
+    count = len(plain.states)
+    states = np.concatenate([plain.states, exchanged.states])
+    cost = np.concatenate([plain.cost, exchanged.cost + EXCHANGED_COST])
+    order = np.lexsort((cost, states))
+    _, first = np.unique(states[order], return_index=True)
+    best = order[first]
+    best = best[_prune(cost[best], PRUNING_COST, MOST_STATES)]
+    hips = np.concatenate([plain.hips, exchanged.hips], axis=1)
+    ground = np.concatenate([plain.ground, exchanged.ground], axis=1)
+    return FrameEmissions(states[best], cost[best], hips[:, best], ground[:, best], best >= count)
+
+
+def _variant_costs(
+    likelihood: FrameLikelihood, vectors: SingleArray, posed_cost: SingleArray | None, variants: slice
+) -> SingleArray:
+    """Costs (V, S) of some states in some variants, without the markers' extents.
+
+    Args:
+        likelihood: The frame.
+        vectors: (3 A + 2, S) the states' features.
+        posed_cost: (S,) as in `evaluate_emissions`.
+        variants: Which variants.
+    """
+    residual = likelihood.residual_map[variants].astype(np.float32) @ vectors  # (V, 2 A + G + 4, S)
+    residual *= residual
+    share = np.float32(likelihood.share)
+    cost = _student_cost(residual[:, -1], 1) + np.float32(likelihood.normalization)
+    for point in np.flatnonzero(likelihood.visible):
+        cost += share * _student_cost(residual[:, 2 * point] + residual[:, 2 * point + 1], 2)
+    for guess in np.flatnonzero(likelihood.depth_weight):
+        cost += share * _student_cost(residual[:, 2 * len(likelihood.visible) + guess], 1)
+    if posed_cost is not None:
+        cost += _student_cost(residual[:, -4:-1].sum(axis=1), 3) + posed_cost
+    return cost
 
 
 def _prune(cost: SingleArray, margin: float, count: int) -> IndexArray:

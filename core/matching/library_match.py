@@ -16,10 +16,11 @@ from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
 from .candidates import MatchedFrame, frame_candidates
 from .coarse_pass import FLOOR_STD_M, CoarsePass, coarse_pass
-from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features
+from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features, with_exchanged
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .hidden_markov_model import HiddenMarkovModel
 from .marker_moments import MarkerMoments, marker_moments
+from .match_evidence import MatchEvidence
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales
 from .posed_constraints import PosedConstraints
 from .posture_sequences import PostureSequences, library_sequences
@@ -41,9 +42,7 @@ class MatchInput:
 
     body: Body
     camera: Camera
-    tracks: RegionTracks
-    segments: tuple[str, ...]
-    """The segment of each marker."""
+    evidence: MatchEvidence
     keyframes: IndexArray
     """(K,) frames whose posture is asked for."""
     constraints: PosedConstraints
@@ -83,21 +82,21 @@ class PreparedLibrary:
 def prepare_library(match_input: MatchInput, library: Library) -> PreparedLibrary:
     """Put a library on the performer's body and do the coarse pass."""
     sequences = library_sequences(library, match_input.body)
-    moments = marker_moments(match_input.body, match_input.segments, sequences.posture)
+    moments = marker_moments(match_input.body, match_input.evidence, sequences.posture)
     states = state_features(moments, HEADINGS)
     return PreparedLibrary(library, sequences, moments, states, *_coarse_pass(match_input, states))
 
 
 def repeat_coarse_pass(match_input: MatchInput, prepared: PreparedLibrary) -> PreparedLibrary:
-    """The library on the same body, after a coarse pass over other tracks."""
+    """The library on the same body, after a coarse pass over other regions of the same markers."""
     sampled, first = _coarse_pass(match_input, prepared.states)
     return replace(prepared, sampled=sampled, coarse_pass=first)
 
 
 def _coarse_pass(match_input: MatchInput, states: StateFeatures) -> tuple[IndexArray, CoarsePass]:
     always = np.concatenate([match_input.keyframes, match_input.constraints.frames])
-    sampled = sampled_frames(match_input.tracks, always)
-    return sampled, coarse_pass(match_input.camera, match_input.tracks, match_input.segments, sampled, states)
+    sampled = sampled_frames(match_input.evidence.tracks, always)
+    return sampled, coarse_pass(match_input.camera, match_input.evidence, sampled, states)
 
 
 def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: float) -> Part[LibraryMatch]:
@@ -111,10 +110,10 @@ def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: f
     Yields:
         The fraction done.
     """
-    tracks, sampled = match_input.tracks, prepared.sampled
+    tracks, sampled = match_input.evidence.tracks, prepared.sampled
     tempering = min(1.0, float(np.median(np.diff(tracks.time_s[sampled]))) / CORRELATION_S)
     table = SequenceTable(prepared.sequences, prepared.moments)
-    unit = NoiseScales.unit(len(match_input.segments))
+    unit = NoiseScales.of(match_input.evidence)
     first = yield from _solve(match_input, prepared, table, floor_m, tempering, unit, 0.0)
     noise_scales = first.refinement.noise_scales(first.refined)
     second = yield from _solve(match_input, prepared, table, floor_m, tempering, noise_scales, 0.45)
@@ -155,25 +154,31 @@ def _solve(
     begun: float,
 ) -> Part[_Solution]:
     """Find and refine the most probable path, given the noise scales; 0.45 of the work."""
-    tracks, sampled, states = match_input.tracks, prepared.sampled, prepared.states
-    time_s, posed = tracks.time_s[sampled], match_input.constraints
-    likelihoods = frame_likelihoods(
-        match_input.camera,
-        tracks,
-        match_input.segments,
-        sampled,
-        floor_m,
-        FLOOR_STD_M,
-        noise_scales,
-        posed,
+    evidence, sampled, states = match_input.evidence, prepared.sampled, prepared.states
+    time_s, posed = evidence.tracks.time_s[sampled], match_input.constraints
+    hypotheses = list(
+        zip(
+            *(
+                frame_likelihoods(
+                    match_input.camera, each, sampled, floor_m, FLOOR_STD_M, noise_scales, posed
+                )
+                for each in ((evidence, evidence.exchanged()) if len(evidence.points) else (evidence,))
+            ),
+            strict=True,
+        )
     )
+    likelihoods = [hypothesis[0] for hypothesis in hypotheses]
     costs = [posed.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled]
     # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
     posed_costs = [None if cost is None else cost / np.float32(tempering) for cost in costs]
-    emissions = yield from scaled(_evaluate_all(likelihoods, states, posed_costs), begun, begun + 0.2)
+    emissions = yield from scaled(_evaluate_all(hypotheses, states, posed_costs), begun, begun + 0.2)
     model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, tempering, time_s)
     yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
     best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
+    likelihoods = [
+        hypothesis[int(emission.exchanged[emission.index_of(state)])]
+        for hypothesis, emission, state in zip(hypotheses, emissions, best, strict=True)
+    ]
     path = StatePath(prepared.sequences, states, likelihoods, emissions, best, time_s)
     rows = np.searchsorted(sampled, posed.frames)
     refinement = Refinement(table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, posed, rows)
@@ -182,14 +187,17 @@ def _solve(
 
 
 def _evaluate_all(
-    likelihoods: Sequence[FrameLikelihood], states: StateFeatures, posed_costs: Sequence[SingleArray | None]
+    hypotheses: Sequence[Sequence[FrameLikelihood]],
+    states: StateFeatures,
+    posed_costs: Sequence[SingleArray | None],
 ) -> Part[list[FrameEmissions]]:
-    """Emissions of each frame."""
+    """Emissions of each frame; with keypoints the second hypothesis is that left and right are exchanged."""
     emissions = []
-    for index, (likelihood, cost) in enumerate(zip(likelihoods, posed_costs, strict=True)):
-        emissions.append(evaluate_emissions(likelihood, states, cost))
+    for index, (hypothesis, cost) in enumerate(zip(hypotheses, posed_costs, strict=True)):
+        found = [evaluate_emissions(likelihood, states, cost) for likelihood in hypothesis]
+        emissions.append(found[0] if len(found) == 1 else with_exchanged(found[0], found[1]))
         if index % FRAMES_A_YIELD == 0:
-            yield index / len(likelihoods)
+            yield index / len(hypotheses)
     return emissions
 
 
@@ -210,14 +218,14 @@ def _every_frame(table: SequenceTable, path: ContinuousPath, frames: IndexArray,
 
 
 def _explained_share(refinement: Refinement, path: ContinuousPath, noise_scales: NoiseScales) -> Array:
-    """(T,) mean weight of the markers' centroids in each frame under Student's t.
+    """(T,) mean weight of the places of markers and keypoints in each frame under Student's t.
 
     Args:
         refinement: Its last refinement.
         path: The refined path.
         noise_scales: Those that the refinement used.
     """
-    residual, _, _ = refinement.residuals(path.sequence, path.values, np.ones(len(noise_scales.size)))
+    residual, *_ = refinement.residuals(path.sequence, path.values, np.ones(len(noise_scales.size)))
     squared = ((residual * noise_scales.centroid[:, None]) ** 2).sum(axis=-1)
     visible = np.array([likelihood.visible for likelihood in refinement.likelihoods])
     weight = visible / (1.0 + squared / DEGREES_OF_FREEDOM)

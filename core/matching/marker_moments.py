@@ -1,4 +1,4 @@
-"""Centroid and second moments in space of the volume that each marker covers, relative to the hips.
+"""Places in space of what is seen, relative to the hips: markers with their second moments, and keypoints.
 
 A limb's image has nearly the moments of their projection, which is linear in them: that makes every heading
 cheap.
@@ -13,6 +13,7 @@ from ..body.body_volume import PieceStack
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..observation.regions import MarkerPlacement
+from .match_evidence import MatchEvidence
 
 ACROSS = 1.0 / 3.0
 """Second moment across a cylinder's flat silhouette, in squared radii."""
@@ -22,26 +23,27 @@ ALONG = 1.0 / 12.0
 
 @dataclass(frozen=True, eq=False)
 class MarkerMoments:
-    """Moments of M markers in N postures, in the world's axes."""
+    """Moments of M markers and places of K keypoints, A = M + K, in N postures, in the world's axes."""
 
     centroid: Array
-    """(N, M, 3) relative to the hips' midpoint [m]."""
+    """(N, A, 3) of the markers' volumes, then the keypoints, relative to the hips' midpoint [m]."""
     second_moment: Array
-    """(N, M, 3, 3) second central moments [m²]."""
+    """(N, M, 3, 3) the markers' second central moments [m²]."""
     hip_height_m: Array
     """(N,) height of the hips' midpoint above the floor [m]."""
     points: Array
     """(N, P, 3) the body's points relative to the hips' midpoint [m]."""
 
 
-def marker_moments(body: Body, segments: tuple[str, ...], posture: Posture) -> MarkerMoments:
-    """Moments of the markers bound to some segments.
+def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> MarkerMoments:
+    """Moments of the markers and places of the keypoints of some evidence.
 
     Args:
         body: The take's body.
-        segments: The segment of each of the M markers.
+        evidence: Which markers and keypoints there are.
         posture: (N,) postures.
     """
+    segments = evidence.segments
     pose = body.pose(posture)
     centroid = np.empty((len(posture.translation), len(segments), 3))
     second_moment = np.empty((*centroid.shape, 3))
@@ -61,7 +63,8 @@ def marker_moments(body: Body, segments: tuple[str, ...], posture: Posture) -> M
         second_moment[:, marker] = np.einsum("nq,nqij->nij", share, own)
     centroid -= posture.translation[:, None]
     points = np.asarray(body.points(pose) - posture.translation[:, None])
-    return MarkerMoments(centroid, second_moment, np.asarray(posture.translation[:, 2]), points)
+    places = np.concatenate([centroid, points[:, evidence.points]], axis=1)
+    return MarkerMoments(places, second_moment, np.asarray(posture.translation[:, 2]), points)
 
 
 def _outer(vector: Array) -> Array:

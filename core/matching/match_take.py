@@ -10,13 +10,16 @@ from threadpoolctl import threadpool_limits
 
 from ..errors import InputError
 from ..files.digest import digest
+from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..library.library import Library
+from ..prior.evidence_speed import evidence_speed
 from ..prior.keyframe_proposals import propose_keyframes
 from ..prior.keyframes import Keyframe, Matched
-from ..prior.marker_speed import marker_speed
-from ..progress import Job, Progress, stretch, within
+from ..progress import Job, Progress, run, stretch, within
+from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
+from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import read_footage
 from ..take.take import Take
 from ..take.take_file import read_described
@@ -28,6 +31,7 @@ from .library_match import (
     prepare_library,
     repeat_coarse_pass,
 )
+from .match_evidence import MatchEvidence
 from .posed_constraints import PosedConstraints
 
 MOST_TRIED = 5
@@ -68,16 +72,21 @@ class LibraryChoice:
     holds."""
 
 
-def take_to_match(description: Description, keyframes: Path | None) -> Take:
+def take_to_match(
+    description: Description, keyframes: Path | None, settings: ConversionSettings | None = None
+) -> Take:
     """Read a take with the keyframes that a person posed, or with none where no file is named.
 
-    Keyframes that an earlier run has matched are left out, since they are matched anew.
+    Keyframes that an earlier run has matched are left out, since they are matched anew. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
 
     Raises:
         InputError: The take or the keyframe file is unusable.
     """
     fewest = 0 if keyframes is None else 1
-    take = read_described(description, keyframes, keyframes_required=False, fewest_keyframes=fewest)
+    take = read_described(
+        description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
+    )
     return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
 
 
@@ -106,15 +115,16 @@ def match_take(
         clip is read again (from what was seen, see `read_footage`) and matched once more.
 
     Raises:
-        InputError: There is no library, none has a posture, or no marker is seen in the footage.
+        InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to match with")
-    if not reading.tracks.visible.any():
-        raise InputError(f"{take.clip}: no marker is seen in the footage, so no posture can be matched")
+    keypoints = performer_keypoints(take, None, reading.tracks)
+    if not (reading.tracks.visible.any() or keypoints.seen.any()):
+        raise InputError(_nothing_seen(take))
     with threadpool_limits(limits=1, user_api="blas"):
-        match_input = _match_input(take, reading, keyframe_count)
+        match_input = _match_input(take, reading, keypoints, keyframe_count)
         prepared = yield from stretch(_prepared(match_input, usable), 0.0, COARSE_SHARE * FIRST_ROUND_SHARE)
         first = _matches(match_input, prepared, floor_m)
         matches = yield from stretch(first, COARSE_SHARE * FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
@@ -123,7 +133,7 @@ def match_take(
             _read_again(take, reading, matches[0]), FIRST_ROUND_SHARE, FIRST_ROUND_SHARE
         )
         if better is not None:
-            match_input = _match_input(take, better, keyframe_count)
+            match_input = _match_input(take, better, keypoints, keyframe_count)
             found = [match.library for match in matches]
             repeated = [repeat_coarse_pass(match_input, one) for one in prepared if one.library in found]
             second = _matches(match_input, repeated, floor_m)
@@ -134,10 +144,28 @@ def match_take(
     return choice
 
 
-def _match_input(take: Take, reading: Reading, keyframe_count: int | None) -> MatchInput:
-    keyframes = propose_keyframes(marker_speed(reading.tracks), keyframe_count)
+def _nothing_seen(take: Take) -> str:
+    """What a library cannot be matched for the lack of."""
+    if take.markers or take.keypoints:
+        missing = " and ".join(
+            name for name, has in (("marker", take.markers), ("keypoint", take.keypoints)) if has
+        )
+        return f"{take.clip}: no {missing} is seen in the footage, so no posture can be matched"
+    return (
+        f"{take.file}: the take has neither markers nor keypoints, without which no posture of a library can "
+        "be found; give it one of them, or pose its keyframes"
+    )
+
+
+def _match_input(
+    take: Take, reading: Reading, keypoints: Keypoints, keyframe_count: int | None
+) -> MatchInput:
+    # Pictures are not asked: something is seen.
+    speed = run(evidence_speed(reading.tracks, take.marker_segments, keypoints))
+    keyframes = propose_keyframes(speed.values, keyframe_count)
     constraints = PosedConstraints.from_keyframes(take.body, take.keyframes)
-    return MatchInput(take.body, take.camera, reading.tracks, take.marker_segments, keyframes, constraints)
+    evidence = MatchEvidence.of(reading.tracks, take.marker_segments, keypoints)
+    return MatchInput(take.body, take.camera, evidence, keyframes, constraints)
 
 
 def _prepared(match_input: MatchInput, libraries: Sequence[Library]) -> Job[list[PreparedLibrary]]:

@@ -1,10 +1,11 @@
-"""Scales of the noise per marker: how far one performer differs from a library through a whole clip."""
+"""Scales of the noise per marker and keypoint: how far a performer differs from a library in a whole clip."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from .match_evidence import MatchEvidence
 
 DEGREES_OF_FREEDOM = 4.0
 """Of Student's t distribution."""
@@ -17,19 +18,22 @@ ITERATIONS = 12
 
 @dataclass(frozen=True, eq=False)
 class NoiseScales:
-    """Scales of the standard deviations of M markers."""
+    """Scales of the standard deviations of A points, M of them markers and K keypoints."""
 
     centroid: Array
-    """(M,) scale of each centroid's standard deviation: large for an arm that waves."""
+    """(A,) scale of each place's standard deviation: large for an arm that waves."""
     extent: Array
     """(M,) scale of each extent's standard deviation."""
     size: Array
     """(M,) size of each marker relative to an average body's."""
+    depth: Array
+    """(K,) scale of the standard deviation of each keypoint's guessed depth."""
 
     @classmethod
-    def unit(cls, markers: int) -> "NoiseScales":
+    def of(cls, evidence: MatchEvidence) -> "NoiseScales":
         """Scales of 1, for a performer of whom nothing is known yet."""
-        return cls(np.ones(markers), np.ones(markers), np.ones(markers))
+        markers, keypoints = evidence.marker_count, len(evidence.points)
+        return cls(np.ones(markers + keypoints), np.ones(markers), np.ones(markers), np.ones(keypoints))
 
 
 def student_scales(residual: Array, visible: BoolArray, tempering: float) -> Array:

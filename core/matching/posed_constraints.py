@@ -11,13 +11,12 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.soles import sole_heights_m
 from ..prior.keyframes import Keyframe
+from .match_evidence import INDEPENDENT_POINTS
 
 HIPS_STD_M = 0.03
 """Standard deviation of the hips' place in a posed keyframe: a person's error."""
 POINT_STD_M = 0.08
 """Standard deviation of a point, the hips aligned: a library's posture is another performer's."""
-INDEPENDENT_POINTS = 5.0
-"""Number of points that differ independently: one for each limb, and the trunk's."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,10 @@ from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.heading import yaw_rotation
-from .frame_likelihood import FrameLikelihood, square_root
+from .frame_likelihood import FrameLikelihood, square_root, unstretched
+from .match_evidence import INDEPENDENT_POINTS
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales, student_scales
-from .posed_constraints import INDEPENDENT_POINTS, PosedConstraints
+from .posed_constraints import PosedConstraints
 from .sequence_table import SequenceTable
 
 UNKNOWNS = 5
@@ -37,6 +38,9 @@ LARGEST_SIZE = 1.5
 """Largest ratio of a marker's size to an average body's, either way."""
 LEAST_INFORMATION = 1e-2
 """Added to each unknown's information, so that undetermined ones stay."""
+
+Residuals = tuple[Array, Array, Array, Array]
+"""In standard deviations, of places, extents, guessed depths and the floor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +96,10 @@ class Refinement:
             "backward",
             "pixel_size",
             "extent_std_m",
+            "sight",
+            "depth_m",
+            "depth_weight",
+            "stretch",
         )
         return tuple(
             np.array([getattr(likelihood, name) for likelihood in self.likelihoods]) for name in names
@@ -116,10 +124,14 @@ class Refinement:
 
     def _predicted_extents(self, sequence: IndexArray, values: Array) -> tuple[Array, Array]:
         """Predicted extents (T, M, 3) [m] of an average body's markers, and their depths (T, M) [m]."""
-        _, image_axes, _, _, location, backward, *_ = self._observations
+        _, image_axes, _, unclipped, location, backward, *_ = self._observations
         samples = self.table.sample(sequence, values[:, 0])
         turn = yaw_rotation(values[:, 1])
-        centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        markers = unclipped.shape[1]
+        image_axes = image_axes[:, :markers]
+        centroid = (
+            samples.centroid[:, :markers] @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        )
         depth = np.maximum(-np.einsum("tmi,ti->tm", centroid, backward), 0.1)
         second_moment = turn[:, None] @ samples.second_moment @ np.swapaxes(turn, -1, -2)[:, None]
         image = np.einsum("tmki,tmij,tmlj->tmkl", image_axes, second_moment, image_axes, optimize=True)
@@ -127,22 +139,32 @@ class Refinement:
 
     def noise_scales(self, path: ContinuousPath) -> NoiseScales:
         """The performer's noise scales over the whole clip."""
-        weight, _, _, unclipped, *_ = self._observations
+        weight, _, _, unclipped, *_, depth_weight, _ = self._observations
         size = self._sizes(path.sequence, path.values)
-        centroid_residual, extent_residual, _ = self.residuals(path.sequence, path.values, size)
+        centroid_residual, extent_residual, depth_residual, _ = self.residuals(
+            path.sequence, path.values, size
+        )
+        keypoints = weight.shape[1] - unclipped.shape[1]
         return NoiseScales(
             student_scales(centroid_residual, weight > 0.0, self.tempering),
             student_scales(extent_residual, unclipped > 0.0, self.tempering),
             size,
+            student_scales(depth_residual, depth_weight > 0.0, self.tempering)
+            if depth_weight.shape[1]
+            else np.ones(keypoints),
         )
 
-    def residuals(self, sequence: IndexArray, values: Array, size: Array) -> tuple[Array, Array, Array]:
-        """Residuals in standard deviations: centroids (T, M, 2), extents (T, M, 3), the floor (T, 1)."""
-        weight, image_axes, extent, unclipped, location, _, pixel_size, extent_std = self._observations
+    def residuals(self, sequence: IndexArray, values: Array, size: Array) -> Residuals:
+        """Places (T, A, 2), extents (T, M, 3), depths (T, G, 1) and floor (T, 1), in standard deviations."""
+        weight, image_axes, extent, unclipped, location, _, pixel_size, extent_std, *guessed = (
+            self._observations
+        )
         samples = self.table.sample(sequence, values[:, 0])
         turn = yaw_rotation(values[:, 1])
-        centroid = samples.centroid @ np.swapaxes(turn, -1, -2) + (values[:, 2:] - location)[:, None]
+        from_hips = samples.centroid @ np.swapaxes(turn, -1, -2)
+        centroid = from_hips + (values[:, 2:] - location)[:, None]
         centroid_residual = np.einsum("tmki,tmi->tmk", image_axes, centroid) * weight[..., None]
+        centroid_residual = unstretched(centroid_residual, guessed[-1])
         predicted, depth = self._predicted_extents(sequence, values)
         predicted = predicted * size[:, None]
         deviation = np.hypot(extent_std, pixel_size[:, None] * depth)
@@ -152,10 +174,13 @@ class Refinement:
             * np.array([1.0, np.sqrt(2.0), 1.0])
         )
         extent_residual = np.where(unclipped[..., None], extent_residual, 0.0)
+        sight, depth_m, depth_weight, _ = guessed
+        behind = np.einsum("tki,ti->tk", from_hips[:, from_hips.shape[1] - depth_m.shape[1] :], sight)
+        depth_residual = ((behind - depth_m) * depth_weight)[..., None]
         if self.floor_m is None:
-            return centroid_residual, extent_residual, np.zeros((len(values), 1))
+            return centroid_residual, extent_residual, depth_residual, np.zeros((len(values), 1))
         over = values[:, 4] - samples.hip_height_m - self.floor_m
-        return centroid_residual, extent_residual, over[:, None] / self.floor_std_m
+        return centroid_residual, extent_residual, depth_residual, over[:, None] / self.floor_std_m
 
     def _footage(self, sequence: IndexArray, values: Array, size: Array) -> tuple[Array, Array]:
         """Normal equations of the footage: (3, T, 5, 5) blocks on and above the diagonal, (T, 5) gradient."""
@@ -198,12 +223,13 @@ class Refinement:
         np.add.at(matrix[0], rows, np.swapaxes(jacobian, -1, -2) @ jacobian)
         np.add.at(gradient, rows, np.einsum("tri,tr->ti", jacobian, residual))
 
-    def _robust_rows(self, values: tuple[Array, Array, Array], at: tuple[Array, Array, Array]) -> Array:
+    def _robust_rows(self, values: Residuals, at: Residuals) -> Array:
         """(T, R) residuals, weighted by Student's t with their values at `at`."""
         rows = []
-        for value, now in zip(values, at, strict=True):
+        share = self.likelihoods[0].share
+        for value, now, weight in zip(values, at, (share, 1.0, share, 1.0), strict=True):
             squared = (now**2).sum(axis=-1)
-            trust = np.sqrt((DEGREES_OF_FREEDOM + now.shape[-1]) / (DEGREES_OF_FREEDOM + squared))
+            trust = np.sqrt(weight * (DEGREES_OF_FREEDOM + now.shape[-1]) / (DEGREES_OF_FREEDOM + squared))
             rows.append((value * trust[..., None]).reshape(len(value), -1))
         return np.asarray(np.sqrt(self.tempering) * np.concatenate(rows, axis=1))
 

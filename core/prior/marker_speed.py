@@ -24,16 +24,16 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     Returns:
         (F,) [px per frame of the clip's median duration].
     """
-    time = _frame_times(tracks.time_s)
+    time = frame_times(tracks.time_s)
     total = np.zeros(tracks.frame_count)
     for marker in range(len(tracks.names)):
-        total += _speed(tracks.centroid[:, marker], time)
+        total += point_speed(tracks.centroid[:, marker], time)
     if smoothing_frames > 0.0 and len(total) > 1:
         total = np.asarray(gaussian_filter1d(total, smoothing_frames, mode="nearest"))
     return total
 
 
-def _frame_times(time_s: Array) -> Array:
+def frame_times(time_s: Array) -> Array:
     """Time stamps (F,) in median frame durations; a stamp that does not advance counts as one duration."""
     step = np.diff(time_s)
     advancing = np.isfinite(step) & (step > 0.0)
@@ -41,7 +41,7 @@ def _frame_times(time_s: Array) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.where(advancing, step / usual, 1.0))])
 
 
-def _speed(centroid: Array, time: Array) -> Array:
+def point_speed(centroid: Array, time: Array) -> Array:
     """Speed (F,) of one centroid (F, 2) [px]; zero if it is detected in fewer than two frames."""
     seen = np.flatnonzero(np.all(np.isfinite(centroid), axis=-1))
     if len(seen) < 2:

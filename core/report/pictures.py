@@ -6,6 +6,8 @@ from ..arrays import Array
 from ..errors import InputError
 from ..footage.clips.clip import Clip
 from ..footage.region_tracks import RegionTracks
+from ..observation.contours import ContourModel
+from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
 from .canvas import write_jpg, write_png
@@ -28,7 +30,13 @@ MATCHES = "matches.png"
 
 
 def write_pictures(
-    folder: Path, take: Take, motion: Motion, tracks: RegionTracks, speed: Array
+    folder: Path,
+    take: Take,
+    motion: Motion,
+    tracks: RegionTracks,
+    speed: Array,
+    keypoints: ComparedKeypoints | None = None,
+    contours: ContourModel | None = None,
 ) -> tuple[Path, ...]:
     """Write all pictures; the frames that they show are decoded in one more pass over the clip.
 
@@ -38,6 +46,8 @@ def write_pictures(
         motion: Its motion, F frames.
         tracks: The markers' regions.
         speed: (F,) V_sum [px/frame].
+        keypoints: The performer's keypoints, if any.
+        contours: The body's contours, drawn where there are no markers.
 
     Returns:
         Paths of the files in the order of `PICTURES`, then of `MATCHES` if it is written.
@@ -58,7 +68,7 @@ def write_pictures(
         raise InputError(f"{take.clip}: can no longer be read; the pictures need it once more")
     pictures = {
         "speed.png": speed_plot(speed, motion.keyframe_indices, motion.frame_start),
-        "overlay.png": overlay_sheet(take, motion, tracks, found),
+        "overlay.png": overlay_sheet(take, motion, tracks, found, keypoints, contours),
         **{f"{view}.png": view_sheet(view, motion, take.camera, frames) for view in VIEWS},
     }
     if matched:

@@ -1,4 +1,4 @@
-"""The sum of the markers' speeds over the clip with the keyframes circled: the paper's Figure 5."""
+"""The sum of speeds in the image over the clip with the keyframes circled: the paper's Figure 5."""
 
 from collections.abc import Collection
 
@@ -15,8 +15,8 @@ def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int
     """Plot V_sum over the frames.
 
     Args:
-        speed: (F,) sum over the markers of their centroids' speeds [px/frame] (paper, eq. 8); NaN breaks
-            the curve.
+        speed: (F,) V_sum, the sum of the speeds of what is followed [px/frame] (paper, eq. 8); NaN breaks the
+            curve.
         keyframe_indices: Frame indices of the keyframes.
         frame_start: Scene frame of index 0.
 
@@ -35,7 +35,7 @@ def speed_plot(speed: Array, keyframe_indices: Collection[int], frame_start: int
     for index in sorted(keyframe_indices):
         value = float(speed[index]) if np.isfinite(speed[index]) else 0.0
         _mark_keyframe(canvas, axes.to_canvas(frame_start + index, value), axes.floor)
-    axes.label("Speed of the markers over the clip", "scene frame", "sum of speeds [px/frame]")
+    axes.label("Speed in the image over the clip", "scene frame", "sum of speeds [px/frame]")
     _draw_legend(canvas, axes.right)
     return canvas.image()
 

@@ -6,11 +6,11 @@ error's covariance is the estimate's own, in which hidden markers and far keyfra
 additions:
 
 * Where the footage moved a point far from the interpolated keyframes, these tell little there, and the error
-in
-  what the footage cannot see, depth above all, is a share of that movement. The estimate's covariance does
-  not grow with it; true errors do.
-* Where most of the markers contradict the motion by more than they should, the covariance is scaled up by the
-  Birge ratio (1932, *The calculation of errors by the method of least squares*).
+  in what the footage cannot see, depth above all, is a share of that movement. The estimate's covariance
+  does not grow with it; true errors do.
+* Where most of the evidence (markers, keypoints, contours) contradicts the motion by more than it should, the
+  covariance is scaled up by the Birge ratio (1932, *The calculation of errors by the method of least
+  squares*).
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) 
     Args:
         point_covariance: (F, P, 3, 3) the estimate's own [m²]; NaN where unknown.
         moved_m: (F, P) distance of each point from the interpolated keyframes [m].
-        misfit: (F, M) as `misfits` gives it; NaN where not compared.
+        misfit: (F, E) of every piece of evidence, as `misfits` gives it of markers; NaN where not compared.
     """
     unseen = np.eye(3) * (UNSEEN_SHARE * moved_m)[..., None, None] ** 2 / 3.0
     return np.asarray((point_covariance + unseen) * _birge_ratio(misfit)[:, None, None, None])
@@ -58,10 +58,12 @@ def misfits(distance_px: Array, expected_px: Array) -> Array:
 
 
 def _birge_ratio(misfit: Array) -> Array:
-    """(F,) Birge ratio, at least one, of the compared markers (F, M).
+    """(F,) Birge ratio, at least one, of what is compared of the evidence (F, E); one where nothing is.
 
-    It is the median marker's: an outlier has lost its weight in the estimate already.
+    It is the median one's: an outlier has lost its weight in the estimate already.
     """
+    if not misfit.shape[1]:
+        return np.ones(len(misfit))
     compared = np.isfinite(misfit).any(axis=1)
     return np.maximum(np.nanmedian(np.where(compared[:, None], misfit, 1.0), axis=1), 1.0)
 

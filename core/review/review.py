@@ -1,7 +1,8 @@
-"""Review of a motion: outlines, points, confidence, and frames worth another keyframe."""
+"""Review of a motion: markers, keypoints, points, confidence, and frames worth another keyframe."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,12 @@ from ..footage.segmentation.region_outlines import CORNERS, ellipse_outline
 from ..observation.regions import RegionModel
 from ..progress import Job, Part, within
 from ..take.take import Take
+from .compare_keypoints import compare_keypoints
+from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .weak_frames import FrameEvidence, Reason, WeakFrame, find_weak_frames
+from .contour_sight import contour_sight
+from .frame_evidence import MarkerSight, believed_misfits, frame_evidence
+from .weak_frames import Reason, WeakFrame, find_weak_frames
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
@@ -25,8 +30,11 @@ CHUNK_FRAMES = 100
 """So few that a job can be canceled within some hundredths of a second."""
 WRONG_SHARE = 0.1
 """Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong."""
-SINGLE_PRECISION = ("observed", "predicted")
-"""Large arrays that are only drawn, kept in single precision."""
+NAMES = ("marker_names", "point_names")
+KINDS: Mapping[str, type] = MappingProxyType(
+    {**dict.fromkeys(NAMES, np.str_), **dict.fromkeys(("observed", "predicted"), np.float32)}
+)
+"""Kinds of arrays in a cache that numpy would not choose: large ones are only drawn, in single precision."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,14 +69,16 @@ class Review:
     """(K,) frame indices of the keyframes."""
     weak_frames: tuple[WeakFrame, ...]
     """Frames worth another keyframe, the worst first."""
+    keypoints: ComparedKeypoints
+    """Of the performer, N of them; none in a review that was kept before there were any."""
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`; none needs pickling."""
         arrays: dict[str, NDArray[Any]] = {}
         for field in fields(self):
-            if field.name == "weak_frames":
+            if field.name in ("weak_frames", "keypoints"):
                 continue
-            kind = np.float32 if field.name in SINGLE_PRECISION else None
+            kind = KINDS.get(field.name)
             arrays[field.name] = np.asarray(getattr(self, field.name), dtype=kind)
         weak = self.weak_frames
         arrays["weak_index"] = np.array([frame.index for frame in weak], dtype=np.int64)
@@ -76,32 +86,22 @@ class Review:
         arrays["weak_strength"] = np.array([frame.strength for frame in weak], dtype=np.float64)
         markers = [-1 if frame.marker is None else frame.marker for frame in weak]
         arrays["weak_marker"] = np.array(markers, dtype=np.int64)
-        return arrays
+        arrays["weak_point"] = np.array([frame.point or "" for frame in weak], dtype=np.str_)
+        return {**arrays, **self.keypoints.to_arrays()}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
-        """Restore a review from the arrays of `to_arrays`.
+        """Restore a review from the arrays of `to_arrays`, or of a version that knew no keypoints.
 
         Raises:
             KeyError: An array is missing.
             ValueError: A reason is unknown.
         """
-        columns = zip(
-            arrays["weak_index"].tolist(),
-            arrays["weak_reason"].tolist(),
-            arrays["weak_strength"].tolist(),
-            arrays["weak_marker"].tolist(),
-            strict=True,
-        )
-        weak = tuple(
-            WeakFrame(index, Reason(reason), strength, None if marker < 0 else marker)
-            for index, reason, strength, marker in columns
-        )
-        names = ("marker_names", "point_names")
+        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints")
         plain = {
             field.name: np.asarray(arrays[field.name], dtype=np.float64)
             for field in fields(cls)
-            if field.name not in (*names, "size", "keyframe_indices", "weak_frames")
+            if field.name not in others
         }
         width, height = arrays["size"].tolist()
         return cls(
@@ -109,9 +109,20 @@ class Review:
             marker_names=tuple(arrays["marker_names"].tolist()),
             point_names=tuple(arrays["point_names"].tolist()),
             keyframe_indices=np.asarray(arrays["keyframe_indices"], dtype=np.intp),
-            weak_frames=weak,
+            weak_frames=_weak_frames(arrays),
+            keypoints=ComparedKeypoints.from_arrays(arrays, len(plain["frames"])),
             **plain,
         )
+
+
+def _weak_frames(arrays: Mapping[str, NDArray[Any]]) -> tuple[WeakFrame, ...]:
+    names = ("weak_index", "weak_reason", "weak_strength", "weak_marker")
+    columns = [arrays[name].tolist() for name in names]
+    points = arrays["weak_point"].tolist() if "weak_point" in arrays else [""] * len(columns[0])
+    return tuple(
+        WeakFrame(index, Reason(reason), strength, None if marker < 0 else marker, point or None)
+        for index, reason, strength, marker, point in zip(*columns, points, strict=True)
+    )
 
 
 def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
@@ -131,22 +142,26 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
     pose = take.body.pose(motion.posture)
-    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 1.0)
+    predicted, offset = yield from within(STAGE, _predictions(model, pose, tracks.centroid), 0.0, 0.5)
+    contours = yield from within(STAGE, contour_sight(reconstruction), 0.5, 1.0)
     noise, width = RegionNoise(), limb_widths(model, motion.posture.translation, frame)
     variance = noise.surface_std(width)[..., 0] ** 2 + noise.bias_std(width)[..., 0] ** 2
     misfit = misfits(offset, np.sqrt(noise.pixel_std_px**2 + variance))
+    keypoints = compare_keypoints(reconstruction)
     moved = np.linalg.norm(motion.points - reconstruction.interpolation.points, axis=-1)
-    expected = expected_covariance(motion.point_covariance, moved, misfit)
+    believed_misfit = believed_misfits(misfit, contours, keypoints)
+    expected = expected_covariance(motion.point_covariance, moved, believed_misfit)
     believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
     wrong = WRONG_SHARE * take.body.actor.stature_m
     squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
     index = np.array(motion.keyframe_indices, dtype=np.intp)
-    evidence = FrameEvidence(
+    evidence = frame_evidence(
         np.where(np.isfinite(squared), squared, 1.0),
         believed,
-        np.where(tracks.visible, tracks.quality, 0.0),
-        misfit,
         reconstruction.speed,
+        MarkerSight(take.marker_segments, np.where(tracks.visible, tracks.quality, 0.0), misfit),
+        contours,
+        keypoints,
     )
     return Review(
         frames=np.asarray(scene_frames, dtype=np.float64),
@@ -164,6 +179,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         confidence=believed,
         keyframe_indices=index,
         weak_frames=find_weak_frames(evidence, index),
+        keypoints=keypoints,
     )
 
 

@@ -39,13 +39,13 @@ class Reason(StrEnum):
     """Why a frame is worth another keyframe."""
 
     HIDDEN = "hidden"
-    """A marker is hidden there."""
+    """A marker, a keypoint or a contour is hidden there."""
     FAST = "fast"
     """The performer moves fast there."""
     FAR = "far"
     """The next keyframe is far."""
     FOOTAGE = "footage"
-    """A marker is not where the motion puts it."""
+    """A marker, a keypoint or a contour is not where the motion puts it."""
 
 
 @dataclass(frozen=True)
@@ -59,22 +59,26 @@ class WeakFrame:
     """Worth of a keyframe there, relative to the worst frame's: 0 to 1."""
     marker: int | None = None
     """The marker that is hidden or misplaced, where one is the reason."""
+    point: str | None = None
+    """The body point whose keypoints are hidden or misplaced, or the segment whose contour is."""
 
 
 @dataclass(frozen=True, eq=False)
 class FrameEvidence:
-    """Errors, confidence and observations of F frames and M markers."""
+    """Errors, confidence and observations of F frames: of M markers and K points or segments of the body."""
 
     squared_error: Array
     """(F,) expected squared error of a frame, in any unit."""
     confidence: Array
     """(F,) 0 to 1; NaN where unknown, which counts as weak."""
     quality: Array
-    """(F, M) quality of the regions, 0 where hidden."""
+    """(F, M + K) quality of regions, contours and keypoints, 0 where hidden."""
     misfit: Array
-    """(F, M) as in `confidence`; NaN where not compared."""
+    """(F, M + K) as in `confidence`; NaN where not compared."""
     speed: Array
     """(F,) V_sum."""
+    points: tuple[str, ...] = ()
+    """(K,) the points and segments of the last columns."""
 
 
 def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[WeakFrame, ...]:
@@ -131,15 +135,21 @@ def _with_reason(evidence: FrameEvidence, keyframes: list[int], index: int, stre
     distance = min(abs(index - frame) for frame in keyframes)
     reach = max(2, distance // 2)
     nearby = slice(max(0, index - reach), index + reach + 1)
-    hidden = (evidence.quality[nearby] < HIDDEN_QUALITY).mean(axis=0)
-    compared = np.isfinite(evidence.misfit[nearby])
-    misfit = np.where(compared, evidence.misfit[nearby], 0.0).sum(0) / np.maximum(compared.sum(0), 1)
     usual_speed = max(float(np.median(evidence.speed)), 1e-9)
     reasons: list[tuple[float, Reason, int | None]] = [
         (distance * len(keyframes) / count / NOTICEABLE_DISTANCE, Reason.FAR, None),
         (float(evidence.speed[nearby].mean()) / usual_speed / NOTICEABLE_SPEED, Reason.FAST, None),
-        (float(hidden.max()) / NOTICEABLE_HIDDEN, Reason.HIDDEN, int(hidden.argmax())),
-        (float(misfit.max() / NOTICEABLE_MISFIT) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
     ]
-    _, reason, marker = max(reasons, key=lambda entry: entry[0])
-    return WeakFrame(index, reason, float(strength), marker)
+    if evidence.quality.shape[1]:
+        hidden = (evidence.quality[nearby] < HIDDEN_QUALITY).mean(axis=0)
+        compared = np.isfinite(evidence.misfit[nearby])
+        misfit = np.where(compared, evidence.misfit[nearby], 0.0).sum(0) / np.maximum(compared.sum(0), 1)
+        reasons += [
+            (float(hidden.max()) / NOTICEABLE_HIDDEN, Reason.HIDDEN, int(hidden.argmax())),
+            (float(misfit.max() / NOTICEABLE_MISFIT) ** 0.5, Reason.FOOTAGE, int(misfit.argmax())),
+        ]
+    _, reason, column = max(reasons, key=lambda entry: entry[0])
+    markers = evidence.quality.shape[1] - len(evidence.points)
+    if column is None or column < markers:
+        return WeakFrame(index, reason, float(strength), column)
+    return WeakFrame(index, reason, float(strength), point=evidence.points[column - markers])

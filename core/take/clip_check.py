@@ -7,6 +7,9 @@ import numpy as np
 
 from ..errors import InputError
 from ..footage.clips.clip import Clip
+from ..footage.clips.packets import read_packets
+from ..footage.clips.video_file import VideoFile
+from ..footage.keypoints.frame_numbers import tolerance
 from .take import Take
 
 LONGEST_FRAMES = 40_000
@@ -23,7 +26,8 @@ def open_clip(take: Take) -> Clip:
     clip = open_footage(take.clip, take.fps)
     check_size(take, clip)
     count = clip.frame_count
-    if count > LONGEST_FRAMES or take.frame_count not in (None, count):
+    expected = {take.frame_count, *(len(people.frames) for people in take.keypoints)} - {None}
+    if count > LONGEST_FRAMES or expected - {count}:
         # Containers may claim a wrong number; decoding counts.
         count = sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
     check_frame_count(take, count)
@@ -40,6 +44,21 @@ def open_footage(path: Path, fps: float | None) -> Clip:
         return Clip.open(path, fps=fps)
     except OSError as error:
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
+def picture_count(path: Path, fps: float) -> int:
+    """Number of pictures of a clip without its take; of a sound file quickly, by its undecoded packets.
+
+    Raises:
+        InputError: It is missing or unreadable.
+    """
+    clip = open_footage(path, fps)
+    if not isinstance(clip.source, VideoFile):
+        return clip.frame_count
+    packets = read_packets(path)
+    if packets is not None and packets.complete:
+        return len(packets.time_s)
+    return sum(1 for _ in islice(clip.source.time_stamps(), LONGEST_FRAMES + 1))
 
 
 def check_size(take: Take, clip: Clip) -> None:
@@ -75,8 +94,8 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
         claimed: Number of frames that the clip's file claims.
 
     Raises:
-        InputError: There are too many, `frame_count` differs, or a keyframe or the camera's poses lie outside
-            the clip.
+        InputError: There are too many, `frame_count` or the number of frames with keypoints differs, or a
+            keyframe or the camera's poses lie outside the clip.
     """
     path = take.file
     if count > LONGEST_FRAMES:
@@ -95,6 +114,13 @@ def check_frame_count(take: Take, count: int, claimed: int = 0) -> None:
             f"{path}: camera.matrix_world_frames has {poses} poses; {take.clip.name} has {count} frames, "
             "and each needs one"
         )
+    for people in take.keypoints:
+        if abs(len(people.frames) - count) > tolerance(count):
+            raise InputError(
+                f"{people.file or people.source}: has keypoints of {len(people.frames)} frames; "
+                f"{take.clip.name} has {count}{_damage_hint(count, claimed)}; they must be those of this "
+                "clip, frame by frame"
+            )
     for keyframe in take.keyframes:
         if keyframe.index >= count:
             raise InputError(

@@ -12,7 +12,7 @@ from ..files.json_file import read_json
 from ..footage.clips.image_sequence import find_images
 from .character_settings import CharacterSettings
 from .conversion_settings import ConversionSettings
-from .description import Description
+from .description import Description, keypoint_files
 from .methods import METHODS
 from .shoot_file import FILE_FIELDS, SETTING_FIELDS
 
@@ -64,7 +64,27 @@ def conversion_digest(
         settings.method or METHODS[0],
         settings.pictures is not False,
         None if settings.character is None else (_character(settings.character), tuple(maps)),
+        *_evidence(description, settings),
     )
+
+
+def _evidence(description: Description, settings: ConversionSettings) -> tuple[object, ...]:
+    """Keypoints by name and content, and the kinds of evidence; empty where nothing is said of either."""
+    keypoints = keypoint_files(description, settings)
+    if not keypoints and settings.evidence is None:
+        return ()
+    return (tuple(_keypoints(file) for file in keypoints), settings.evidence)
+
+
+def _keypoints(path: Path) -> tuple[object, ...]:
+    """The names and contents of a file, or of all files of a folder."""
+    try:
+        files = sorted(file for file in path.iterdir() if not file.name.startswith("."))
+    except NotADirectoryError:
+        files = [path]
+    except OSError as error:
+        raise InputError(f"{path}: the keypoints cannot be read ({error.strerror})") from error
+    return (path.name, tuple((file.name, content_digest(file)) for file in files if not file.is_dir()))
 
 
 def _character(character: CharacterSettings) -> tuple[object, ...]:

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
 from .record_fields import record_files, record_line, record_list, record_notes
+from .used_evidence import UsedEvidence, read_used_evidence
 
 RECORD_FILE = "conversion.json"
 SCHEMA_VERSION = 1
@@ -52,6 +53,8 @@ class ConversionRecord:
     files: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of every file of the result, by its path in the folder; for motion.blend, in which Blender
     leaves memory addresses, that of its Action's curves."""
+    evidence: UsedEvidence | None = None
+    """What the motion was held against beside its keyframes; None in records of before this was noted."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
@@ -60,7 +63,9 @@ def write_record(folder: Path, record: ConversionRecord) -> None:
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_json(folder / RECORD_FILE, {"schema_version": SCHEMA_VERSION, **asdict(record)}, indent=1)
+    evidence = None if record.evidence is None else record.evidence.to_json()
+    fields = {"schema_version": SCHEMA_VERSION, **asdict(record), "evidence": evidence}
+    write_json(folder / RECORD_FILE, fields, indent=1)
 
 
 def read_record(folder: Path) -> ConversionRecord:
@@ -88,6 +93,9 @@ def read_record(folder: Path) -> ConversionRecord:
         weak_frames=_frames(fields, "weak_frames"),
         notes=record_notes(fields),
         files=record_files(fields),
+        evidence=read_used_evidence(fields.child("evidence", "an object"))
+        if fields.has("evidence")
+        else None,
     )
 
 

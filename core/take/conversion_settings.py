@@ -1,4 +1,4 @@
-"""Settings of a conversion: keyframes, library, floor, method, pictures, character."""
+"""Settings of a conversion: keyframes, keypoints, evidence, library, floor, method, pictures, character."""
 
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -9,11 +9,15 @@ from ..files.fields import Fields, listed
 from ..files.json_file import shown
 from ..files.safe_path import safe_path
 from .character_settings import CharacterSettings, read_character_settings
+from .evidence_kinds import evidence_mistake, in_order
 from .methods import METHODS
 
 HIGHEST_FLOOR_M = 1000.0
 LONGEST_NAME = 200
 KEYFRAMES_VALID = "a path inside the take's folder, as in keyframes.json"
+KEYPOINTS_VALID = "a file or folder inside the take's folder, as in keypoints.json, or a list of several"
+MOST_KEYPOINT_FILES = 16
+"""Sources of keypoints of one take: some detectors, tracks and clicks."""
 LIBRARY_VALID = "a library's name, auto, or the path of a library file inside the folder, as in walking.json"
 
 
@@ -33,6 +37,10 @@ class ConversionSettings:
     """Whether to draw the report; by default it is drawn."""
     character: CharacterSettings | None = None
     """The character that gets the motion too; None for none."""
+    keypoints: tuple[Path, ...] | None = None
+    """Files or folders of keypoints; by default the take's own where it has some."""
+    evidence: tuple[str, ...] | None = None
+    """Kinds of evidence that are used, in the order of `EVIDENCE`; None for whatever the take has."""
 
     def with_defaults(self, defaults: "ConversionSettings") -> "ConversionSettings":
         """These settings, and the default for each that is None."""
@@ -77,7 +85,45 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
         )
     library = _library(description, folders)
     character = read_character_settings(description, folders)
-    return ConversionSettings(keyframes, library, floor_m, method, pictures, character)
+    return ConversionSettings(
+        keyframes,
+        library,
+        floor_m,
+        method,
+        pictures,
+        character,
+        _keypoints(description, folders),
+        _evidence(description),
+    )
+
+
+def _keypoints(description: Fields, folders: dict[str, Path]) -> tuple[Path, ...] | None:
+    if not description.has("keypoints"):
+        return None
+    source, value = description.source_of("keypoints"), description.values["keypoints"]
+    named = value if isinstance(value, list) else [value]
+    if not 1 <= len(named) <= MOST_KEYPOINT_FILES:
+        raise InputError(
+            f"{source}: keypoints lists {len(named)} files; it must be {KEYPOINTS_VALID}, at most "
+            f"{MOST_KEYPOINT_FILES}"
+        )
+    folder = folders[source]
+    paths = [
+        safe_path(Fields({"keypoints": one}, source), "keypoints", folder, KEYPOINTS_VALID) for one in named
+    ]
+    if len(set(paths)) < len(paths):
+        raise InputError(f"{source}: keypoints names a file twice; each counts once")
+    return tuple(paths)
+
+
+def _evidence(description: Fields) -> tuple[str, ...] | None:
+    if not description.has("evidence"):
+        return None
+    kinds = description.values["evidence"]
+    mistake = evidence_mistake(kinds)
+    if mistake is not None:
+        raise InputError(f"{description.source_of('evidence')}: evidence is {shown(kinds)}; {mistake}")
+    return in_order(kinds)
 
 
 def _library(description: Fields, folders: dict[str, Path]) -> str | None:

@@ -1,7 +1,8 @@
 """The description of one take: the fields of its own file and those it inherits from `shoot.json` above.
 
 A take is a folder that holds `take.json`; or, where a `shoot.json` above describes it, a bare clip: a video
-or a folder of images. Its sidecar files `NAME.take.json` and `NAME.keyframes.json` override and add.
+or a folder of images. Its sidecar files `NAME.take.json`, `NAME.keyframes.json` and `NAME.keypoints.json`
+override and add.
 """
 
 import os
@@ -19,10 +20,12 @@ from ..files.paths import absolute_path
 from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
 from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings
+from .evidence_kinds import KEYPOINTS
 from .shoot_file import SHOOT_FILE, find_shoot_files, shoot_fields
 
 TAKE_FILE = "take.json"
 KEYFRAME_FILE = "keyframes.json"
+KEYPOINT_FILE = "keypoints.json"
 CLIP_FILE = "clip.mp4"
 CLIP_VALID = "a path inside the take's folder, as in clip.mp4"
 
@@ -44,10 +47,17 @@ class Description:
     clip: Path
     keyframes: Path
     """The keyframe file, which may not exist."""
+    keypoints: tuple[Path, ...]
+    """Files or folders of keypoints: those that are named, else `keypoints.json` or `NAME.keypoints.json`
+    where that is there."""
     fields: Fields
     settings: ConversionSettings
     inherits: bool
     """Whether a `shoot.json` describes it; then rate and size may come from the clip itself."""
+
+    def file_called(self, name: Path) -> Path:
+        """The take's own file of a name that every take has: in its folder, or beside its bare clip."""
+        return _own_name(self.folder, self.clip if self.path == self.clip else None, name)
 
 
 def describe(
@@ -70,7 +80,7 @@ def describe(
     if not os.path.isfile(own_file) and not is_folder and not shared:
         raise InputError(
             f"{path}: nothing describes this clip; {own_file.name} beside it, or {SHOOT_FILE} there "
-            "or in a folder above, must say what camera, actor and markers it shows"
+            "or in a folder above, must say what camera and actor it shows, and which markers if any"
         )
     files = [*shared]
     layers = [(str(file), file.parent, shoot_fields(file, values)) for file, values in shared.items()]
@@ -90,7 +100,15 @@ def describe(
     else:
         clip = path
         keyframes = settings.keyframes or sidecar_file(path, KEYFRAME_FILE)
-    used = [*files, clip, keyframes, *_linked_images(clip)]
+    bare = None if is_folder else path
+    said_in = Path(fields.source_of("keypoints"))
+    if settings.keypoints is not None and said_in in shared:  # names that every take has
+        own = (_own_name(folder, bare, file.relative_to(said_in.parent)) for file in settings.keypoints)
+        settings = replace(settings, keypoints=tuple(own))
+    usual = _own_name(folder, bare, Path(KEYPOINT_FILE))
+    keypoints = settings.keypoints or ((usual,) if os.path.lexists(usual) else ())
+    used = [*files, clip, keyframes, *keypoints]
+    used += [link for within in (clip, *keypoints) for link in _links(within)]
     if settings.library is not None and settings.library.endswith(".json"):
         used.append(Path(settings.library))
     if settings.character is not None:
@@ -105,6 +123,7 @@ def describe(
         files=tuple(files),
         clip=clip,
         keyframes=keyframes,
+        keypoints=keypoints,
         fields=fields,
         settings=settings,
         inherits=bool(shared),
@@ -118,12 +137,29 @@ def effective_settings(
 
     Args:
         description: The take's description.
-        defaults: Settings for what the take and its shoots leave out.
+        defaults: Settings for what the take and its shoots leave out; their keypoints are names of files of
+            every take, as `keypoints.json` is.
     """
     settings = description.settings.with_defaults(defaults)
+    if description.settings.keypoints is None and defaults.keypoints is not None:
+        settings = replace(
+            settings, keypoints=tuple(description.file_called(file) for file in defaults.keypoints)
+        )
     if settings.library is not None and settings.keyframes is None and os.path.exists(description.keyframes):
         return replace(settings, keyframes=description.keyframes)
     return settings
+
+
+def keypoint_files(description: Description, settings: ConversionSettings) -> tuple[Path, ...]:
+    """The files or folders of keypoints that a conversion reads; none where their evidence is left aside."""
+    if settings.evidence is not None and KEYPOINTS not in settings.evidence:
+        return ()
+    return description.keypoints if settings.keypoints is None else settings.keypoints
+
+
+def _own_name(folder: Path, clip: Path | None, name: Path) -> Path:
+    """A file of a name that every take has: `clip` is None where the take is a folder."""
+    return folder / name if clip is None else folder / name.parent / sidecar_file(clip, name.name).name
 
 
 def _own_file(path: Path) -> Path:
@@ -145,17 +181,17 @@ def _own_file(path: Path) -> Path:
     return path / TAKE_FILE if S_ISDIR(kind) and not images else sidecar_file(path, TAKE_FILE)
 
 
-def _linked_images(clip: Path) -> list[Path]:
-    """The images of a folder that are symbolic links."""
+def _links(folder: Path) -> list[Path]:
+    """The files of a folder, as of images, that are symbolic links."""
     try:
-        with os.scandir(clip) as entries:
+        with os.scandir(folder) as entries:
             return [Path(entry.path) for entry in entries if entry.is_symlink()]
-    except (OSError, ValueError):  # no readable folder, as opening the clip will say
+    except (OSError, ValueError):  # no readable folder, as opening it will say
         return []
 
 
 def sidecar_file(clip: Path, ending: str) -> Path:
-    """The file beside a bare clip that adds to its description: `NAME.take.json` or `NAME.keyframes.json`."""
+    """The file beside a bare clip that adds to its description, as `NAME.take.json`."""
     return clip.with_name(f"{clip_name(clip)}.{ending}")
 
 

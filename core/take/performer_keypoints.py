@@ -1,28 +1,228 @@
-"""The performer's keypoints: of all people seen in a take, those of the one whom the keyframes show."""
+"""The performer's keypoints: of all people seen in a take, those of the one whom the keyframes show.
+
+Where the performer is, a person says by clicks or Blender's tracks, else the keyframes, and the markers
+between them. A take with none of these has the keypoints of whoever is largest and there longest.
+"""
 
 import numpy as np
 
+from ..arrays import Array, IndexArray
 from ..body.posture import Posture
+from ..footage.keypoints.body_points import FACE
 from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.people import People
+from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
+from ..footage.region_tracks import RegionTracks
+from ..prior.frame_prior import SPEED_M_PER_S
+from ..text import pluralize
 from .take import Take
 
+MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}
+"""Points that lie about in the middle of two joints."""
+POSED_STD_M, MATCHED_STD_M = 0.1, 0.25
+"""Of a point at a keyframe that is posed, or matched with a library, by detector and person together."""
+FARTHEST_STD_M = 1.5
+"""Far from every keyframe, in a stage's width."""
+MARKER_STD, HAND_STD = 0.15, 0.1
+"""Of a marker's center from the middle of its segment, and of a click, as shares of a person's size."""
+POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
+"""Of the frames in which a person has said where the performer is; all others count once."""
+FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
+"""Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
+ELSEWHERE = "nobody in it is where most posed keyframes have the performer, so it is left out; it must be of this clip"
+TRUNK_ENDS = ("shoulder.L", "shoulder.R", "hip.L", "hip.R")
+ENDS = {
+    "upper_arm": ("shoulder", "elbow"),
+    "forearm": ("elbow", "wrist"),
+    "thigh": ("hip", "knee"),
+    "shin": ("knee", "ankle"),
+    "hand": ("wrist",),
+    "foot": ("ankle",),
+}
+"""Points whose middle lies about in that of a segment."""
 
-def performer_keypoints(take: Take, prior: Posture) -> Keypoints:
-    """The keypoints of the performer from all sources, side by side.
+
+def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks | None = None) -> Keypoints:
+    """The keypoints of the performer from all sources, side by side; its notes say who was taken, and why.
 
     Args:
         take: The take.
-        prior: F postures, roughly where the performer is.
+        prior: F postures, roughly where the performer is; None where there are too few keyframes for it, of
+            which posed ones still count in their own frames.
+        tracks: The markers' regions, where the clip has been read.
     """
-    frames = prior.batch[0]
+    frames = _frame_count(take, prior, tracks)
+    hand = [people for people in take.keypoints if people.by_hand]
     parts = []
     for people in take.keypoints:
-        if people.most_people > 1:
-            raise NotImplementedError("several people")
-        pixel = np.full((frames, len(people.names), 2), np.nan)
-        score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
-        for index, seen in enumerate(people.frames[:frames]):
-            if len(seen.pixel):
-                pixel[index], score[index], hint[index] = seen.pixel[0], seen.score[0], seen.hint_m[0]
-        parts.append(Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint))
+        chosen, notes = np.zeros(frames, dtype=np.intp), people.notes
+        if not people.by_hand:
+            points, seen = _with_middles(people, take, tracks, frames)
+            expected = _expected(take, prior, tracks, hand, points, seen, frames)
+            if expected is not None or people.most_people > 1:
+                chosen = choose_performer(seen, expected, take.fps)
+                if _is_somebody_else(take, people, chosen):
+                    chosen = np.full(frames, NOBODY, dtype=np.intp)
+                    notes += (f"{people.source}: {ELSEWHERE}",)
+                else:
+                    notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
+        parts.append(_of_one(people, chosen, notes, frames))
     return Keypoints.side_by_side(parts, frames)
+
+
+def _frame_count(take: Take, prior: Posture | None, tracks: RegionTracks | None) -> int:
+    if prior is not None:
+        return prior.batch[0]
+    if tracks is not None:
+        return tracks.frame_count
+    return take.frame_count or max((len(people.frames) for people in take.keypoints), default=0)
+
+
+def _is_somebody_else(take: Take, people: People, chosen: IndexArray) -> bool:
+    """Whether most posed keyframes say that none of the people is the performer."""
+    fits = [
+        chosen[keyframe.index] != NOBODY
+        for keyframe in take.keyframes
+        if keyframe.matched is None and keyframe.index < min(len(people.frames), len(chosen))
+        if len(people.frames[keyframe.index].pixel)
+    ]
+    return len(fits) >= FEWEST_KEYFRAMES and float(np.mean(fits)) < FEWEST_FITTING
+
+
+def _of_one(people: People, chosen: IndexArray, notes: tuple[str, ...], frames: int) -> Keypoints:
+    """The keypoints of the chosen person of every frame."""
+    pixel = np.full((frames, len(people.names), 2), np.nan)
+    score, hint = np.zeros(pixel.shape[:2]), np.full((*pixel.shape[:2], 3), np.nan)
+    for index, seen in enumerate(people.frames[:frames]):
+        row = chosen[index]
+        if row != NOBODY and len(seen.pixel):
+            pixel[index], score[index], hint[index] = seen.pixel[row], seen.score[row], seen.hint_m[row]
+    return Keypoints(people.names, (people.source,) * len(people.names), pixel, score, hint, notes)
+
+
+def _with_middles(
+    people: People, take: Take, tracks: RegionTracks | None, frames: int
+) -> tuple[tuple[str, ...], Sightings]:
+    """Everyone's points, and the middle of each marker's segment behind them; the names of the first."""
+    names, empty = people.names, np.zeros((0, len(people.names)))
+    segments = take.marker_segments if tracks is not None else ()
+    middles = [_middle_of(segment, names) for segment in segments]
+    pixels, scores = [], []
+    for index in range(frames):
+        there = index < len(people.frames)
+        pixel = people.frames[index].pixel if there else np.zeros((*empty.shape, 2))
+        score = people.frames[index].score if there else empty
+        ends = [
+            pixel[:, middle].mean(axis=1) if middle else np.full((len(pixel), 2), np.nan)
+            for middle in middles
+        ]
+        trust = [score[:, middle].mean(axis=1) if middle else np.zeros(len(pixel)) for middle in middles]
+        pixels.append(np.concatenate([pixel, *(end[:, None] for end in ends)], axis=1))
+        scores.append(np.concatenate([score, *(one[:, None] for one in trust)], axis=1))
+    return names, Sightings(tuple(pixels), tuple(scores))
+
+
+def _middle_of(segment: str, names: tuple[str, ...]) -> list[int]:
+    """Numbers of the points about the middle of a segment; none where one is not among the names."""
+    stem, _, side = segment.partition(".")
+    wanted = tuple(f"{end}.{side}" for end in ENDS[stem]) if stem in ENDS else TRUNK_ENDS
+    if stem == "head":
+        wanted = tuple(name for name in ("head", "ear.L", "ear.R") if name in names) or ("nose",)
+    return [names.index(name) for name in wanted] if set(wanted) <= set(names) else []
+
+
+def _expected(
+    take: Take,
+    prior: Posture | None,
+    tracks: RegionTracks | None,
+    hand: list[People],
+    names: tuple[str, ...],
+    seen: Sightings,
+    frames: int,
+) -> Expected | None:
+    """Where the performer's points, and behind them the markers, are expected; None if nothing is known."""
+    sizes = [float(size) for pixel in seen.pixel for size in person_size(pixel)]
+    size_px = float(np.median(sizes)) if sizes else 1.0
+    markers = len(take.marker_segments) if tracks is not None else 0
+    pixel = np.full((frames, len(names) + markers, 2), np.nan)
+    std_px = np.full(pixel.shape[:2], 1.0)
+    weight = np.ones(frames)
+    if take.keyframes:
+        posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
+        weight[[index for index in posed if index < frames]] = POSED_WEIGHT
+        place, deviation_px, at = _from_keyframes(take, prior, names, frames)
+        pixel[at, : len(names)], std_px[at, : len(names)] = place, deviation_px
+    if tracks is not None and markers:
+        pixel[:, len(names) :], std_px[:, len(names) :] = tracks.centroid[:frames], MARKER_STD * size_px
+    for people in hand:
+        for index, frame in enumerate(people.frames[:frames]):
+            if not len(frame.pixel):
+                continue
+            for number, name in enumerate(people.names):
+                if name in names and np.isfinite(frame.pixel[0, number]).all():
+                    pixel[index, names.index(name)] = frame.pixel[0, number]
+                    std_px[index, names.index(name)] = HAND_STD * size_px
+                    weight[index] = HAND_WEIGHT
+    return Expected(pixel, std_px, weight) if np.isfinite(pixel).any() else None
+
+
+def _from_keyframes(
+    take: Take, prior: Posture | None, names: tuple[str, ...], frames: int
+) -> tuple[Array, Array, IndexArray]:
+    """(G, N, 2) pixels of the body's points, NaN for others, (G, N) their deviations [px], and (G,) frames.
+
+    They are those of the prior's postures in all frames, or else of the posed keyframes' own.
+    """
+    keyframes = [
+        keyframe
+        for keyframe in take.keyframes
+        if keyframe.index < frames and (prior is not None or keyframe.matched is None)
+    ]
+    keyed = np.array([keyframe.index for keyframe in keyframes], dtype=np.intp)
+    index = keyed if prior is None else np.arange(frames)
+    if not len(index):
+        return np.zeros((0, len(names), 2)), np.zeros((0, len(names))), index
+    posture = Posture.stack([keyframe.posture for keyframe in keyframes]) if prior is None else prior
+    body, joints = take.body, take.body.skeleton.point_names
+    points = body.points(body.pose(posture))  # (G, 13, 3)
+    place = np.full((len(index), len(names), 3), np.nan)
+    for number, name in enumerate(names):
+        ends = MIDDLES.get(name, ("head",) if name in (*FACE, "crown") else (name,))
+        if set(ends) <= set(joints):
+            place[:, number] = points[:, [joints.index(end) for end in ends]].mean(axis=1)
+    pixel, depth = take.camera.project(place, index[:, None])
+    at_key = np.array([POSED_STD_M if key.matched is None else MATCHED_STD_M for key in keyframes])
+    away_s = np.abs(index[:, None] - keyed) / take.fps
+    std_m = np.minimum((at_key + SPEED_M_PER_S * away_s).min(axis=1, initial=FARTHEST_STD_M), FARTHEST_STD_M)
+    return pixel, std_m[:, None] * take.camera.focal_px / np.where(depth > 0.0, depth, 1.0), index
+
+
+def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, hand: list[People]) -> str:
+    """Who says which of several people the performer is."""
+    voices = ["the clicked or tracked points"] if hand else []
+    keyed = any(prior is not None or keyframe.matched is None for keyframe in take.keyframes)
+    voices += ["the keyframes"] if keyed else []
+    voices += ["the markers"] if not voices and tracks is not None and take.markers else []
+    if voices:
+        return f"the performer is the one that {' and '.join(voices)} show"
+    return (
+        "the performer is taken to be the largest who is there longest; click a point of another to change it"
+    )
+
+
+def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
+    """Sentences on several people, and on frames that show somebody else only."""
+    counts = np.array([len(frame.pixel) for frame in people.frames[: len(chosen)]])
+    several = int((counts > 1).sum())
+    left_out = int(((counts > 0) & (chosen[: len(counts)] == NOBODY)).sum())
+    notes = []
+    if several:
+        notes.append(
+            f"{people.source}: up to {people.most_people} people in {pluralize(several, 'frame')}; {why}"
+        )
+    if left_out:
+        notes.append(
+            f"{people.source}: {pluralize(left_out, 'frame')} of {int((counts > 0).sum())} with people "
+            "show somebody else than the performer and are left out"
+        )
+    return tuple(notes)

@@ -15,7 +15,7 @@ from .clip_check import check_frame_count, check_in_front, open_clip
 from .clip_notes import clip_notes
 from .take import Take
 
-FOLLOWING = "Following the markers"
+FOLLOWING, READING = "Following the markers", "Reading the clip"
 EXPECTED_RADIUS_M = 0.45
 """Radius around a marker of the interpolated keyframes within which it is searched first."""
 RADIUS_GROWTH_M_PER_S = 3.0
@@ -47,9 +47,8 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     )
     # Before a camera that moves, no background stands still to tell the performer from.
     with_album = take.contours and not take.camera.is_moving
-    reading = yield from within(
-        FOLLOWING, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0
-    )
+    stage = FOLLOWING if take.markers else READING
+    reading = yield from within(stage, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0)
     check_frame_count(take, reading.tracks.frame_count, clip.frame_count)
     return replace(reading, notes=clip_notes(take, clip, reading))
 

@@ -15,7 +15,7 @@ SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "actor")
 """Fields of `take.json` that takes may inherit."""
-SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character")
+SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
 """Fields that say how takes are converted."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""

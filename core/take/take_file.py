@@ -2,7 +2,10 @@
 
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +19,13 @@ from ..files.fields import Fields, listed
 from ..files.inherited_fields import InheritedFields
 from ..files.json_file import shown, write_atomically, write_json
 from ..footage.camera import Camera
+from ..footage.keypoints.keypoint_file import read_keypoints, write_keypoints
+from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
-from .clip_check import open_footage
-from .description import Description, describe
+from .clip_check import open_footage, picture_count
+from .conversion_settings import ConversionSettings
+from .description import KEYPOINT_FILE, Description, describe, keypoint_files
+from .evidence import check_evidence, with_evidence
 from .keyframe_file import FEWEST_KEYFRAMES, read_keyframes, write_keyframes
 from .take import Take
 
@@ -28,6 +35,8 @@ MOST_FRAMES = 10**6
 MOST_MARKERS = 64
 LONGEST_MARKER_NAME = 200
 """Characters."""
+MISTYPED = 0.85
+"""Likeness of an object's name from which on it is `markers` with one letter wrong."""
 
 
 def read_take(
@@ -35,6 +44,7 @@ def read_take(
     keyframes: Path | None = None,
     *,
     keyframes_required: bool = True,
+    whole: bool = False,
 ) -> Take:
     """Read a take with its inherited fields; the clip is not checked yet (see `clip_check`).
 
@@ -42,11 +52,12 @@ def read_take(
         path: The folder that holds `take.json`, or a clip that a shoot describes (see `description`).
         keyframes: The keyframe file; by default the take's own, usually `keyframes.json` in the folder.
         keyframes_required: Whether a take without a keyframe file is refused.
+        whole: Whether evidence that its description leaves aside is read too, and none at all is accepted.
 
     Raises:
         InputError: A file or field is missing or unusable; the sentence names it and what would be valid.
     """
-    return read_described(describe(path), keyframes, keyframes_required=keyframes_required)
+    return read_described(describe(path), keyframes, keyframes_required=keyframes_required, whole=whole)
 
 
 def read_described(
@@ -55,12 +66,22 @@ def read_described(
     *,
     keyframes_required: bool = True,
     fewest_keyframes: int = FEWEST_KEYFRAMES,
+    settings: ConversionSettings | None = None,
+    whole: bool = False,
 ) -> Take:
     """Read a take from its description; see `read_take`.
 
-    `fewest_keyframes` is the number that the keyframe file must hold; with 0 the take's own is not opened.
+    Args:
+        description: The description.
+        keyframes: As for `read_take`.
+        keyframes_required: As for `read_take`.
+        fewest_keyframes: Number that the keyframe file must hold; with 0 the take's own is not opened.
+        settings: Those that say which keypoints are read and which evidence is used; by default the take's.
+        whole: As for `read_take`.
     """
     fields = description.fields
+    settings = settings or description.settings
+    settings = replace(settings, evidence=None) if whole else settings
     if description.inherits:
         fields = _with_clip_fields(fields, description.clip)
     from_clip = description.inherits and not fields.has("frame_start")
@@ -77,10 +98,11 @@ def read_described(
             f"{posed}: no such file{named}; a take needs keyframes posed there, or a keyframe library to "
             'match, as in "library": "auto"'
         )
-    return Take(
+    fps = fields.number("fps", 1.0, 1000.0, "frames per second")
+    take = Take(
         folder=description.folder,
         clip=description.clip,
-        fps=fields.number("fps", 1.0, 1000.0, "frames per second"),
+        fps=fps,
         frame_start=frame_start,
         frame_count=frame_count,
         camera=camera,
@@ -89,13 +111,44 @@ def read_described(
         keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count, fewest_keyframes),
         described_in=description.file,
         title=description.name,
+        keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
     )
+    if whole:
+        return take
+    check_evidence(take, settings.evidence, _source_of_evidence(description, settings))
+    return take if settings.evidence is None else with_evidence(take, settings.evidence)
 
 
-def write_take(take: Take, folder: Path) -> None:
-    """Write a take that `read_take` reads back: `take.json`, `keyframes.json` and the clip.
+def _keypoints(
+    description: Description,
+    settings: ConversionSettings,
+    camera: Camera,
+    fps: float,
+    frame_start: int,
+    frame_count: int | None,
+) -> tuple[People, ...]:
+    files = keypoint_files(description, settings)
+    if not files:
+        return ()
+    if frame_count is None:  # detectors that number their files need not write one for every frame
+        frame_count = picture_count(description.clip, fps)
+    return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
 
-    Every file is written atomically; a clip that lies in the folder stays as it is.
+
+def _source_of_evidence(description: Description, settings: ConversionSettings) -> str:
+    said = settings.evidence == description.settings.evidence
+    return description.fields.source_of("evidence") if said else str(description.path)
+
+
+def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) -> None:
+    """Write a take that `read_take` reads back: `take.json`, `keyframes.json`, keypoints and the clip.
+
+    Every file is written atomically; a clip or keypoints that lie in the folder stay as they are.
+
+    Args:
+        take: The take.
+        folder: The folder, new or old.
+        evidence: The kinds of evidence that it is to be held against; None for whatever it has.
 
     Raises:
         InputError: The clip is a pattern of images outside the folder, which cannot be copied as one.
@@ -107,9 +160,15 @@ def write_take(take: Take, folder: Path) -> None:
         fields["frame_count"] = take.frame_count
     fields["clip"] = clip
     fields["camera"] = take.camera.to_dict()
-    fields["markers"] = {
-        style.name: {"segment": style.segment, "color_srgb": list(style.color_srgb)} for style in take.markers
-    }
+    if take.markers:
+        fields["markers"] = {
+            style.name: {"segment": style.segment, "color_srgb": list(style.color_srgb)}
+            for style in take.markers
+        }
+    if take.keypoints:
+        fields["keypoints"] = _write_keypoints(take, folder)
+    if evidence is not None:
+        fields["evidence"] = list(evidence)
     fields["actor"] = {"segments_m": dict(take.body.actor.segments_m)}
     if take.keyframes:
         write_keyframes(folder / "keyframes.json", take.keyframes, take.body, take.frame_start)
@@ -128,6 +187,29 @@ def _copy_clip(take: Take, folder: Path) -> str:
     copy = shutil.copytree if source.is_dir() else shutil.copyfile
     write_atomically(folder / source.name, lambda beside: copy(source, beside))
     return source.name
+
+
+def _write_keypoints(take: Take, folder: Path) -> list[str]:
+    """Write keypoints into `folder`, but for those that lie there; returns their paths within."""
+    names = [_name_within(people, folder) for people in take.keypoints]
+    ending, number = Path(KEYPOINT_FILE), 1
+    for index, people in enumerate(take.keypoints):
+        if names[index]:
+            continue
+        name = ending.name
+        while name in names:
+            number += 1
+            name = f"{ending.stem}{number}{ending.suffix}"
+        write_keypoints(folder / name, people, take.frame_start, take.fps)
+        names[index] = name
+    return names
+
+
+def _name_within(people: People, folder: Path) -> str:
+    """The path in `folder` of the file that keypoints were read from; empty where it lies elsewhere."""
+    source, within = Path(people.file).resolve(), folder.resolve()
+    there = people.file and source.exists() and source.is_relative_to(within)
+    return source.relative_to(within).as_posix() if there else ""
 
 
 def _with_clip_fields(fields: Fields, path: Path) -> Fields:
@@ -175,9 +257,12 @@ def _body(fields: Fields) -> Body:
 
 
 def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
-    markers = fields.child("markers", "an object of markers by name, each with color_srgb")
-    if not markers.values:
-        raise InputError(f"{markers.where} is empty; at least one marker is needed, better five")
+    """The markers; none where the field is absent or empty, as of a performer in any clothes."""
+    valid = "an object of markers by name, each with color_srgb"
+    mistyped = get_close_matches("markers", _names_of_objects(fields), n=1, cutoff=MISTYPED)
+    if not fields.has("markers") and not mistyped:
+        return ()
+    markers = fields.child("markers", valid)
     if len(markers.values) > MOST_MARKERS:
         raise InputError(
             f"{markers.where} has {len(markers.values)} markers; at most {MOST_MARKERS} are read"
@@ -192,6 +277,10 @@ def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
                 f"{list(style.color_srgb)}; each marker needs a color of its own"
             )
     return styles
+
+
+def _names_of_objects(fields: Fields) -> list[str]:
+    return [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
 
 
 def _marker(markers: Fields, name: str) -> MarkerStyle:

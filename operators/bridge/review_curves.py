@@ -39,8 +39,10 @@ class ReviewCurve:
 
 def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
     """Curves of a review: confidence, near-membership, reprojection error and the points' sigmas."""
-    compared = np.isfinite(review.reprojection_px)
-    total = np.where(compared, review.reprojection_px, 0.0).sum(axis=1)
+    believed = np.where(review.keypoints.thrown_out, np.nan, review.keypoints.distance_px)
+    distance = np.concatenate([review.reprojection_px, believed], axis=1)
+    compared = np.isfinite(distance)
+    total = np.where(compared, distance, 0.0).sum(axis=1)
     count = compared.sum(axis=1)
     reprojection = np.where(count > 0, total / np.maximum(count, 1), np.nan)
     curves = [
@@ -58,7 +60,8 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
         ),
         ReviewCurve(
             "Reprojection px",
-            "Mean distance between the markers seen and those predicted, in pixels of the footage",
+            "Mean distance between the markers and keypoints seen and those predicted, in pixels of the "
+            "footage",
             reprojection,
             10.0,
         ),

@@ -9,14 +9,17 @@ from math import floor
 
 import bpy
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ...core.arrays import Array
+from ...core.arrays import Array, IndexArray
 from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from .actions import assign_action
 from .object_space import evaluated
 
 Pose = dict[str, list[tuple[float, ...]]]
 """Values of all channels, by bone."""
+SAME_FRAME = 1e-3
+"""What a scene frame may lie below one of the clip and still show it [frames]."""
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
@@ -37,6 +40,18 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
     if is_variable_frame_rate(time_s):
         return np.asarray(first + time_s * rate)
     return np.asarray(first + np.arange(len(time_s), dtype=np.float64))
+
+
+def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
+    """Index of the clip's frame that Blender shows at scene frames; -1 before the clip and after it.
+
+    Args:
+        frames: (F,) scene frame of each frame of the clip.
+        at: (...) scene frames.
+    """
+    asked = np.asarray(at, dtype=np.float64)
+    index = np.searchsorted(frames, asked + SAME_FRAME, side="right") - 1
+    return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 
 @contextmanager

@@ -1,6 +1,5 @@
-"""Read a take from a scene: footage, camera, actor, markers and the animator's keyframes."""
+"""Read a take from a scene: footage, camera, actor, what is followed, and the animator's keyframes."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import bpy
@@ -8,14 +7,13 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ...core.errors import InputError
-from ...core.footage.marker_style import MarkerStyle
 from ...core.progress import Job, Progress
 from ...core.take.take import Take
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
 from .footage import Footage
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 
 READING = "Reading the footage's times"
@@ -45,7 +43,7 @@ def read_scene_take(
     footage: Footage,
     armature_object: bpy.types.Object,
     keyframe_action: bpy.types.Action | None,
-    markers: Sequence[MarkerStyle],
+    evidence: SceneEvidence,
     matches: Matches = NOT_MATCHED,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
     """Read a scene as core's take; the scene is as before afterwards.
@@ -54,7 +52,7 @@ def read_scene_take(
         footage: Clip and camera in their scene.
         armature_object: The actor.
         keyframe_action: The animator's keyframes; None for none.
-        markers: The performer's markers.
+        evidence: What is followed in the footage.
         matches: The matched keyframes, and what they were matched with.
 
     Yields:
@@ -67,8 +65,6 @@ def read_scene_take(
         InputError: Something is missing or unusable.
     """
     path = footage.path
-    if not markers:
-        raise InputError("there are no markers; add one for each colored sleeve the performer wears")
     frames = yield from clip_frames(footage)
     body = read_body(armature_object, HUMAN)
     take = Take(
@@ -79,8 +75,10 @@ def read_scene_take(
         frame_count=len(frames),
         camera=read_camera(footage, frames),
         body=body,
-        markers=tuple(markers),
+        markers=evidence.markers,
         keyframes=(),
+        keypoints=evidence.people(footage, frames),
+        contours=evidence.contours,
     )
     if keyframe_action is None:
         return take, ()

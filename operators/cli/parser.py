@@ -9,19 +9,21 @@ from .commands import COMMANDS
 from .usage import UsageError, program_name
 from .version import version
 
-DESCRIPTION = "Turns one video of a performer wearing colored markers into an animated armature."
+DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
 EXAMPLES = """\
 examples:
   {program} demo
   {program} convert takes/walk --output out/walk
   {program} convert takes/walk --output out/walk --keyframes posed.json --method ekf --json
   {program} convert takes/walk --output out/walk --library walking --floor 0
+  {program} convert takes/walk --output out/walk --keypoints pose.json --evidence keypoints,contours
   {program} new shoot
   {program} check shoot
   {program} batch shoot --output out --jobs 4
   {program} merge out --output library.blend
   {program} character anna.blend --output anna.json
   {program} retarget out/walk --character anna.blend --output out/anna_walk --format fbx
+  {program} detect shoot --detector 'python {{detectors}}/mediapipe_pose.py {{clip}} --output {{output}}'
   {program} propose takes/walk --count 12
   {program} library list
 

@@ -1,4 +1,4 @@
-"""Propose frames to pose, from the speed of the markers."""
+"""Propose frames to pose, from the speed of the performer in the footage."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -7,12 +7,15 @@ import bpy
 
 from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import all_colors, footage, idle, markers
+from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, reading_of
 from ..shell.takes import active_take, footage_of, take_by_identifier
+
+READ = 0.9
+"""Share of the job at which the clip is read."""
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
@@ -28,34 +31,42 @@ class Outcome:
     reading: "Reading"
     frames: tuple[int, ...]
     """Proposed scene frames."""
+    note: str
+    """What the speed was made from where neither markers nor keypoints tell it, for people; else empty."""
 
 
 class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
-    """Track the markers through the footage and propose the frames that are best posed"""
+    """Follow the performer through the footage and propose the frames that are best posed"""
 
     bl_idname = "keymark.propose_keyframes"
     bl_label = "Propose Keyframes"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, markers, all_colors, idle)
+    requirements = (footage, all_colors, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
         """Return the job; a clip that was read for these markers before is not read again."""
         from ...core.footage.read_clip import read_clip
         from ...core.footage.reading_key import of_same_footage, reading_key
+        from ...core.prior.evidence_speed import evidence_speed
         from ...core.prior.keyframe_proposals import propose_keyframes
-        from ...core.prior.marker_speed import marker_speed
+        from ..bridge.scene_performer import keypoints_without_keyframes
 
         take = active_take(scene)
-        identifier, count = take.identifier, take.keyframe_count or None
-        footage, styles, reading = footage_of(scene, take), marker_styles(take), reading_of(take)
+        identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
+        footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
+        styles = evidence.markers
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
         if reading is None or not of_same_footage(
             reading.key, reading_key(clip.path, clip.fps, styles, None)
         ):
-            reading = yield from within("Following the markers", read_clip(clip, styles), 0.0, 1.0)
-        chosen = propose_keyframes(marker_speed(reading.tracks), count)
+            reading = yield from within("Following the performer", read_clip(clip, styles), 0.0, READ)
+        segments = tuple(style.segment for style in styles)
+        keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
+        moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
+        speed = yield from within("Measuring the speed", moved, READ, 1.0)
+        chosen = propose_keyframes(speed.values, count)
         frames = scene_frames(reading.tracks.time_s, first, rate)[chosen]
-        return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames))
+        return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames), speed.note)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Store the proposals with the take, and cache the reading for the reconstruction."""
@@ -65,6 +76,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         for frame in result.frames:
             take.proposals.add().frame = frame
         say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
+        if result.note:
+            self.report({"WARNING"}, result.note[:1].upper() + result.note[1:])
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

@@ -1,3 +1,13 @@
-"""Step 2 beside the markers: keypoints of a detector, Blender's tracks and clicked points."""
+"""Step 2, what to follow: keypoints of a detector, Blender's tracks, clicked points, contours; the panels."""
 
-MODULES = ()
+PROPERTIES = ("properties",)
+MODULES = (
+    "detect_keypoints",
+    "load_keypoints",
+    "remove_keypoints",
+    "click_point",
+    "remove_clicks",
+    "click_performer",
+    "assign_track",
+    "panel",
+)

@@ -1,4 +1,4 @@
-"""Step 2, the markers: garments in strong colors, picked from the footage and checked in it."""
+"""Step 2, what to follow, and the markers: garments in strong colors, picked from the footage and checked."""
 
 PROPERTIES = ("properties",)
 MODULES = (
@@ -8,5 +8,6 @@ MODULES = (
     "check_markers",
     "pick_marker_color",
     "show_masks",
+    "follow_panel",
     "panel",
 )

@@ -1,10 +1,12 @@
-"""The panel of step 2, the markers, in the sidebars of the 3D viewport and of the Movie Clip editor."""
+"""The markers in step 2, in the sidebars of the 3D viewport and of the Movie Clip editor."""
 
 import bpy
 
+from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
 from ..shell.messages import label
-from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
-from ..shell.takes import active_take, find_take
+from ..shell.panel import RowList, draw_progress, draw_sentence
+from ..shell.takes import active_take
+from .frame_markers import markers_label
 
 LABEL_SHARE = 0.4
 """Share of the width that Blender gives to the labels of its two columns."""
@@ -33,35 +35,35 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
             status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")
 
 
-class KEYMARK_PT_markers(TakePanel, bpy.types.Panel):
+class Markers:
+    """Mixin of the panels: a switch in the header, how many are seen in this frame, and the list."""
+
+    layout: bpy.types.UILayout
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw the switch."""
+        draw_switch(self.layout, context, "use_markers")
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draw what is seen in this frame."""
+        draw_readout(self.layout, markers_label(active_take(context.scene)))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the list and the active marker."""
+        self.layout.active = active_take(context.scene).follow.use_markers
+        draw_markers(self.layout, context)
+
+
+class KEYMARK_PT_markers(Markers, FollowPanel, bpy.types.Panel):
     """The list of markers, and the active one."""
 
     bl_label = "Markers"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list and the active marker."""
-        draw_markers(self.layout, context)
 
-
-class KEYMARK_PT_clip_markers(bpy.types.Panel):
+class KEYMARK_PT_clip_markers(Markers, ClipFollowPanel, bpy.types.Panel):
     """The same in the Movie Clip editor."""
 
     bl_label = "Markers"
-    bl_space_type = "CLIP_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Keymark"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a take."""
-        return find_take(context.scene) is not None
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the markers."""
-        take = active_take(context.scene)
-        if context.space_data.clip != take.clip:
-            self.layout.label(text="The editor shows another clip", icon="INFO")
-        draw_markers(self.layout, context)
 
 
 def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -8,10 +8,11 @@ import bpy
 from ...core.library.texts import EVERY_LIBRARY
 from ...core.progress import stretch
 from ..bridge.scene_frames import scene_frames
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
+from ..keypoints.requirements import points_to_follow
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_colors, camera, footage, idle, markers
+from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 from .matches import known_matches
@@ -31,7 +32,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.match_library"
     bl_label = "Match Library"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, camera, actor, markers, all_colors, idle)
+    requirements = (footage, camera, actor, points_to_follow, all_colors, idle)
 
     library: bpy.props.StringProperty(
         name="Library",
@@ -74,7 +75,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
             footage_of(scene, settings),
             settings.armature,
             settings.keyframe_action,
-            marker_styles(settings),
+            scene_evidence(settings),
             known_matches(settings),
         )
         whole, notes = yield from stretch(reading_scene, 0.0, TIMES)

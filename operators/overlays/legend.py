@@ -6,10 +6,26 @@ from functools import lru_cache
 import bpy
 import numpy as np
 
+from ...core.arrays import Array
 from .drawing import text_size
 from .figures import circles, dashes, diamonds, segments
+from .keypoint_marks import SLANTING, UPRIGHT
 from .picture import Fill, Item, Label, Stroke
-from .style import CORE, CORE_SHARE, DASH, DIAMOND, DOT, GAP, JOINT, LEFT, MIDDLE, RIGHT, Style
+from .style import (
+    CORE,
+    CORE_SHARE,
+    DASH,
+    DIAMOND,
+    DOT,
+    GAP,
+    JOINT,
+    LEFT,
+    MIDDLE,
+    RIGHT,
+    SOURCES,
+    THROWN_OUT,
+    Style,
+)
 
 GROUND = (0.0, 0.0, 0.0, 0.35)
 DOTS = 3
@@ -34,7 +50,17 @@ class Sample(Enum):
     RIGHT = "right"
     RING = "ring"
     DIAMOND = "diamond"
+    SOURCE_1 = "first source"
+    SOURCE_2 = "second source"
+    SOURCE_3 = "third source"
+    SOURCE_4 = "fourth source"
+    EXPECTED = "expected"
+    THROWN_OUT = "thrown out"
+    SWAPPED = "swapped"
 
+
+SOURCE_SAMPLES = (Sample.SOURCE_1, Sample.SOURCE_2, Sample.SOURCE_3, Sample.SOURCE_4)
+"""Samples of keypoints by the order of their sources."""
 
 Row = tuple[Sample, str]
 
@@ -80,9 +106,11 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
         return (
             [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), CORE_SHARE * THICK)]
         )
-    if sample is Sample.RING:
+    if sample in (Sample.RING, Sample.EXPECTED):
         rim = segments(circles(middle, JOINT * style.scale, 16), closed=True)
         return [Stroke(rim, color, THIN, style.halo)]
+    if sample in (*SOURCE_SAMPLES, Sample.THROWN_OUT, Sample.SWAPPED):
+        return _keypoint_sample(sample, middle[0], style)
     if sample is Sample.DIAMOND:
         marks = diamonds(middle, DIAMOND * style.scale)
         return [Stroke(segments(marks, closed=True), color, THIN, style.halo), Fill(marks, color)]
@@ -94,6 +122,18 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
     if sample in (Sample.PAST, Sample.FUTURE):
         dots = np.linspace(line[0], line[1], DOTS + 2)[1:-1]
         items.append(Fill(circles(dots, (DOT + 1.0) * style.scale, 8), color))
+    return items
+
+
+def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
+    color = style.color(THROWN_OUT if sample is Sample.THROWN_OUT else MIDDLE)
+    if sample in SOURCE_SAMPLES:
+        color = style.color(SOURCES[SOURCE_SAMPLES.index(sample)])
+    arms = JOINT * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
+    items: list[Item] = [Stroke(middle + np.stack([-arms, arms], axis=1), color, THIN, style.halo)]
+    if sample is Sample.SWAPPED:
+        square = circles(middle[None], 1.4 * JOINT * style.scale, 4)
+        items.append(Stroke(segments(square, closed=True), color, THIN, style.halo))
     return items
 
 

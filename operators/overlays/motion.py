@@ -7,11 +7,14 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array, IndexArray
+from ..keypoints.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView
 from ..shell.messages import label
 from ..shell.results import review_of
 from ..shell.takes import find_take
 from . import drawing
+from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
+from .keypoint_rows import keypoint_rows
 from .legend import Row, Sample, corner, legend
 from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_outlines
 from .paths import paths, window
@@ -76,11 +79,16 @@ def picture(
         items += _paths(what, view, settings, style)
     if view.footage is not None:
         items += _outlines(what, view.footage, settings, style)
+    seen = _seen(what) if view.footage is not None and settings.show_keypoints else ()
     if settings.show_skeleton:
         (positions,) = view.point_positions(what.review, np.array([what.index]))
         items += skeleton(what.review, what.index, positions, meter, settings.uncertain_beyond, style)
+    if view.footage is not None and settings.show_keypoints:
+        sources, to_region = all_sources(what.review.keypoints, seen), view.footage.to_region
+        items += compared_marks(what.review.keypoints, what.index, to_region, sources, style)
+        items += seen_marks(seen, to_region, sources, style)
     if settings.show_legend:
-        rows = _rows(what, view, settings)
+        rows = _rows(what, view, settings, seen)
         items += legend(rows, *corner(context.area, context.region, scale), style)
     return items
 
@@ -98,6 +106,12 @@ def _outlines(
     return items
 
 
+def _seen(what: Shown) -> tuple[FrameKeypoints, ...]:
+    """Keypoints of the frame that the motion was not held against."""
+    frame = round(float(what.review.frames[what.index]))
+    return not_yet_compared(keypoints_at(what.take, frame), what.review.keypoints, what.index)
+
+
 def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, style: Style) -> list[Item]:
     review = what.review
     frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
@@ -107,10 +121,14 @@ def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, sty
     return paths(names, positions, frames, what.index, review.keyframe_indices, style)
 
 
-def _rows(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup) -> tuple[Row, ...]:
+def _rows(
+    what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, seen: tuple[FrameKeypoints, ...]
+) -> tuple[Row, ...]:
     """Rows of the legend, for drawn items only."""
     rows: list[Row] = []
-    if view.footage is not None:
+    if view.footage is not None and settings.show_keypoints:
+        rows += keypoint_rows(what.review.keypoints, what.index, seen)
+    if view.footage is not None and what.review.marker_names:
         if settings.show_observed:
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:

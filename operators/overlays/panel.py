@@ -21,6 +21,7 @@ def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None
     column = layout.column(heading="Show")
     column.prop(settings, "show_observed")
     column.prop(settings, "show_predicted")
+    column.prop(settings, "show_keypoints")
     column.prop(settings, "show_skeleton")
     column.prop(settings, "show_legend")
     column = layout.column()

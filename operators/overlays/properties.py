@@ -27,6 +27,13 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
+    show_keypoints: bpy.props.BoolProperty(
+        name="Keypoints",
+        description="Mark each keypoint with a cross where it is seen, with a ring where the motion puts it; "
+        "a slanting cross is not believed, one in a square was seen on the other side of the body",
+        default=True,
+        update=_changed,
+    )
     show_skeleton: bpy.props.BoolProperty(
         name="Skeleton",
         description="Draw the body: left limbs solid, right ones hollow, uncertain points as rings",
@@ -41,7 +48,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_legend: bpy.props.BoolProperty(
         name="Legend",
-        description="Explain the lines in a corner, and name the hidden markers",
+        description="Explain lines and marks in a corner, and name the hidden markers",
         default=True,
         update=_changed,
     )

@@ -33,6 +33,8 @@ class Overlay:
 OVERLAYS = (
     Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
+    Overlay("Keypoints in the Viewport", "keypoints", "SpaceView3D"),
+    Overlay("Keypoints in the Clip Editor", "keypoints", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
     Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),

@@ -15,6 +15,15 @@ MIDDLE: Color = (0.92, 0.92, 0.92, 1.0)
 CORE: Color = (0.08, 0.08, 0.08, 1.0)
 """Color of the core of a hollow line."""
 SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
+SOURCES: tuple[Color, ...] = (
+    (0.90, 0.55, 0.78, 1.0),
+    (0.94, 0.89, 0.26, 1.0),
+    (0.20, 0.80, 0.62, 1.0),
+    (0.72, 0.62, 0.98, 1.0),
+)
+"""Colors of keypoints by their source: purple, yellow, green and violet, none of them a side's."""
+THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)
+"""Color of keypoints that are not believed."""
 DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
 CORE_SHARE = 0.45

@@ -1,4 +1,4 @@
-"""Overlay of Timeline and Dope Sheet: marker speed, proposed and matched keyframes, confidence."""
+"""Overlay of Timeline and Dope Sheet: speed in the footage, proposed and matched keyframes, confidence."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -168,7 +168,7 @@ def relative(speed: Array) -> Array:
 
 
 def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
-    """The sum of the markers' speeds as a translucent graph."""
+    """The sum of the speeds of what is followed as a translucent graph."""
     x = timeline.frame_x(frames)
     shown = in_view(x, timeline.width)
     x, values = joined(x[shown], relative(speed)[shown], lowest=False)
@@ -177,7 +177,7 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     line, area = graph(x, values, timeline.floor, timeline.height)
     items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
     if timeline.sizes == ROOMY:
-        words = label("Speed of markers")
+        words = label("Speed in the footage")
         items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
     return items
 
@@ -259,7 +259,7 @@ def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | Non
     from ...core.prior.marker_speed import marker_speed
 
     reading, review = reading_of(take), review_of(take)
-    if reading is not None and take.clip is not None:
+    if reading is not None and reading.tracks.visible.any() and take.clip is not None:
         footage = footage_of(scene, take)
         key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
 

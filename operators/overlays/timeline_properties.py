@@ -14,7 +14,7 @@ class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
 
     show_speed: bpy.props.BoolProperty(
         name="Speed",
-        description="Graph of the markers' speed in the footage; good keyframes lie where it is low",
+        description="Graph of the speeds of what is followed; good keyframes lie where it is low",
         default=True,
         update=_changed,
     )

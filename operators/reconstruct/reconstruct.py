@@ -7,11 +7,12 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..bridge.scene_frames import scene_frames
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
+from ..keypoints.requirements import anything_to_follow
 from ..matching.matches import known_matches
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, all_colors, footage, idle, markers, two_keyframes
+from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
 from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
 
@@ -29,7 +30,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
     bl_idname = "keymark.reconstruct"
     bl_label = "Reconstruct"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, actor, markers, all_colors, two_keyframes, idle)
+    requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
     preview: Any = None
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
@@ -49,7 +50,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             footage_of(scene, settings),
             armature,
             settings.keyframe_action,
-            marker_styles(settings),
+            scene_evidence(settings),
             known_matches(settings),
         )
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..markers.properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel
@@ -20,14 +21,20 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
         number.ui_units_x = 2.2
         number.label(text=f"{item.frame:g}")
         reason = item.bl_rna.properties["reason"].enum_items[item.reason]
-        words = label(reason.name)
-        row.label(text=f"{words}: {item.marker}" if item.marker else words, icon=reason.icon, translate=False)
+        row.label(text=reason_words(item), icon=reason.icon, translate=False)
         worth = row.row()
         worth.ui_units_x = 2.0
         if is_posed(active_take(context.scene), item.frame):
             worth.label(text="", icon="KEYTYPE_KEYFRAME_VEC")
         else:
             worth.progress(factor=item.strength, text="", type="BAR")
+
+
+def reason_words(item: bpy.types.PropertyGroup) -> str:
+    """The reason of a weak frame, with the marker or the body point that it lies with."""
+    words = label(item.bl_rna.properties["reason"].enum_items[item.reason].name)
+    what = item.marker or (item.point and segment_title(item.point))
+    return f"{words}: {what}" if what else words
 
 
 class KEYMARK_PT_review(TakePanel, bpy.types.Panel):

@@ -3,10 +3,16 @@
 import bpy
 
 REASONS = (
-    ("HIDDEN", "Hidden", "A marker is hidden around this frame", "HIDE_ON", 0),
+    ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
     ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    ("FOOTAGE", "Off Footage", "A marker is not where the motion puts it", "TRACKER", 3),
+    (
+        "FOOTAGE",
+        "Off Footage",
+        "A marker or a keypoint is not where the motion puts it",
+        "TRACKER",
+        3,
+    ),
 )
 
 
@@ -24,6 +30,9 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
         name="Reason", description="Reason why a keyframe helps here", items=REASONS
     )
     marker: bpy.props.StringProperty(name="Marker", description="Marker that is the reason, if any")
+    point: bpy.props.StringProperty(
+        name="Body Point", description="Body point whose keypoints are the reason, if any"
+    )
     strength: bpy.props.FloatProperty(
         name="Worth",
         description="Worth of a keyframe here, relative to the worst frame's",

@@ -60,10 +60,11 @@ def picked_color(context: bpy.types.Context) -> str | None:
 
 
 def all_colors(context: bpy.types.Context) -> str | None:
-    """Every marker has a color."""
+    """Every marker that is followed has a color."""
     take = find_take(context.scene)
-    picked = take is not None and all(marker.is_picked for marker in take.markers)
-    return None if picked else "Pick the colors of all markers first, or remove those that have none"
+    if take is None or not take.follow.use_markers or all(marker.is_picked for marker in take.markers):
+        return None
+    return "Pick the colors of all markers first, or remove those that have none"
 
 
 def keyframes(context: bpy.types.Context) -> str | None:

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..keypoints.evidence import has_contours, has_keypoints
 from ..matching.matches import state_of
 from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
 
@@ -14,11 +15,15 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: load the footage"
     if take.clip_state.missing:
         return "Next: find the clip's file"
-    if not len(take.markers):
-        return "Next: add the markers"
-    if any(not marker.is_picked for marker in take.markers):
+    follow = take.follow
+    if follow.use_markers and any(not marker.is_picked for marker in take.markers):
         return "Next: pick the markers' colors"
-    if take.armature is None or take.armature.name not in take.id_data.objects:
+    has_actor = take.armature is not None and take.armature.name in take.id_data.objects
+    followed = (follow.use_markers and len(take.markers)) or has_keypoints(take)
+    # Contours need nothing to be done: whoever goes on to the actor follows these alone.
+    if not followed and not (has_actor and has_contours(take)):
+        return "Next: choose what to follow"
+    if not has_actor:
         return "Next: build the actor"
     if not len(take.proposals) and not keyframes_of(take):
         return "Next: match a library, or pose"

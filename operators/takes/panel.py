@@ -11,7 +11,7 @@ from .upgrade import is_newer
 
 STEPS = (
     ("FILE_MOVIE", "Footage: load the clip, or open a take"),
-    ("EYEDROPPER", "Markers: pick each sleeve's color in the footage"),
+    ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
     ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
     ("KEY_HLT", "Keyframes: match a library, or pose the actor"),
     ("ARMATURE_DATA", "Reconstruct: find every frame in between"),

@@ -6,21 +6,21 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
-from ..shell.requirements import actor, footage, idle, markers
+from ..shell.requirements import actor, footage, idle
 from ..shell.takes import active_take, footage_of
 
 
 class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
-    """Save footage, camera, actor, markers and keyframes as a take folder, to convert it elsewhere"""
+    """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
 
     bl_idname = "keymark.save_take"
     bl_label = "Save Take"
     bl_options = {"REGISTER"}
-    requirements = (footage, actor, markers, idle)
+    requirements = (footage, actor, idle)
 
     directory: bpy.props.StringProperty(
         name="Folder",
@@ -37,6 +37,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Read the take from the scene and write the folder."""
         from ...core.shoot.discovery.take_path import check_hides_no_take
+        from ...core.take.evidence import evidence_of
         from ...core.take.take_file import write_take
         from ..bridge.take_from_scene import read_scene_take
 
@@ -48,14 +49,16 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
                 footage_of(context.scene, scene_take),
                 scene_take.armature,
                 scene_take.keyframe_action,
-                marker_styles(scene_take),
+                scene_evidence(scene_take),
                 known_matches(scene_take),
             )
         )
         folder = Path(bpy.path.abspath(self.directory))
         check_hides_no_take(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        write_take(take, folder)
+        has = evidence_of(take)
+        # A camera that stands still brings contours, unless the take says that they are not followed.
+        write_take(take, folder, has if has and not take.contours else None)
         for note in notes:
             self.report({"WARNING"}, note)
         say(self, "INFO", "Saved the take in {folder}", folder=folder)

@@ -8,14 +8,17 @@ import bpy
 from ...core.arrays import Array
 from ...core.take.clip_check import check_frame_count, open_clip
 from ...core.take.clip_notes import rate_note
+from ...core.take.description import describe
+from ...core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from ...core.take.take import Take
-from ...core.take.take_file import read_take
+from ...core.take.take_file import read_described
 from ..actor.take_actor import add_actor
 from ..bridge.actions import assign_action
 from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
+from ..keypoints.keypoint_paths import add_keypoint_file
 from ..markers.marker_styles import set_marker_color
 from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
@@ -29,6 +32,8 @@ class OpenedTake:
     take: Take
     time_s: Array
     """(F,) time of each frame [s]."""
+    kinds: tuple[str, ...]
+    """The kinds of evidence that it is held against; it may have more."""
     notes: tuple[str, ...]
     """Sentences to report."""
 
@@ -44,16 +49,20 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
         InputError: The take or its clip is unusable.
     """
     usual = keyframe_file == "keyframes.json"
-    take = read_take(folder, None if usual else folder / keyframe_file, keyframes_required=not usual)
+    description = describe(folder)
+    keyframes = None if usual else folder / keyframe_file
+    take = read_described(description, keyframes, keyframes_required=not usual, whole=True)
     clip = open_clip(take)
     time_s = clip.time_stamps()
     check_frame_count(take, len(time_s))
     rate = rate_note(take, clip)
-    return OpenedTake(take, time_s, (*take.notes, *([rate] if rate else [])))
+    notes = (*take.notes, *(note for people in take.keypoints for note in people.notes))
+    kinds = description.settings.evidence or EVIDENCE
+    return OpenedTake(take, time_s, kinds, (*notes, *([rate] if rate else [])))
 
 
 def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:
-    """Add a take to the scene: footage, camera, actor, markers, keyframes; returns the armature object.
+    """Add a take to the scene: footage, camera, actor, what is followed, keyframes; returns the armature.
 
     Raises:
         InputError: Blender cannot read the clip; the scene is unchanged.
@@ -66,10 +75,7 @@ def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.typ
     settings.camera, settings.clip = camera_object, scene.active_clip
     armature_object = add_actor(context, settings, take.body)
     settings.stature = take.body.actor.stature_m
-    for style in take.markers:
-        marker = settings.markers.add()
-        marker.name, marker.segment = style.name, style.segment
-        set_marker_color(marker, style.color_srgb)
+    _add_evidence(settings, opened)
     if take.keyframes:
         action = settings.keyframe_action = new_keyframe_action(armature_object)
         write_keyframes(armature_object, action, take.keyframes, frames)
@@ -81,3 +87,17 @@ def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.typ
             add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
     scene.frame_set(scene.frame_start)
     return armature_object
+
+
+def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None:
+    """Add markers and keypoint files, and set the switches."""
+    for style in opened.take.markers:
+        marker = settings.markers.add()
+        marker.name, marker.segment = style.name, style.segment
+        set_marker_color(marker, style.color_srgb)
+    for people in opened.take.keypoints:
+        if people.file:
+            add_keypoint_file(settings, Path(people.file))
+    follow, kinds = settings.follow, opened.kinds
+    follow.use_markers, follow.use_keypoints = MARKERS in kinds, KEYPOINTS in kinds
+    follow.use_depth_hints, follow.use_contours = DEPTH_HINTS in kinds, CONTOURS in kinds

@@ -87,6 +87,24 @@ const JOB_TYPE = {
             description: "File of a keyframe library to match takes with, in place of the one above",
         },
         {
+            key: "keypoints",
+            type: "string",
+            default: "",
+            label: "Keypoint File",
+            description:
+                "Name that the file of keypoints has in every take for which no file of the shoot names one. Empty: " +
+                "keypoints.json where it is there",
+        },
+        {
+            key: "evidence",
+            type: "string",
+            default: "",
+            label: "Evidence",
+            description:
+                "What motions are held against where no file of the shoot says it: one or more of markers, keypoints, " +
+                "depth_hints, contours, with commas between. Empty: whatever a take has",
+        },
+        {
             key: "merge",
             type: "bool",
             default: true,
@@ -208,6 +226,11 @@ function convertTask(settings, shoot, output, part, count) {
         words.push("--library", own);
     } else if (settings.library && settings.library !== AS_TAKES_SAY) {
         words.push("--library", settings.library);
+    }
+    for (const option of ["keypoints", "evidence"]) {
+        if (settings[option]) {
+            words.push(`--${option}`, settings[option]);
+        }
     }
     return keymarkTask(`convert-${`${part}`.padStart(digits, "0")}`, settings, words);
 }

@@ -17,6 +17,7 @@ DEMONSTRATION = Described(
     side=look_at((4.35, -0.25, 1.25), (0.1, -0.15, 1.03), 47.0, SMALL),
     keyframes=tuple(frame - 1 for frame in (1, 9, 16, 24, 31, 43, 54, 67, 81, 95, 107, 118)),
     postures=True,
+    detected=True,
     samples=3,
 )
 """Its keyframes are an animator's choice: ends of movements, and midpoints where these are far apart."""

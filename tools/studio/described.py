@@ -60,6 +60,8 @@ class Described:
     """Quality of the encoding, one of Blender's constants."""
     side: Camera | None = None
     """A second camera, for reference only."""
+    detected: bool = False
+    """Whether the studio's detector looks at it too; take.json then names the other evidence as its own."""
     shadow_per_height: tuple[float, float, float] = SHADOW_CLOSE_BY
     """Offset of a point's shadow on the floor, per meter of height."""
 

@@ -24,6 +24,7 @@ from .contours import ContourTerm
 from .depths import DepthTerm
 from .ground import GroundTerm
 from .joint_limits import LimitTerm
+from .keypoints import KeypointTerm
 from .quadratic import QuadraticBuilder, QuadraticTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .smoothness import SmoothnessTerm
@@ -65,6 +66,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
         LimitTerm(),
         StillnessTerm(clip.camera, ankles, step_s),
     ]
+    if evidence.keypoints.model.names:
+        terms.append(_keypoint_term(clip, window, step_s))
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
@@ -110,6 +113,12 @@ def frame_terms(
 def _ankles(body: Body) -> tuple[int, ...]:
     """Indices of the ankles among the principal points."""
     return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
+
+
+def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> KeypointTerm:
+    evidence = clip.evidence.keypoints
+    kept = np.exp(-step_s / evidence.memory_s)[:, None]
+    return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
 
 
 def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:

@@ -24,6 +24,8 @@ class Keypoints:
     hint_m: Array
     """(F, N, 3) a network's guess of the points in space [m]: x right, y down, z away from the camera, origin
     between the hips; NaN where there is none."""
+    notes: tuple[str, ...] = ()
+    """Sentences on who of several people was taken, and on what the sources' files leave open."""
 
     def __post_init__(self) -> None:
         """Check names and shapes and keep own, read-only copies.
@@ -62,6 +64,7 @@ class Keypoints:
             np.concatenate([part.pixel for part in parts], axis=1),
             np.concatenate([part.score for part in parts], axis=1),
             np.concatenate([part.hint_m for part in parts], axis=1),
+            tuple(note for part in parts for note in part.notes),
         )
 
     @property

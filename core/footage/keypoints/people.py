@@ -33,6 +33,10 @@ class People:
     """Those of each frame of the clip, none or several."""
     file: str = ""
     """The file they were read from, for sentences; empty where there is none."""
+    by_hand: bool = False
+    """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
+    notes: tuple[str, ...] = ()
+    """Sentences on what was taken for granted or mended."""
 
     @property
     def most_people(self) -> int:

@@ -5,6 +5,7 @@ from pathlib import Path, PurePosixPath
 
 from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
+from ...take.used_evidence import UsedEvidence
 from ...text import pluralize
 from ..film_strip import PICTURES as STRIP_FRAMES
 from ..film_strip import SIZE as STRIP_SIZE
@@ -15,6 +16,8 @@ from .verdict import Verdict, current_record, verdict
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12
 """Weak frames and notes shown; `conversion.json` has all."""
+MOST_SOURCES = 3
+"""Sources of keypoints named."""
 SIGNS = {
     Verdict.FAILED: "✕",
     Verdict.POOR: "○",
@@ -90,7 +93,16 @@ def _made_from(record: ConversionRecord) -> str:
     counts = [f"{count} {word}" for count, word in ((posed, "posed"), (matched, "matched")) if count]
     keyframes = "keyframe" if len(record.keyframes) == 1 else "keyframes"
     library = "" if record.library is None else f", library {isolated(record.library)}"
-    return f"{' and '.join(counts) or 'no'} {keyframes}{library}, method {escaped(record.method)}"
+    evidence = "" if record.evidence is None else f"{_evidence(record.evidence)}; "
+    return f"{evidence}{' and '.join(counts) or 'no'} {keyframes}{library}, method {escaped(record.method)}"
+
+
+def _evidence(evidence: UsedEvidence) -> str:
+    """What a take was held against, with the names of the sources of its keypoints."""
+    sources = [isolated(said.source) for said in evidence.keypoints[:MOST_SOURCES]]
+    more = len(evidence.keypoints) - len(sources)
+    named = f" (keypoints: {', '.join(sources)}{f' and {more} more' if more else ''})" if sources else ""
+    return f"{evidence.words}{named}"
 
 
 def _confidence(record: ConversionRecord, found: Verdict) -> str:

@@ -3,14 +3,20 @@
 Measured on one processor of 2023 with clips of 320 x 240 to 1280 x 720; another may take half or twice.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from ...library.texts import EVERY_LIBRARY
+from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 
 SECONDS_A_TAKE = 0.9
 """Writing Blender's files and drawing pictures."""
 SECONDS_A_FRAME = {"map": 0.010, "ekf": 0.004, "interpolation": 0.002}
 """By method, without reading the frame."""
+SECONDS_FOR_KEYPOINTS = 0.001
+"""A frame."""
+SECONDS_FOR_WIDE_CONTOURS = 0.025
+"""A frame whose contours are searched far and wide, for there is no marker to begin from."""
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_MATCH = 0.02
@@ -31,7 +37,13 @@ class CostEstimate:
     """Size of the files written."""
 
 
-def estimate_cost(frames: int, size: tuple[int, int], method: str, library: str | None) -> CostEstimate:
+def estimate_cost(
+    frames: int,
+    size: tuple[int, int],
+    method: str,
+    library: str | None,
+    evidence: Collection[str] = (MARKERS,),
+) -> CostEstimate:
     """Estimate the cost of converting a take.
 
     Args:
@@ -39,8 +51,12 @@ def estimate_cost(frames: int, size: tuple[int, int], method: str, library: str 
         size: Width and height of the clip [px].
         method: One of `METHODS`.
         library: The library it is matched with, or None.
+        evidence: Kinds of evidence that it is held against.
     """
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
+    if method == "map":
+        a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
+        a_frame += SECONDS_FOR_WIDE_CONTOURS * (CONTOURS in evidence and MARKERS not in evidence)
     if library is not None:
         a_frame += SECONDS_TO_CHOOSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)

@@ -65,7 +65,7 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
         findings: Receives the sentences.
 
     Returns:
-        How well each marker is seen; empty where no frame can be read.
+        How well each marker is seen; empty where there is none, or no frame can be read.
     """
     with findings.catching():
         check_size(take, clip)
@@ -78,6 +78,8 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     if samples is None:
         return ()
     dark = _check_light(samples, findings)
+    if not take.markers:
+        return ()
     check = _find_markers(take, samples, frames, findings)
     missing = _missing_markers(check, samples)
     if len(missing) == len(take.markers) > 1:

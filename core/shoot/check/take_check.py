@@ -1,8 +1,9 @@
-"""The check of one take before it is converted: description, clip, keyframes, markers, cost."""
+"""The check of one take before it is converted: description, clip, keyframes, evidence, cost."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...matching.match_take import take_to_match
@@ -10,6 +11,8 @@ from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ...take.description import Description
+from ...take.evidence import evidence_of
+from ...take.evidence_kinds import CONTOURS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
@@ -18,7 +21,13 @@ from .cost_estimate import CostEstimate, estimate_cost
 from .findings import Findings
 from .footage_check import check_footage, count_frames
 from .keyframe_check import check_keyframes
+from .keypoint_check import KeypointReadout, check_keypoints
 from .unfilled_fields import find_unfilled_fields
+
+CONTOURS_ALONE = (
+    "held against contours alone, which tell least of all evidence; keypoints of a detector, as of keymark "
+    "detect, or garments in strong colors tell more"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +44,10 @@ class TakeCheck:
     """Width and height of the clip [px]; None where it cannot be opened."""
     fps: float | None = None
     frames: int | None = None
+    evidence: tuple[str, ...] = ()
+    """Kinds of evidence that it would be held against."""
     markers: tuple[MarkerReadout, ...] = ()
+    keypoints: tuple[KeypointReadout, ...] = ()
     keyframes: int = 0
     """Keyframes that a person posed."""
     library: str | None = None
@@ -84,20 +96,30 @@ def check_take(
     frames = None if clip is None else count_frames(clip, findings)
     take = None if missing or clip is None else _read(description, settings, findings)
     markers: tuple[MarkerReadout, ...] = ()
+    keypoints: tuple[KeypointReadout, ...] = ()
     if take is not None and clip is not None and frames is not None:
+        with findings.catching():
+            check_method(take, settings.method or METHODS[0])
         check_keyframes(take, frames, settings.library is not None, findings)
+        keypoints = check_keypoints(take, frames, findings)
         markers = check_footage(take, clip, frames, findings)
-    return _checked(found.name, findings, clip, frames, take, markers, settings)
+        if evidence_of(take) == (CONTOURS,) and not findings.problems:
+            findings.warn(CONTOURS_ALONE)
+    check = _checked(found.name, findings, clip, frames, take, settings)
+    return replace(check, markers=markers, keypoints=keypoints)
 
 
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
-    """Read the take as its conversion will; without keyframes where these are unusable."""
+    """Read the take as its conversion will; without keyframes and keypoints where one is unusable."""
     with findings.catching():
         if settings.library is None:
-            return read_described(description, settings.keyframes)
-        return take_to_match(description, settings.keyframes)
+            return read_described(description, settings.keyframes, settings=settings)
+        return take_to_match(description, settings.keyframes, settings)
     with findings.catching():
-        return read_described(description, keyframes_required=False, fewest_keyframes=0)
+        without = replace(settings, keypoints=())
+        return read_described(
+            description, keyframes_required=False, fewest_keyframes=0, settings=without, whole=True
+        )
     return None
 
 
@@ -107,12 +129,11 @@ def _checked(
     clip: Clip | None,
     frames: int | None,
     take: Take | None,
-    markers: tuple[MarkerReadout, ...],
     settings: ConversionSettings,
 ) -> TakeCheck:
-    cost = None
+    cost, evidence = None, () if take is None else evidence_of(take)
     if clip is not None and frames is not None and not findings.problems:
-        cost = estimate_cost(frames, clip.size, settings.method or METHODS[0], settings.library)
+        cost = estimate_cost(frames, clip.size, settings.method or METHODS[0], settings.library, evidence)
     fps = None if take is None else take.fps
     return TakeCheck(
         name=name,
@@ -121,7 +142,7 @@ def _checked(
         size=None if clip is None else clip.size,
         fps=clip.fps if clip is not None and clip.knows_its_rate else fps,
         frames=frames,
-        markers=markers,
+        evidence=evidence,
         keyframes=0 if take is None else len(take.keyframes),
         library=settings.library,
         cost=cost,

@@ -1,8 +1,8 @@
-"""A survey of undescribed clips: sizes, rates, keyframes and strong colors."""
+"""A survey of undescribed clips: sizes, rates, keyframes, keypoints and strong colors."""
 
 from collections import Counter
-from collections.abc import Generator
-from dataclasses import dataclass
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
 
 from ...arrays import Image
 from ...errors import InputError
@@ -10,13 +10,18 @@ from ...footage.clips.clip import Clip
 from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.colors.strong_colors import StrongColor, strong_colors
 from ...progress import run
-from ...take.description import KEYFRAME_FILE, TAKE_FILE, sidecar_file
+from ...take.description import KEYFRAME_FILE, KEYPOINT_FILE, TAKE_FILE, sidecar_file
+from ...take.evidence_kinds import KEYPOINTS, MARKERS
 from ..shoot import Shoot, ShootTake
 
-COLORED_CLIPS = 6
-"""Clips that are sampled for colors; they share one performer."""
+COLORED_CLIPS = 48
+"""Clips that are sampled for colors at most: a few of every day, of all performers."""
 COLORED_FRAMES = 4
 """Sampled frames of each."""
+LISTED_CLIPS = 6
+"""Clips whose colors are listed together."""
+GARMENT_HUES = 4
+"""Strong hues that five garments show at least; plain clothes, skin and a room seldom have as many."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,16 @@ class SurveyedClip:
     """Number of frames that the file claims."""
     posed: bool
     """Whether it has a keyframe file."""
+    detected: bool = False
+    """Whether it has a file of keypoints."""
+    hues: int | None = None
+    """Number of hues of its strong colors; None where it was not sampled."""
+
+    @property
+    def evidence(self) -> tuple[str, ...]:
+        """The kinds of evidence that it seems to have, but for contours, which every clip has."""
+        colored = self.hues is not None and self.hues >= GARMENT_HUES
+        return (MARKERS,) * colored + (KEYPOINTS,) * self.detected
 
 
 @dataclass(frozen=True)
@@ -55,6 +70,11 @@ class ClipSurvey:
     def rates(self) -> Counter[float | None]:
         """Number of clips of each rate."""
         return Counter(clip.fps for clip in self.clips)
+
+    @property
+    def colored(self) -> bool:
+        """Whether strongly colored garments seem to be worn in any clip."""
+        return any(MARKERS in clip.evidence for clip in self.clips)
 
     @property
     def unposed(self) -> int:
@@ -85,15 +105,26 @@ def survey_clips(shoot: Shoot) -> Generator[float, None, ClipSurvey]:
             continue
         opened.append(clip)
         fps = round(clip.fps, 6) if clip.knows_its_rate else None
-        posed = sidecar_file(take.path, KEYFRAME_FILE).exists()
-        seen.append(SurveyedClip(take.name, clip.size, fps, clip.frame_count, posed))
-    images: list[Image] = []
-    chosen = opened[:: max(len(opened) // COLORED_CLIPS, 1)][:COLORED_CLIPS]
-    for done, clip in enumerate(chosen):
+        posed, detected = (
+            sidecar_file(take.path, ending).exists() for ending in (KEYFRAME_FILE, KEYPOINT_FILE)
+        )
+        seen.append(SurveyedClip(take.name, clip.size, fps, clip.frame_count, posed, detected))
+    images: dict[int, Sequence[Image]] = {}
+    chosen = _spread(len(opened), COLORED_CLIPS)
+    for done, index in enumerate(chosen):
         yield 0.8 + 0.2 * done / len(chosen)
-        images += run(sample_spread_frames(clip, COLORED_FRAMES)).images
+        images[index] = run(sample_spread_frames(opened[index], COLORED_FRAMES)).images
+        seen[index] = replace(seen[index], hues=len({one.hue for one in strong_colors(images[index])}))
     yield 1.0
-    return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(images))
+    # Of the clips that show garments, where there are any.
+    shown = [index for index in chosen if MARKERS in seen[index].evidence] or chosen
+    listed = [image for one in _spread(len(shown), LISTED_CLIPS) for image in images[shown[one]]]
+    return ClipSurvey(tuple(seen), tuple(described), tuple(unreadable), strong_colors(listed))
+
+
+def _spread(count: int, most: int) -> list[int]:
+    """At most so many indices, spread evenly over all."""
+    return list(range(count))[:: max(-(-count // most), 1)]
 
 
 def _is_described(take: ShootTake) -> bool:

@@ -4,14 +4,19 @@ from typing import Any
 
 from ...files.fields import listed
 from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
+from ...take.evidence_kinds import MARKERS
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize
 from .clip_survey import ClipSurvey
 
-MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The paper's five markers."""
 MOST_NAMED = 5
 AUTO = "auto"
+NO_MARKERS = [
+    "left out, for no garments in strong colors were found; where some are worn, it must say which:",
+    '"trunk": {"color_srgb": [red, green, blue]}, "forearm.L": ... inside braces',
+]
 
 
 def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
@@ -35,7 +40,8 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         fields |= {"//root": "nothing above this folder is inherited", "root": True}
     fields |= _rate(survey)
     fields["camera"] = _camera(survey)
-    fields["markers"] = _markers(survey)
+    fields |= _evidence(survey)
+    fields |= {"markers": _markers(survey)} if survey.colored else {"//markers": NO_MARKERS}
     fields["actor"] = {
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
         "height_m": None,
@@ -107,11 +113,39 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
     return camera
 
 
+def _evidence(survey: ClipSurvey) -> dict[str, Any]:
+    """A comment on what the motion of each clip can be held against."""
+    lines = ["what a motion is held against: markers, keypoints, depth_hints, contours; all there is, unless"]
+    lines.append('"evidence" says which. What the clips have:')
+    return {"//evidence": [*lines, *evidence_lines(survey)]}
+
+
+def evidence_lines(survey: ClipSurvey) -> list[str]:
+    """What each clip seems to have for its motion to be held against, clips of one kind in one line."""
+    clips: dict[tuple[bool, bool | None], list[str]] = {}
+    for clip in survey.clips:
+        colored = None if clip.hues is None else MARKERS in clip.evidence
+        clips.setdefault((clip.detected, colored), []).append(clip.name)
+    lines = []
+    for (detected, colored), names in clips.items():
+        have = {True: "strong colors, as of markers", False: "no garments in strong colors", None: ""}[
+            colored
+        ]
+        found = "keypoints beside it" if detected else ""
+        words = " and ".join(filter(None, (have, found))) or "not looked at for colors"
+        advice = (
+            "" if detected or colored else "; keypoints of a detector (keymark detect), else contours alone"
+        )
+        lines.append(f"{pluralize(len(names), 'clip')}: {words}{advice} ({listed(names, MOST_NAMED)})")
+    return lines
+
+
 def _markers(survey: ClipSurvey) -> dict[str, Any]:
     markers: dict[str, Any] = {
         "//": [
             "red, green and blue from 0 to 255, as an eyedropper gives them on the marker in a clip; .L is",
-            "the performer's own left. Take out markers that were not worn.",
+            "the performer's own left. Take out markers that were not worn; clips in which none are worn say",
+            '"markers": null in NAME.take.json beside them.',
         ]
     }
     if survey.colors:
@@ -122,7 +156,7 @@ def _markers(survey: ClipSurvey) -> dict[str, Any]:
                 for color in survey.colors
             ),
         ]
-    return markers | {name: {"color_srgb": None} for name in MARKERS}
+    return markers | {name: {"color_srgb": None} for name in USUAL_MARKERS}
 
 
 def _library(survey: ClipSurvey) -> dict[str, Any]:

@@ -32,7 +32,11 @@ class Job:
         value = {
             "take": [take.name, str(take.path), take.overrides, take.overrides_location],
             "folder": str(self.folder),
-            "defaults": {**vars(defaults), "keyframes": defaults.keyframes and str(defaults.keyframes)},
+            "defaults": {
+                **vars(defaults),
+                "keyframes": defaults.keyframes and str(defaults.keyframes),
+                "keypoints": defaults.keypoints and [str(file) for file in defaults.keypoints],
+            },
             "again": self.again,
             "debug": self.debug,
         }
@@ -50,10 +54,14 @@ class Job:
         name, place, nearest, said_in = value["take"]
         defaults = value["defaults"]
         keyframes = defaults["keyframes"] and Path(defaults["keyframes"])
+        keypoints = defaults["keypoints"] and tuple(map(Path, defaults["keypoints"]))
+        evidence = defaults["evidence"] and tuple(defaults["evidence"])
         return cls(
             ShootTake(name, Path(place), nearest, said_in),
             Path(value["folder"]),
-            ConversionSettings(**{**defaults, "keyframes": keyframes}),
+            ConversionSettings(
+                **{**defaults, "keyframes": keyframes, "keypoints": keypoints, "evidence": evidence}
+            ),
             value["again"],
             value["debug"],
         )

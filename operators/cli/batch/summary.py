@@ -53,6 +53,8 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
         fields[name] = None if record is None else getattr(record, name)
     for name in ("method", "library", "keyframes", "matched"):
         fields[name] = None if record is None else getattr(record, name)
+    evidence = None if record is None else record.evidence
+    fields["evidence"] = None if evidence is None else evidence.to_json()
     path = relative_path(outcome.folder, output)
     names = () if record is None else (*record.files, RECORD)
     return {**fields, "files": [name if path == "." else f"{path}/{name}" for name in names]}

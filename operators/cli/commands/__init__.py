@@ -10,6 +10,7 @@ from .character import CHARACTER
 from .check import CHECK
 from .convert import CONVERT
 from .demo import DEMO
+from .detect import DETECT
 from .library import LIBRARY
 from .merge import MERGE
 from .new import NEW
@@ -26,6 +27,7 @@ COMMANDS: tuple[Command | CommandGroup, ...] = (
     WORKER,
     CHARACTER,
     RETARGET,
+    DETECT,
     PROPOSE,
     LIBRARY,
     DEMO,

@@ -26,7 +26,8 @@ CHECK = Command(
     summary="look through a shoot before it is converted",
     description=(
         "Reads everything a batch would read, samples frames of every clip, and says for each take whether "
-        "it would convert, how well its markers are seen and what is likely to go wrong. Nothing is written."
+        "it would convert, what it would be held against, how well its markers and keypoints are seen, and "
+        "what is likely to go wrong. Nothing is written."
     ),
     add_arguments=add_arguments,
     run=run,

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ....core.take.methods import METHODS
 from ..command import Command
+from .evidence_options import add_evidence, add_keypoint_files
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,6 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="keyframe file; by default TAKE/keyframes.json, with --library none",
     )
+    add_keypoint_files(parser)
+    add_evidence(parser)
     parser.add_argument(
         "--library",
         metavar="NAME|FILE|auto",

@@ -26,7 +26,8 @@ NEW = Command(
     summary="describe a folder of clips: write its shoot.json",
     description=(
         "Looks at the clips below a folder and writes shoot.json there, with what the clips tell filled in "
-        "and comments on what a person must say: camera, actor and markers, once for all clips."
+        "and comments on what a person must say, once for all clips: camera, actor, and markers if any. It "
+        "also says what each clip's motion can be held against."
     ),
     add_arguments=add_arguments,
     run=run,

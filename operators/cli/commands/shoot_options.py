@@ -3,12 +3,15 @@
 import argparse
 
 from ....core.take.methods import METHODS
+from .evidence_options import add_evidence, add_keypoint_names
 
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
 
 
 def add_defaults(parser: argparse.ArgumentParser) -> None:
-    """Add library, floor and method for takes whose shoot names none."""
+    """Add keypoints, evidence, library, floor and method for takes whose shoot names none."""
+    add_keypoint_names(parser)
+    add_evidence(parser, " where nothing in SHOOT says it")
     parser.add_argument(
         "--library",
         metavar="NAME|FILE|auto",

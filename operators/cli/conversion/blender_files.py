@@ -14,7 +14,7 @@ def write_blender_files(take: Take, motion: Motion, staging_folder: Path, output
     """Let Blender write both files into the staging folder.
 
     Args:
-        take: Clip, camera, body and markers.
+        take: Clip, camera, body and what is followed.
         motion: The motion to write.
         staging_folder: Where the files are wanted.
         output: The folder of the result, as a real path.

@@ -7,16 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.errors import InputError
+from ....core.estimate.reconstruct import check_method
 from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
 from ....core.matching.match_take import take_to_match
 from ....core.progress import run
+from ....core.report.body_outlines import performer_contours
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
 from ....core.retarget.maps.choose_map import map_digests
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import RetargetRecord
+from ....core.review.compare_keypoints import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 from ....core.take.conversion_record import find_record, write_record
@@ -121,11 +124,12 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     """Make every file of the result in the staging folder; the record comes last."""
     settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
     take = _read_take(prepared.description, settings, output)
+    method = settings.method or METHODS[0]
+    check_method(take, method)
     if settings.character is not None:
         console.stage("Opening the character")
         with opened_character(settings.character.file, settings.character.map, debug):
             pass  # what is wrong with it is better known before the work
-    method = settings.method or METHODS[0]
     job = reconstruct_or_match(take, prepared.libraries, method, settings.floor_m)
     matched = run(job, console.progress)
     take, result = matched.take, matched.reconstruction
@@ -140,7 +144,15 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     write_made_digests(staging_folder, curves)
     if settings.pictures is not False:
         console.stage("Drawing the pictures")
-        write_pictures(staging_folder / REPORT, take, result.motion, result.tracks, result.speed)
+        write_pictures(
+            staging_folder / REPORT,
+            take,
+            result.motion,
+            result.tracks,
+            result.speed,
+            compare_keypoints(result),
+            performer_contours(result),
+        )
     made = [name for name in (*RESULT_FILES, KEYFRAMES) if (staging_folder / name).exists()]
     prepared.kept_names.update(
         changed_files(
@@ -193,13 +205,13 @@ def _recorded_files(output: Path) -> Mapping[str, str]:
 
 def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:
     if settings.library is None:
-        return read_described(description, settings.keyframes)
+        return read_described(description, settings.keyframes, settings=settings)
     if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
             f"{output}: is the take's own folder, whose {KEYFRAMES} the matched keyframes would replace; "
             "name another folder"
         )
-    return take_to_match(description, settings.keyframes)
+    return take_to_match(description, settings.keyframes, settings)
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:

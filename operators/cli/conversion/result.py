@@ -11,6 +11,7 @@ from ....core.files.digest import content_digest
 from ....core.matching.match_take import LibraryChoice
 from ....core.progress import run
 from ....core.review.review import review
+from ....core.review.used_evidence import used_evidence
 from ....core.take.conversion_record import ConversionRecord
 from ....core.take.take import Take
 from ..version import version
@@ -73,4 +74,5 @@ def conversion_record(
         weak_frames=tuple(frame.index + motion.frame_start for frame in reviewed.weak_frames),
         notes=conversion.notes,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
+        evidence=used_evidence(conversion.reconstruction),
     )

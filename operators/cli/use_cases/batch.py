@@ -110,6 +110,8 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         floor_m=arguments.floor,
         method=arguments.method,
         pictures=False if arguments.no_report else None,
+        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
+        evidence=arguments.evidence,
     )
     return shoot, part_of(takes, part, parts), defaults
 

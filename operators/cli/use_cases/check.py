@@ -35,7 +35,12 @@ def check_command(arguments: argparse.Namespace) -> None:
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
-    defaults = ConversionSettings(library=arguments.library, method=arguments.method)
+    defaults = ConversionSettings(
+        library=arguments.library,
+        method=arguments.method,
+        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
+        evidence=arguments.evidence,
+    )
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
         characters = CharacterChecks(shoot, arguments.debug)

@@ -8,6 +8,8 @@ from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
 from ....core.shoot.check.take_check import TakeCheck
 from ....core.shoot.shoot import Shoot
+from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.text import pluralize
 from ..line_wrapping import wrapped
 
 READY, LOOK, FAILS = "ready", "look", "fails"
@@ -52,7 +54,27 @@ def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = 
         where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
         lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
         lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
-    return "\n".join([*lines, "", *wrapped(_last_line(checks), 0, columns)])
+    lines += ["", *(line for said in _evidence_lines(checks) for line in wrapped(said, 0, columns))]
+    return "\n".join([*lines, *wrapped(_last_line(checks), 0, columns)])
+
+
+def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
+    """What the motions will be held against, a line for each combination of evidence."""
+    takes: dict[tuple[str, ...], list[str]] = {}
+    for check in checks:
+        if check.evidence and check.converts:
+            takes.setdefault(check.evidence, []).append(check.name)
+    if len(takes) == 1:
+        return [f"Held against {_words(kinds)}." for kinds in takes]
+    return [
+        f"Held against {_words(kinds)}: {pluralize(len(names), 'take')} ({listed(names, MOST_NAMED)})."
+        for kinds, names in takes.items()
+    ]
+
+
+def _words(kinds: Sequence[str]) -> str:
+    names = [kind.replace("_", " ") for kind in kinds]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def _table(
@@ -61,9 +83,11 @@ def _table(
     """A row a take, and below it the sentences on this take alone."""
     names = [_name(shoot, check) for check in checks]
     markers = _common_markers(checks)
-    titles = ("", "take", "frames", "size", "rate", "keyframes", *markers)
+    keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
+    titles = ("", "take", "frames", "size", "rate", "keyframes", *keypoints, *markers)
     rows = [
-        (_status(check), name, *_cells(check, markers)) for check, name in zip(checks, names, strict=True)
+        (_status(check), name, *_cells(check, keypoints, markers))
+        for check, name in zip(checks, names, strict=True)
     ]
     widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
     if columns is not None:
@@ -86,13 +110,23 @@ def _marked(check: TakeCheck) -> tuple[str, ...]:
     )
 
 
-def _cells(check: TakeCheck, markers: Sequence[str]) -> tuple[str, ...]:
+def _cells(check: TakeCheck, keypoints: Sequence[str], markers: Sequence[str]) -> tuple[str, ...]:
     size = "-" if check.size is None else f"{check.size[0]}x{check.size[1]}"
     rate = "-" if check.fps is None else f"{check.fps:.4g}"
     frames = "-" if check.frames is None else str(check.frames)
     posed = str(check.keyframes) if check.library is None else f"{check.keyframes}+{check.library}"
     seen = {readout.name: f"{100 * readout.found // readout.sampled}%" for readout in check.markers}
-    return (frames, size, rate, posed, *(seen.get(name, "-") for name in markers))
+    detected = [_keypoints(check) for _ in keypoints]
+    return (frames, size, rate, posed, *detected, *(seen.get(name, "-") for name in markers))
+
+
+def _keypoints(check: TakeCheck) -> str:
+    """How often the performer is seen, and how far from posed joints, of the best source of keypoints."""
+    if not check.keypoints:
+        return "-"
+    best = max(check.keypoints, key=lambda readout: readout.seen_frames)
+    apart = "" if best.error_px is None else f" {best.error_px:.0f}px"
+    return f"{100.0 * best.seen_frames:.0f}%{apart}"
 
 
 def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
@@ -122,13 +156,13 @@ def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
 
 def _last_line(checks: Sequence[TakeCheck]) -> str:
     counts = Counter(map(_status, checks))
-    pluralize = [
+    words = [
         f"{counts[READY]} ready",
         f"{counts[LOOK]} to look at",
         f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
     costs = [check.cost for check in checks if check.cost is not None]
-    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(pluralize)}."
+    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(words)}."
     if not costs:
         return line
     seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
@@ -166,6 +200,20 @@ def _take(check: TakeCheck) -> dict[str, Any]:
         "frames": check.frames,
         "keyframes": check.keyframes,
         "library": check.library,
+        "evidence": list(check.evidence),
+        "keypoints": [
+            {
+                "file": readout.file,
+                "source": readout.source,
+                "points": readout.points,
+                "seen_frames": round(readout.seen_frames, 4),
+                "seen_points": round(readout.seen_points, 4),
+                "people": readout.people,
+                "depth_hints": readout.depth_hints,
+                "error_px": None if readout.error_px is None else round(readout.error_px, 2),
+            }
+            for readout in check.keypoints
+        ],
         "markers": {
             readout.name: {
                 "found": readout.found,

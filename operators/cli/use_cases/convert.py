@@ -1,12 +1,15 @@
 """`keymark convert`: convert one take and report the result."""
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from ....core.shoot.discovery.take_path import take_path
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
+from ....core.take.evidence_kinds import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
 from ..conversion.matched_keyframes import match_summary
@@ -51,9 +54,12 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
         floor_m=arguments.floor,
         method=arguments.method,
         pictures=False if arguments.no_report else None,
+        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
+        evidence=arguments.evidence,
     )
     settings = given.with_defaults(effective_settings(description))
     _check_floor(arguments.floor, settings)
+    _check_keypoints(arguments.keypoints, settings)
     return settings if arguments.library is None else replace(settings, keyframes=arguments.keyframes)
 
 
@@ -64,6 +70,14 @@ def _check_floor(floor_m: float | None, settings: ConversionSettings) -> None:
         raise UsageError("--floor is given without --library; only matching asks for the floor")
     if not abs(floor_m) <= HIGHEST_FLOOR_M:
         raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
+
+
+def _check_keypoints(files: Sequence[Path] | None, settings: ConversionSettings) -> None:
+    if files and settings.evidence is not None and KEYPOINTS not in settings.evidence:
+        raise UsageError(
+            f"--keypoints is given, but the evidence is {', '.join(settings.evidence)} alone; name "
+            f"{KEYPOINTS} in --evidence"
+        )
 
 
 def _text(conversion: Conversion) -> str:

@@ -162,6 +162,8 @@ def description(result: Result) -> str:
         f"Take {result.name}: {record.frames} frames at {record.fps:g} per second, {record.frame_start} to "
         f"{last}"
     ]
+    if record.evidence is not None:
+        sentences.append(f"Held against {record.evidence.words}")
     if record.confidence is not None:
         weakest = "" if record.weakest is None else f", {record.weakest:.0%} where it is weakest"
         sentences.append(f"Confidence {record.confidence:.0%}{weakest}")

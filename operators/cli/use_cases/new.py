@@ -10,7 +10,7 @@ from ....core.files.paths import absolute_path
 from ....core.progress import run, within
 from ....core.shoot.discovery.find_takes import find_takes
 from ....core.shoot.template.clip_survey import ClipSurvey, survey_clips
-from ....core.shoot.template.shoot_template import clip_lines, shoot_template
+from ....core.shoot.template.shoot_template import clip_lines, evidence_lines, shoot_template
 from ....core.take.shoot_file import SHOOT_FILE, find_shoot_files
 from ..console import arguments_console
 from ..usage import program_name
@@ -69,12 +69,13 @@ def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str,
         "clips": len(survey.clips),
         "described": list(survey.described),
         "unreadable": list(survey.unreadable),
+        "evidence": {clip.name: list(clip.evidence) for clip in survey.clips},
         "fill_in": list(todo),
     }
 
 
 def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
-    lines = [*clip_lines(survey), "", f"{output} describes them. Now fill in"]
+    lines = [*clip_lines(survey), *evidence_lines(survey), "", f"{output} describes them. Now fill in"]
     lines += [f"  {field_path}" for field_path in todo]
     lines.append("and correct the lens, which is a guess; the comment beside each field says how.")
     return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])

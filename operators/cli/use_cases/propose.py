@@ -1,40 +1,65 @@
 """`keymark propose`: propose the frames of a take to pose."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from ....core.arrays import Array, IndexArray
 from ....core.files.json_file import write_atomically
-from ....core.footage.markers import track_markers
+from ....core.prior.evidence_speed import EvidenceSpeed, evidence_speed
 from ....core.prior.keyframe_proposals import propose_keyframes
-from ....core.prior.marker_speed import marker_speed
-from ....core.progress import Job, run, within
+from ....core.progress import Job, run, stretch, within
 from ....core.report.canvas import write_png
 from ....core.report.speed_plot import speed_plot
-from ....core.take.clip_check import open_clip
+from ....core.shoot.discovery.take_path import take_path
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.description import describe
+from ....core.take.performer_keypoints import performer_keypoints
+from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
-from ....core.take.take_file import read_take
+from ....core.take.take_file import read_described
 from ..console import arguments_console
+
+READING_SHARE = 0.9
+"""Share of the work that reading the clip is."""
 
 
 def propose_command(arguments: argparse.Namespace) -> None:
-    """Print the frames that are worth posing, with the markers' speed for `--json`."""
+    """Print the frames that are worth posing, with the performer's speed for `--json`."""
     with arguments_console(arguments) as console:
-        take = read_take(arguments.take, keyframes_required=False)
-        speed = run(_marker_speed_job(take), console.progress)
+        take = _read(arguments)
+        moved = run(_speed_job(take), console.progress)
+        speed = moved.values
         indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
         frames = [int(index) + take.frame_start for index in indices]
         if arguments.picture is not None:
             _write_picture(arguments.picture, speed, indices, take.frame_start)
-        result = {"frames": frames, "speed_px_per_frame": [round(float(value), 3) for value in speed]}
-        console.finish(result, " ".join(str(frame) for frame in frames))
+        notes = [moved.note] if moved.note else []
+        rounded = [round(float(value), 3) for value in speed]
+        lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
+        result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}
+        console.finish(result, "\n".join(lines))
 
 
-def _marker_speed_job(take: Take) -> Job[Array]:
-    tracks = yield from within(
-        "Following the markers", track_markers(open_clip(take), take.markers), 0.0, 1.0
+def _read(arguments: argparse.Namespace) -> Take:
+    description = describe(take_path(arguments.take))
+    given = ConversionSettings(
+        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
+        evidence=arguments.evidence,
     )
-    return marker_speed(tracks)
+    settings = given.with_defaults(description.settings)
+    return read_described(description, keyframes_required=False, settings=settings)
+
+
+def _speed_job(take: Take) -> Job[EvidenceSpeed]:
+    """V_sum of the take's evidence; its keyframes have no part in it."""
+    # Pictures are kept only where nothing else tells how fast the performer moves.
+    bare = not take.markers and not take.keypoints
+    unposed = replace(take, keyframes=(), contours=take.contours and bare)
+    reading = yield from stretch(read_footage(unposed), 0.0, READING_SHARE)
+    keypoints = performer_keypoints(unposed, None, reading.tracks)
+    moved = evidence_speed(reading.tracks, unposed.marker_segments, keypoints, reading.album)
+    return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 
 
 def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:

@@ -25,7 +25,7 @@ from keymark.operators.bridge.matched_keyframes import (
 )
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
-from keymark.operators.markers.marker_styles import marker_styles
+from keymark.operators.keypoints.evidence import scene_evidence
 from keymark.operators.matching.matches import known_matches
 from keymark.operators.shell.keyed_frames import (
     invalidate_keyed_frames,
@@ -63,7 +63,7 @@ def keyframes_in(take: bpy.types.PropertyGroup) -> tuple[Keyframe, ...]:
         footage_of(scene, take),
         take.armature,
         take.keyframe_action,
-        marker_styles(take),
+        scene_evidence(take),
         known_matches(take),
     )
     return run(reading)[0].keyframes

@@ -13,6 +13,7 @@ from typing import Any
 import bpy
 import pytest
 from _shoot import write_shoot
+from _synthetic_take import true_postures, write_json, write_keypoints
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.cli.main import main
 from keymark.operators.cli.use_cases import batch as command
@@ -92,6 +93,27 @@ def test_good_takes_are_converted_and_bad_ones_say_why(results: Path) -> None:
     assert "text.mp4" in errors["day1/text"] and "keyframes.json: line" in errors["day2/cut off"]
     assert not (results / "day1" / "text").exists() and not (results / "day2").exists()
     assert not leftovers(results)
+
+
+def test_takes_of_any_clothes_are_converted_beside_others(
+    shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Markers, keypoints by the name that every take has, and contours alone; one lacks what is asked for."""
+    own = tmp_path / "shoot"
+    shutil.copytree(shoot / "day1", own / "day1", ignore=shutil.ignore_patterns("text.mp4"))
+    said = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))
+    write_json(own / "shoot.json", {**said, "method": "map"})
+    for name, fields in {"take01": {}, "take02": {"evidence": ["contours"]}}.items():
+        write_json(own / "day1" / f"{name}.take.json", {"markers": None, **fields})
+    write_keypoints(own / "day1" / "take01.pose.json", true_postures(8 + 3)[:8])
+    status, said = batch(own, tmp_path / "out", capsys, "--jobs", "1", "--keypoints", "pose.json")
+    assert status == 1
+    assert statuses(said) == {"day1/take01": "converted", "day1/take02": "converted", "day1/take03": "failed"}
+    assert "pose.json" in said["takes"][2]["error"]
+    write_keypoints(own / "day1" / "take03" / "pose.json", true_postures(8 + 3)[2:10])
+    status, said = batch(own, tmp_path / "out", capsys, "--jobs", "1", "--keypoints", "pose.json")
+    assert status == 0 and set(statuses(said).values()) == {"unchanged", "converted"}
+    assert statuses(said)["day1/take03"] == "converted"
 
 
 def test_two_workers_give_the_same_bytes_as_one(

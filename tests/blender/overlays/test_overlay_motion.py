@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from _review import made_up_keypoints
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review.review import Review
@@ -54,6 +55,7 @@ def review() -> Review:
         confidence=np.ones(FRAMES),
         keyframe_indices=np.array([0, 12, 39]),
         weak_frames=(),
+        keypoints=made_up_keypoints(FRAMES),
     )
 
 
@@ -84,7 +86,7 @@ def words(items: list) -> list[str]:
 def switch(scene: bpy.types.Scene, *on: str) -> None:
     """Show these parts alone."""
     settings = scene.keymark.overlays
-    for part in ("observed", "predicted", "skeleton", "paths", "legend"):
+    for part in ("observed", "predicted", "keypoints", "skeleton", "paths", "legend"):
         setattr(settings, f"show_{part}", part in on)
 
 

@@ -68,7 +68,7 @@ def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -
     area = items_of(take, Fill)[0]
     heights = area.corners[:, 3, 1] - VIEW.floor
     assert heights.argmax() in (5, 6) and heights.max() <= VIEW.height and heights[0] < 1.0
-    assert [label.words for label in items_of(take, Label)] == ["Speed of markers"]
+    assert [label.words for label in items_of(take, Label)] == ["Speed in the footage"]
     take.proposals.add().frame = 7
     *_, diamond = items_of(take, Fill)
     assert diamond.corners[0, :, 1].mean() - VIEW.floor > 0.5 * VIEW.height

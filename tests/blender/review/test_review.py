@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from _review import made_up_review
 from keymark.core.body.human import HUMAN
+from keymark.core.review.compared_keypoints import ComparedKeypoints
+from keymark.core.review.weak_frames import Reason, WeakFrame
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actions import existing_channelbag
@@ -15,11 +17,13 @@ from keymark.operators.bridge.extremity_curves import posed_extremities
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
+from keymark.operators.review.panel import reason_words
 from keymark.operators.review.review_results import show_review
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import clear_review, review_of
 from keymark.operators.shell.takes import active_take
 
+NO_KEYPOINTS = ComparedKeypoints.none(13)
 pytestmark = pytest.mark.usefixtures("registered")
 
 
@@ -80,12 +84,14 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
 def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
     """In one group, generated, in millimeters and pixels; unknown frames have no key."""
     review = made_up_review()
+    keypoints = review.keypoints
+    distances = np.concatenate(
+        [review.reprojection_px, np.where(keypoints.thrown_out, np.nan, keypoints.distance_px)], axis=1
+    )
     expected = {
         "Confidence": review.confidence,
         "Nearness": review.nearness,
-        "Reprojection px": np.array(
-            [np.nanmean(row) if not np.isnan(row).all() else np.nan for row in review.reprojection_px]
-        ),
+        "Reprojection px": np.nanmean(distances, axis=1),
         "Sigma wrist.L mm": 1e3 * review.sigma_m[:, HUMAN.point_names.index("wrist.L")],
     }
     for name, values in expected.items():
@@ -95,7 +101,23 @@ def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
         assert [key.co[0] for key in found.keyframe_points] == pytest.approx(review.frames[known])
         assert [key.co[1] for key in found.keyframe_points] == pytest.approx(values[known], rel=1e-5)
         assert {key.type for key in found.keyframe_points} == {"GENERATED"}
+    assert len(curve(take, "Reprojection px").keyframe_points) == 13
+
+
+def test_frames_in_which_nothing_is_compared_have_no_key(take: bpy.types.PropertyGroup) -> None:
+    """Of a take without keypoints, one frame shows no marker."""
+    write_review_curves(take.armature, take.motion_action, replace(made_up_review(), keypoints=NO_KEYPOINTS))
     assert len(curve(take, "Reprojection px").keyframe_points) == 12
+
+
+def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> None:
+    """As people call it; a marker by the name that it was given."""
+    weak = (WeakFrame(6, Reason.FOOTAGE, 1.0, point="wrist.L"), WeakFrame(3, Reason.HIDDEN, 0.5, marker=1))
+    show_review(take, replace(made_up_review(), weak_frames=weak))
+    assert [reason_words(item) for item in take.review.weak_frames] == [
+        "Off Footage: Wrist Left",
+        "Hidden: Ärmel",
+    ]
 
 
 def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.PropertyGroup) -> None:

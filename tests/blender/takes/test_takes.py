@@ -188,7 +188,7 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
         said.append(next_step(take))
         return words in said[-1]
 
-    assert says("add the markers")
+    assert says("choose what to follow")
     bpy.ops.keymark.add_marker()
     assert says("pick the markers' colors")
     take.markers[0].color = (0.1, 0.5, 0.2)

@@ -98,7 +98,7 @@ def test_help_has_examples_and_version_is_the_manifests(
 def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
-    assert files - {"__init__", "shoot_options", "character_options"} == {
+    assert files - {"__init__", "shoot_options", "character_options", "evidence_options"} == {
         command.name for command in COMMANDS
     }
     shown = [command.name for command in COMMANDS if not getattr(command, "hidden", False)]

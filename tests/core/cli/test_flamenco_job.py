@@ -93,6 +93,10 @@ def test_choices_reach_the_command_line(script: Path) -> None:
     assert options(compiled(script, own)["tasks"][0])["library"] == "/mnt/anna.json"
     said = {**SETTINGS, "library": "as the takes say", "own_library": "", "own_library_path": ""}
     assert options(compiled(script, said)["tasks"][0])["library"] is None
+    plain = {**SETTINGS, "keypoints": "pose.json", "evidence": "keypoints,contours"}
+    share = options(compiled(script, plain)["tasks"][0])
+    assert share["keypoints"] == [Path("pose.json")] and share["evidence"] == ("keypoints", "contours")
+    assert options(compiled(script, said)["tasks"][0])["evidence"] is None
 
 
 def test_paths_count_as_blender_has_resolved_them(script: Path) -> None:

@@ -10,12 +10,20 @@ from keymark.core.body import posture_fields
 from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
+from keymark.core.footage.keypoints import keypoint_file, openpose_folder
 from keymark.core.library import library_file
 from keymark.core.retarget import retarget_record
 from keymark.core.retarget.maps import character_map_file
 from keymark.core.shoot import shoot
 from keymark.core.shoot.discovery import take_list
-from keymark.core.take import conversion_record, keyframe_file, motion_file, shoot_file, take_file
+from keymark.core.take import (
+    conversion_record,
+    conversion_settings,
+    keyframe_file,
+    motion_file,
+    shoot_file,
+    take_file,
+)
 
 MIB = 2**20
 LIMITS = {
@@ -25,6 +33,8 @@ LIMITS = {
     f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{retarget_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
+    f"{keypoint_file.LARGEST_BYTES // MIB} MiB; "
+    f"{openpose_folder.LARGEST_FILE_BYTES // MIB} MiB": "a file of keypoints; a file of a detector's folder",
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
@@ -35,6 +45,7 @@ LIMITS = {
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
     f"{take_file.MOST_MARKERS}; "
     f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
+    f"{conversion_settings.MOST_KEYPOINT_FILES} ": "files of keypoints of a take",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",
     f"{posture_fields.FARTHEST_M:.0f} m": "distance of keyframes from the origin",

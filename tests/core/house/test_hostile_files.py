@@ -20,7 +20,7 @@ from keymark.operators.cli.main import main
 FRAMES = 6
 NAMES = (
     *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
-    "truth",
+    *("keypoints", "truth"),
 )
 FAST = ("--method", "interpolation", "--no-report", "--quiet")
 

@@ -18,7 +18,11 @@ CODE_FROM_DATA = {"code", "codeop", "dbm", "dill", "joblib", "marshal", "pickle"
 CODE_FROM_DATA |= {"multiprocessing"}  # its processes exchange pickles
 ONLY_IN = {
     "ctypes": ("operators.cli.blender_silence", "core.files"),
-    "subprocess": ("operators.cli.batch", "operators.cli.use_cases.demo_character"),
+    "subprocess": (
+        "operators.cli.batch",  # workers: Keymark itself
+        "operators.cli.use_cases.demo_character",  # Blender, which generates a rig
+        "operators.bridge.detector.detector_process",  # the program that the user has set, and no other
+    ),
     "asyncio": ("operators.cli.batch",),
 }
 """Modules with a harmless use, and the files that have it."""

@@ -19,7 +19,7 @@ from referencing import Registry, Resource
 
 NAMES = (
     *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
-    "truth",
+    *("keypoints", "truth"),
 )
 
 
@@ -162,7 +162,16 @@ MISTAKES: list[tuple[str, Change]] = [
     ("take", at("camera", "matrix_world", to=[[1, 0, 0, 0]] * 3)),
     ("take", at("camera", "matrix_world", 0, 0, to=True)),
     ("take", at("camera", "distortion", to=[1e300])),
-    ("take", at("markers", to={})),
+    ("take", at("markers", to=[])),
+    ("take", at("keypoints", to="../keypoints.json")),
+    ("take", at("keypoints", to=[])),
+    ("take", at("keypoints", to=["keypoints.json", "/etc/passwd"])),
+    ("take", at("keypoints", to=["keypoints.json", "keypoints.json"])),
+    ("take", at("evidence", to="markers")),
+    ("take", at("evidence", to=[])),
+    ("take", at("evidence", to=["markers", "sound"])),
+    ("take", at("evidence", to=["markers", "markers"])),
+    ("take", at("evidence", to=["markers", "depth_hints"])),
     ("take", at("markers", "tail", to={"color_srgb": [1, 2, 3], "segment": "tail"})),
     ("take", at("markers", "trunk", "color_srgb", to=[1, 2])),
     ("take", at("actor", "segments_m", "tail", to=0.3)),
@@ -181,6 +190,7 @@ MISTAKES: list[tuple[str, Change]] = [
     ("keyframes", lambda v: v["keyframes"][0].pop("points")),
     ("shoot", at("actr", to={})),
     ("shoot", at("root", to=1)),
+    ("shoot", at("evidence", to=["depth_hints"])),
     ("shoot", at("schema_version", to=2)),
     ("takes", lambda v: v.pop("take")),
     ("takes", at("take", to="../elsewhere")),
@@ -218,6 +228,20 @@ MISTAKES: list[tuple[str, Change]] = [
     ("retarget", at("roles", "hips", "bones", to=[])),
     ("retarget", at("files", "../up", to="ab" * 32)),
     ("retarget", at("character", "sha256", to="x")),
+    ("keypoints", lambda v: v.pop("layout")),
+    ("keypoints", at("layout", to="coco")),
+    ("keypoints", at("names", to=["shoulder.L", "shoulder.L"])),
+    ("keypoints", at("names", 1, to="tail")),
+    ("keypoints", at("size", to=[320.5, 240])),
+    ("keypoints", at("people", to=[None])),
+    ("keypoints", lambda v: v.pop("frames")),
+    ("keypoints", at("frames", 0, to={})),
+    ("keypoints", at("frames", 0, 1, to=[1, 2])),
+    ("keypoints", at("frames", 0, 1, 2, to=None)),
+    ("keypoints", at("frames", 0, 1, 0, to=True)),
+    ("keypoints", at("world", 0, 0, 2, to=1e3)),
+    ("keypoints", at("by_hand", to=1)),
+    ("keypoints", at("fps", to=0)),
     ("truth", at("points", "head", 0, to=[0, None, 1])),
 ]
 

@@ -6,11 +6,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from _review import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.observation.contours import ContourModel
+from keymark.core.report.body_outlines import OUTLINE
 from keymark.core.report.canvas import ACCENT, INK, LEFT, RIGHT, Canvas, ticks, write_png
 from keymark.core.report.contact_sheet import evenly_spaced_frames
+from keymark.core.report.keypoint_marks import SOURCE_COLORS, THROWN_OUT
 from keymark.core.report.overlay_sheet import CELL_WIDTH, overlay_sheet
 from keymark.core.report.pictures import PICTURES, write_pictures
 from keymark.core.report.speed_plot import speed_plot
@@ -75,7 +79,7 @@ def test_large_frames_are_kept_no_larger_than_drawn(
     sizes = []
 
     def sheet(*given: object) -> np.ndarray:
-        sizes.extend(image.shape[:2] for image in given[-1].values())
+        sizes.extend(image.shape[:2] for image in given[3].values())
         return np.zeros((8, 8, 3), dtype=np.uint8)
 
     monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", sheet)
@@ -113,6 +117,42 @@ def test_hidden_markers_and_points_behind_the_camera_draw_nothing(
     cell = image[50 : 50 + 270, 16 : 16 + CELL_WIDTH]
     assert cell.std(axis=(0, 1)).max() < 1.0
     assert overlay_sheet(take, behind, tracks, {1: plain})[50:320, 16:416].std() > 1.0
+
+
+def test_keypoints_lie_where_they_were_seen(take: Take, motion: Motion, tracks: RegionTracks) -> None:
+    """A cross in its source's color, a ring where the motion puts it; another color if not believed."""
+    plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
+    keypoints = made_up_keypoints(FRAMES)
+    keypoints.seen[:, :, 0] += 40.0  # away from the figure
+    image = overlay_sheet(take, motion, tracks, {0: plain, 1: plain}, keypoints)
+    without = overlay_sheet(take, motion, tracks, {0: plain, 1: plain})
+    scale = CELL_WIDTH / SIZE[0]
+
+    def around(frame: int, pixel: np.ndarray) -> tuple[slice, slice]:
+        column, row = (scale * pixel + (16 + frame * (CELL_WIDTH + 8), 16 + 34)).astype(int)
+        return slice(row - 4, row + 5), slice(column - 4, column + 5)
+
+    for index, color in ((0, SOURCE_COLORS[0]), (2, SOURCE_COLORS[1])):
+        assert count(image[around(0, keypoints.seen[0, index])], color, 60) > 2
+    assert count(image[around(1, keypoints.seen[1, 0])], THROWN_OUT, 60) > 2
+    changed = (image != without).any(axis=-1)
+    assert changed[around(0, keypoints.predicted[0, 1])].any()
+    hidden = overlay_sheet(take, motion, tracks, {2: plain}, keypoints)  # the first one is not seen there
+    assert count(hidden, SOURCE_COLORS[0], 60) < count(image, SOURCE_COLORS[0], 60)
+
+
+def test_contours_are_drawn_only_where_there_are_no_markers(
+    take: Take, motion: Motion, tracks: RegionTracks
+) -> None:
+    """Beside the limbs, in their own color."""
+    plain = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
+    contours = ContourModel.average(BODY, take.camera)
+    bare = RegionTracks.unmarked(tracks.time_s, SIZE)
+    unmarked = replace(take, markers=())
+    drawn = overlay_sheet(unmarked, motion, bare, {0: plain}, contours=contours)
+    assert count(drawn, OUTLINE, 40) > 100
+    marked = overlay_sheet(take, motion, tracks, {0: plain}, contours=contours)
+    assert count(marked, OUTLINE, 40) < 20
 
 
 def test_keyframes_are_circled_at_their_value() -> None:

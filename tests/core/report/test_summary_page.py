@@ -18,6 +18,7 @@ from keymark.core.report.summary.style_and_script import STYLE
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
 from keymark.core.shoot.outcomes.outcome import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
+from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")
@@ -38,8 +39,17 @@ def page(*outcomes: Outcome) -> Page:
 def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
     """A converted and a failed take with a text in every field."""
     files = {f"{name}.json": "", f"report/{name}.png": "", "report/strip.jpg": "", "report/overlay.png": ""}
+    evidence = UsedEvidence((text,), (UsedKeypoints(text, ("nose",), 1.0),))
     record = ConversionRecord(
-        **{**vars(RECORD), "take": text, "library": text, "method": text, "notes": (text,), "files": files}
+        **{
+            **vars(RECORD),
+            "evidence": evidence,
+            "take": text,
+            "library": text,
+            "method": text,
+            "notes": (text,),
+            "files": files,
+        }
     )
     return (
         Outcome(f"a/{name}", OUTPUT / "a" / name, Status.CONVERTED, record),
@@ -252,6 +262,19 @@ def test_what_a_take_was_made_from_is_said() -> None:
     assert "frame 87, then 31" in row.text and "120 frames, 4.0 s at 30 frames a second" in row.text
     (row,) = page(converted(OUTPUT, "walk", keyframes=(), weak_frames=(), notes=())).rows()
     assert "no keyframes, method map" in row.text and "Worth" not in row.text
+
+
+def test_a_row_tells_what_the_motion_was_held_against() -> None:
+    """Kinds of evidence, and whose keypoints; records of before it was noted tell nothing."""
+    (row,) = page(converted(OUTPUT, "walk")).rows()
+    assert "2 markers, 2 keypoints (keypoints: a detector); 3 posed keyframes" in row.text
+    many = tuple(UsedKeypoints(f"source {n}", ("nose",), 1.0) for n in range(5))
+    (row,) = page(converted(OUTPUT, "walk", evidence=UsedEvidence((), many, True, True))).rows()
+    assert (
+        "5 keypoints, depth hints, contours (keypoints: source 0, source 1, source 2 and 2 more)" in row.text
+    )
+    (row,) = page(converted(OUTPUT, "walk", evidence=None)).rows()
+    assert "second; 3 posed keyframes" in row.text
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,30 @@ import pytest
 from _review import made_up_review
 from _synthetic_take import write_synthetic_take
 from keymark.core.estimate.reconstruct import METHODS, reconstruct
+from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.progress import run
+from keymark.core.review.compared_keypoints import ComparedKeypoints
+from keymark.core.review.contour_sight import contour_sight
 from keymark.core.review.review import Review, review
+from keymark.core.review.used_evidence import used_evidence
+from keymark.core.take.evidence import with_evidence
+from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 
+ASIDE = 0.04 * np.eye(34)[0]
+"""A step of the posture that moves the performer by four centimeters."""
 
-def same(first: Review, second: Review) -> bool:
-    """Whether two reviews hold the same, outlines to single precision."""
-    for field in fields(Review):
+
+def same(first: Review | ComparedKeypoints, second: Review | ComparedKeypoints) -> bool:
+    """Whether two reviews hold the same, outlines and keypoints to single precision."""
+    for field in fields(first):
         one, other = getattr(first, field.name), getattr(second, field.name)
-        if not isinstance(one, np.ndarray):
+        if isinstance(one, ComparedKeypoints):
+            if not same(one, other):
+                return False
+        elif not isinstance(one, np.ndarray):
             if one != other:
                 return False
         elif not np.allclose(one, other, rtol=1e-6, atol=1e-6, equal_nan=True):
@@ -45,6 +58,17 @@ def test_a_review_without_weak_frames_comes_back() -> None:
         name: value[:0] for name, value in made_up_review().to_arrays().items() if name.startswith("weak")
     }
     assert Review.from_arrays({**arrays, **empty}).weak_frames == ()
+
+
+def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
+    """The rest is as it was; one that lost a part of its keypoints is no review."""
+    arrays = made_up_review().to_arrays()
+    old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name != "weak_point"}
+    again = Review.from_arrays(old)
+    assert again.keypoints.names == () and again.keypoints.seen.shape == (13, 0, 2)
+    assert again.weak_frames == made_up_review().weak_frames
+    with pytest.raises(KeyError):
+        Review.from_arrays({name: value for name, value in arrays.items() if name != "keypoint_swapped"})
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +101,65 @@ def test_the_motion_that_was_found_is_the_one_that_is_shown(take: Take) -> None:
     assert seen.reprojection_px == pytest.approx(result.motion.diagnostics["residual_px"], nan_ok=True)
     pixels, _ = result.model.camera.project(seen.points)
     assert seen.image_points == pytest.approx(pixels)
+
+
+def keypoints_of(take: Take, motion: Motion, names: tuple[str, ...]) -> Keypoints:
+    """What a detector would see of a motion: points two pixels beside the joints."""
+    points = motion.points[:, [take.body.skeleton.point_names.index(name) for name in names]]
+    pixel = take.camera.project(points)[0] + [2.0, 0.0]
+    noise = np.random.default_rng(6).normal(scale=0.3, size=pixel.shape)
+    unknown = np.full((*pixel.shape[:2], 3), np.nan)
+    return Keypoints(
+        names, ("a detector",) * len(names), pixel + noise, np.full(pixel.shape[:2], 0.9), unknown
+    )
+
+
+@pytest.mark.parametrize("kinds", [("keypoints",), ("contours",), ("markers", "keypoints")])
+def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
+    """Without markers nothing is drawn of them; keypoints lie where the motion puts them."""
+    frames = 24
+    truth = run(reconstruct(take)).motion
+    names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
+    keypoints = keypoints_of(take, truth, names)
+    seen = tuple(
+        SeenPeople(pixel[None], score[None], hint[None])
+        for pixel, score, hint in zip(keypoints.pixel, keypoints.score, keypoints.hint_m, strict=True)
+    )
+    people = People(names, "a detector", take.camera.resolution, seen)
+    partly = with_evidence(replace(take, keypoints=(people,)), kinds)
+    result = run(reconstruct(partly))
+    found = run(review(partly, result, np.arange(frames) + 1.0))
+    assert len(found.marker_names) == (5 if "markers" in kinds else 0)
+    assert found.observed.shape == found.predicted.shape
+    assert found.keypoints.names == (names if "keypoints" in kinds else ())
+    if "keypoints" in kinds:
+        assert np.nanmedian(found.keypoints.distance_px) < 3.0
+        assert np.nanmedian(found.keypoints.misfit) < 4.0
+        assert not found.keypoints.thrown_out.all(axis=0).any()
+    assert np.isfinite(found.confidence).all() and found.confidence[0] > found.confidence[4]
+    used = used_evidence(result)
+    assert (len(used.markers), len(used.keypoints)) == (len(partly.markers), int("keypoints" in kinds))
+    assert used.contours == (partly.contours and result.solution.contours is not None)
+    for said in used.keypoints:
+        assert said.points == names and 0.5 < said.believed <= 1.0
+    if used.markers:
+        filtered = used_evidence(run(reconstruct(partly, "ekf", result.reading)))
+        assert (filtered.markers, filtered.keypoints, filtered.contours) == (used.markers, (), False)
+    assert same(Review.from_arrays(found.to_arrays()), found)
+
+
+def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
+    """A motion beside the performer shows fewer edges, farther away, and is believed less."""
+    bare = with_evidence(take, ("contours",))
+    good = run(reconstruct(bare))
+    moved = replace(good.motion, posture=good.motion.posture.plus(ASIDE))
+    bad = replace(good, motion=moved)
+    sights = [run(contour_sight(result)) for result in (good, bad)]
+    assert sights[0].parts == sights[1].parts and "shin.L" in sights[0].parts
+    assert np.nanmedian(sights[1].misfit) > 2.0 * np.nanmedian(sights[0].misfit)
+    believed = [run(review(bare, result, np.arange(24) + 1.0)).confidence.mean() for result in (good, bad)]
+    assert believed[1] < believed[0]
+    assert run(contour_sight(run(reconstruct(take)))).parts == ()
 
 
 def test_few_keyframes_are_told_with_the_frames_that_lack_one(take: Take) -> None:

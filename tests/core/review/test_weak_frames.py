@@ -78,6 +78,25 @@ def test_each_reason_is_told_where_it_holds() -> None:
     assert (reasons[3].reason, reasons[3].marker) == (Reason.FAR, None)
 
 
+def test_a_body_point_is_told_where_its_keypoints_are_the_reason() -> None:
+    """The columns after the markers' are body points, named and not numbered."""
+    told = replace(evidence(), points=("wrist.L", "knee.R"))
+    told.squared_error[:] = 0.01
+    for middle in (30, 90):
+        told.squared_error[middle - 4 : middle + 5] = 1.0
+    told.quality[20:41, 2] = 0.0
+    told.misfit[80:101, 1] = 9.0
+    reasons = {frame.index // 60: frame for frame in find_weak_frames(told, [0, 60, 120])[:2]}
+    assert (reasons[0].reason, reasons[0].point, reasons[0].marker) == (Reason.HIDDEN, "knee.R", None)
+    assert (reasons[1].reason, reasons[1].point, reasons[1].marker) == (Reason.FOOTAGE, "wrist.L", None)
+
+
+def test_frames_without_any_marker_or_keypoint_have_reasons_too() -> None:
+    """A take with contours alone: the next keyframe is far, or the performer fast."""
+    none = np.zeros((FRAMES, 0))
+    assert find_weak_frames(replace(evidence(), quality=none, misfit=none), [0, 120])[0].reason is Reason.FAR
+
+
 def test_frames_before_the_first_and_after_the_last_keyframe_count() -> None:
     """There, too, a keyframe helps."""
     found = {frame.index for frame in find_weak_frames(evidence(), [60])}

@@ -3,12 +3,15 @@
 import json
 import re
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import cv2
+import numpy as np
 import pytest
 from _shoot import shoot_fields, write_frames, write_shoot
-from _synthetic_take import drawn_frames, true_postures
+from _synthetic_take import BODY, drawn_frames, true_postures, write_keyframes, write_keypoints
 from keymark.core.take.motion_file import read_motion
 from keymark.operators.cli.main import main
 
@@ -105,6 +108,52 @@ def test_where_clips_differ_they_tell_themselves(
     assert any("320 x 240 pixels: larger" in line for line in lines)
     assert any("text.mp4" in line and line.startswith("cannot be read") for line in lines)
     assert fields["library"] == "auto" and fields["floor_m"] == 0.0
+
+
+def gray(images: Iterable[np.ndarray]) -> list[np.ndarray]:
+    """The pictures without any color."""
+    return [cv2.cvtColor(cv2.cvtColor(image, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR) for image in images]
+
+
+def test_what_a_motion_can_be_held_against_is_said_of_each_clip(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Strong colors, keypoints beside the clip, or neither; markers are asked for, and may be left out."""
+    write_frames(folder / "plain.mp4", gray(drawn_frames(true_postures(FRAMES))))
+    write_frames(folder / "seen.mp4", gray(drawn_frames(true_postures(FRAMES))))
+    write_keypoints(folder / "seen.keypoints.json", true_postures(FRAMES))
+    write_keypoints(folder / "day1" / "take01.keypoints.json", true_postures(FRAMES))
+    assert new(folder, "--json") == 0
+    evidence = json.loads(capsys.readouterr().out)["evidence"]
+    assert evidence["plain"] == [] and evidence["seen"] == ["keypoints"]
+    assert evidence["day1/take01"] == ["markers", "keypoints"] and evidence["day1/take02"] == ["markers"]
+    fields = written(folder)
+    assert len(fields["markers"]) == 7 and any('"markers": null' in line for line in fields["markers"]["//"])
+    (plain,) = (line for line in fields["//evidence"] if "(plain)" in line)
+    assert "no garments in strong colors" in plain and "keymark detect" in plain and "contours" in plain
+
+
+def test_a_shoot_of_plain_clothes_is_asked_for_no_marker(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Camera and height are all that is to be filled in, and the clips are then ready."""
+    folder = tmp_path / "plain"
+    folder.mkdir()
+    posture = true_postures(FRAMES)
+    write_frames(folder / "one.mp4", gray(drawn_frames(posture)))
+    write_keyframes(folder / "one.keyframes.json", BODY.points(BODY.pose(posture)), 4)
+    write_keypoints(folder / "one.keypoints.json", posture)
+    assert new(folder) == 0
+    said = capsys.readouterr().out
+    assert re.findall(r"^  (\S+)$", said, flags=re.MULTILINE) == ["camera.matrix_world", "actor.height_m"]
+    fields, known = written(folder), shoot_fields()
+    assert "markers" not in fields and "strong colors" in fields["//markers"][0]
+    fields["camera"] |= {"matrix_world": known["camera"]["matrix_world"], "lens_mm": 40.0}
+    fields["actor"] |= known["actor"]
+    (folder / "shoot.json").write_text(json.dumps(fields), encoding="utf-8")
+    assert main(["check", str(folder)]) == 0
+    said = capsys.readouterr().out
+    assert "Held against keypoints and contours." in said and "\nready  one" in said
 
 
 def test_images_alone_cannot_tell_their_rate(folder: Path) -> None:

@@ -15,6 +15,7 @@ from keymark.core.take.conversion_record import (
     read_record,
     write_record,
 )
+from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 
 RECORD = ConversionRecord(
     digest="ab" * 16,
@@ -32,6 +33,7 @@ RECORD = ConversionRecord(
     weak_frames=(3,),
     notes=("A note.", "\u00c4rger \U0001f3ac"),
     files={"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32},
+    evidence=UsedEvidence(("trunk",), (UsedKeypoints("a detector", ("nose", "wrist.L"), 0.97),), False, True),
 )
 
 
@@ -91,6 +93,15 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
     (lambda v: v.update(files={"a": "ab"}), "it must be a SHA-256"),
     (lambda v: v.update(files={"a": None}), "it must be a SHA-256"),
     (lambda v: v.update(files={f"{n}": "ab" * 32 for n in range(200)}), "names 200 files"),
+    (lambda v: v.update(evidence=[]), "evidence is .*; it must be an object"),
+    (lambda v: v["evidence"].update(markers=["x" * 300]), "evidence: markers is"),
+    (lambda v: v["evidence"].update(contours=1), "evidence: contours is 1; it must be true or false"),
+    (lambda v: v["evidence"].update(keypoints=[1]), "evidence: keypoints is"),
+    (
+        lambda v: v["evidence"]["keypoints"][0].update(points=["tail"]),
+        r"keypoints\[0\]: points is \['tail'\]",
+    ),
+    (lambda v: v["evidence"]["keypoints"][0].update(believed=2), r"keypoints\[0\]: believed is 2"),
 ]
 
 
@@ -107,6 +118,20 @@ def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: st
 
 
 def test_what_is_written_can_be_read(tmp_path: Path) -> None:
-    """Also without confidence and library."""
+    """Also without confidence, library and evidence."""
     bare = replace(RECORD, library=None, confidence=None, notes=(), files={}, keyframes=(), matched=())
-    assert read_record(made(tmp_path, bare)) == bare
+    for evidence in (UsedEvidence(), None):
+        record = replace(bare, evidence=evidence)
+        assert read_record(made(tmp_path, record)) == record
+
+
+def test_evidence_is_told_in_words() -> None:
+    """Counted by kind; without any it is the keyframes alone."""
+    sources = (UsedKeypoints("a", ("nose",), 1.0), UsedKeypoints("b", ("nose", "wrist.L"), 0.5))
+    assert (
+        UsedEvidence(("trunk",), sources, True, True).words == "1 marker, 3 keypoints, depth hints, contours"
+    )
+    assert UsedEvidence(contours=True).words == "contours"
+    astray = (UsedKeypoints("a", ("nose",), 0.0),)
+    assert UsedEvidence(("trunk",), astray).words == "1 marker"
+    assert UsedEvidence().words == "keyframes alone"

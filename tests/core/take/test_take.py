@@ -165,8 +165,7 @@ MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
     ("camera list", lambda v: v.update(camera=[]), r"camera is \[\]"),
     ("lens", lambda v: v["camera"].update(lens_mm=-1), "lens_mm is -1"),
     ("matrix", lambda v: v["camera"].update(matrix_world=[[1]]), "matrix_world"),
-    ("markers empty", lambda v: v.update(markers={}), "markers is empty"),
-    ("markers missing", lambda v: v.pop("markers"), "markers is missing"),
+    ("markers mistyped", lambda v: v.update(marker=v.pop("markers")), "markers is missing .*'marker' meant"),
     (
         "unknown segment",
         lambda v: v["markers"].update(tail={"color_srgb": [1, 2, 3]}),

@@ -1,0 +1,95 @@
+"""Rows at keyframes: what is predicted less what is seen there, and what they depend on.
+
+Every kind of evidence that judges keyframes brings its rows, with the parameters that are calibrated on them;
+stacked, they are one system with the keyframes' own errors.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from ..arrays import Array
+
+UNUSED = 1e6
+"""Variance of a row that does not count [px²]."""
+LENS_STD = 0.03
+"""Standard deviation of a stated focal length, as a share."""
+
+
+@dataclass(frozen=True, eq=False)
+class EvidenceRows:
+    """The rows R of one kind of evidence at J judged keyframes, with X parameters of its own."""
+
+    residual: Array
+    """(J, R) predicted minus observed, at average parameters [px]."""
+    by_parameters: Array
+    """(J, R, X)."""
+    by_lens: Array
+    """(J, R) by the logarithm of the focal length."""
+    by_posture: Array
+    """(J, R, D) by the posture's tangent."""
+    variance: Array
+    """(J, R) at a perfectly posed keyframe [px²]; `UNUSED` for rows that do not count."""
+    prior: Array
+    """(X, X) information of the parameters' prior."""
+
+
+@dataclass(frozen=True, eq=False)
+class KeyframeRows:
+    """The rows of all evidence, R of them, with all parameters: X, of which the last is the lens."""
+
+    residual: Array
+    """(J, R)."""
+    parameter_jacobian: Array
+    """(J, R, X)."""
+    variance: Array
+    """(J, R)."""
+    posing: Array
+    """(J, R, R) covariance that a person's usual posing error adds."""
+    velocity: Array
+    """(J, R) change of the rows per frame."""
+    prior: Array
+    """(X, X)."""
+
+    @classmethod
+    def stacked(cls, parts: Sequence[EvidenceRows], posing: Array, velocity: Array) -> "KeyframeRows":
+        """The rows of several kinds of evidence, one after the other.
+
+        Args:
+            parts: The kinds.
+            posing: (J, D, D) usual posing error at the keyframes.
+            velocity: (J, D) change of their postures per frame.
+        """
+        judged = len(posing)
+        rows = [part.residual.shape[1] for part in parts]
+        own = [part.by_parameters.shape[2] for part in parts]
+        parameters = np.zeros((judged, sum(rows), sum(own) + 1))
+        row = column = 0
+        for part, height, width in zip(parts, rows, own, strict=True):
+            parameters[:, row : row + height, column : column + width] = part.by_parameters
+            parameters[:, row : row + height, -1] = part.by_lens
+            row, column = row + height, column + width
+        jacobian = np.concatenate([part.by_posture for part in parts], axis=1)
+        return cls(
+            np.concatenate([part.residual for part in parts], axis=1),
+            parameters,
+            np.concatenate([part.variance for part in parts], axis=1),
+            jacobian @ posing @ np.swapaxes(jacobian, -1, -2),
+            (jacobian @ velocity[..., None])[..., 0],
+            block_diag(*(part.prior for part in parts), LENS_STD**-2),
+        )
+
+    def noise(self, weight: Array, scale: float, timing: float) -> Array:
+        """(J, R, R) covariance of the rows without the parameters' own.
+
+        Args:
+            weight: (J, R) of each row, 1 for one that is no outlier.
+            scale: Size of the posing error relative to a person's usual one.
+            timing: Standard deviation of the timing error [frames].
+        """
+        total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
+        rows = np.arange(total.shape[-1])
+        total[:, rows, rows] += self.variance / weight
+        return total

@@ -1,0 +1,188 @@
+"""Calibration of keypoints on posed keyframes: where each sits on its segment, and how far it errs.
+
+Both are shrunk toward usual values, since keyframes are few: places toward where detectors usually have a
+point and toward its mirror image's, errors toward the usual one and that of all points of the same name.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.kinematics import Body, Pose
+from ..footage.camera import Camera
+from ..footage.keypoints.body_points import mirrored_point
+from ..observation.keypoints import USUAL_PLACES, KeypointModel
+from .keyframe_rows import UNUSED, EvidenceRows
+from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
+
+MIRRORED = 0.7
+"""Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
+sides."""
+NAME_COUNT, POINT_COUNT = 40.0, 12.0
+"""Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
+MEMORY_S = 0.15
+"""Time in which an error fades to a third."""
+CLIP_FACTOR = 2.5
+"""Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
+a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
+turns it a long way toward or away from the camera, of which a linearised row knows nothing."""
+LARGEST_ERROR = 4.0
+"""A larger error, in standard deviations, is an outlier and counts as one this large."""
+
+
+@dataclass(frozen=True, eq=False)
+class KeypointEvidence:
+    """The calibrated model of N keypoints, and the trust they deserve."""
+
+    model: KeypointModel
+    """With the places and the lens found."""
+    sources: tuple[str, ...]
+    """(N,) what saw each."""
+    std_m: Array
+    """(N,) error of a sure detection along each axis of the image [m]."""
+    trust: Array
+    """(N,) 1 for points that are believed, 0 for those left out."""
+    memory_s: float = MEMORY_S
+    """Time in which an error fades to a third [s]."""
+
+    @classmethod
+    def usual(
+        cls, body: Body, camera: Camera, names: tuple[str, ...], sources: tuple[str, ...]
+    ) -> "KeypointEvidence":
+        """Keypoints before any keyframe is posed: usual places and errors."""
+        return cls(
+            KeypointModel.usual(body, camera, names),
+            sources,
+            usual_std_m(names, sources),
+            np.ones(len(names)),
+        )
+
+    @property
+    def error_m(self) -> Array:
+        """(N,) error along each axis of the image that the estimate of a clip reckons with [m]."""
+        return np.where(self.trust > 0.0, CLIP_FACTOR * self.std_m, np.inf)
+
+    def with_camera(self, camera: Camera) -> "KeypointEvidence":
+        """The same before another camera."""
+        return replace(self, model=replace(self.model, camera=camera))
+
+
+def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
+    """(N,) usual error of sure detections along each axis of the image [m].
+
+    Points of one source on one segment, a wrist and the knuckles, err together: all weigh as much as one.
+    """
+    joints = [USUAL_PLACES[name].joint for name in names]
+    together = list(zip(joints, sources, strict=True))
+    return np.array(
+        [
+            USUAL_PLACES[name].error_std_m * together.count(one) ** 0.5
+            for name, one in zip(names, together, strict=True)
+        ]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class KnownKeypoints:
+    """Keypoints at J frames whose posture is known."""
+
+    pose: Pose
+    """Forward kinematics of the postures."""
+    frame: IndexArray
+    """(J,) their indices in the clip."""
+    observed: ObservedKeypoints
+
+
+def keypoint_rows(
+    model: KeypointModel, usual: KeypointModel, known: KnownKeypoints, std_m: Array
+) -> EvidenceRows:
+    """Two rows a keypoint, with three parameters each, its place.
+
+    Args:
+        model: The points at the places found so far, before the lens found so far.
+        usual: The points at their usual places, before the stated lens, which parameters count from.
+        known: The keypoints seen.
+        std_m: (N,) error of a sure detection.
+    """
+    pixel = model.pixels(known.pose, known.frame)
+    by_place = model.place_jacobian(known.pose, known.frame)
+    by_posture = model.pixels_jacobian(known.pose, known.frame)
+    by_lens = model.lens_jacobian(known.pose, known.frame)
+    zoom = float(np.log(usual.camera.lens_mm / model.camera.lens_mm))
+    residual = pixel - known.observed.pixel
+    residual = residual + (by_place @ (usual.place - model.place)[..., None])[..., 0] + by_lens * zoom
+    std_px = _scale(model, known) * std_m / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)
+    variance = std_px**2 + PIXEL_STD**2
+    usable = np.isfinite(residual).all(axis=-1) & np.isfinite(variance)
+    judged, points = usable.shape
+    shape = (judged, points * 2)
+    own = np.zeros((judged, points, 2, points, 3))
+    index = np.arange(points)
+    own[:, index, :, index] = np.moveaxis(np.where(usable[..., None, None], by_place, 0.0), 1, 0)
+    return EvidenceRows(
+        np.where(usable[..., None], residual, 0.0).reshape(shape),
+        own.reshape(*shape, -1),
+        np.where(usable[..., None], by_lens, 0.0).reshape(shape),
+        np.where(usable[..., None, None], by_posture, 0.0).reshape(*shape, -1),
+        np.repeat(np.where(usable, variance, UNUSED), 2, axis=1),
+        np.linalg.inv(place_covariance(model.names)),
+    )
+
+
+def place_covariance(names: tuple[str, ...], sources: tuple[str, ...] | None = None) -> Array:
+    """(3 N, 3 N) prior covariance of the places' departure from the usual ones [m²]."""
+    count = len(names)
+    std = np.array([USUAL_PLACES[name].place_std_m for name in names])
+    shared = np.eye(count)
+    for first, name in enumerate(names):
+        for second, other in enumerate(names):
+            alike = sources is None or sources[first] == sources[second]
+            if first != second and alike and other == mirrored_point(name):
+                shared[first, second] = MIRRORED
+    shared *= std[:, None] * std
+    covariance = np.zeros((count, 3, count, 3))
+    for axis, sign in enumerate((-1.0, 1.0, 1.0)):  # a mirror image is one along x
+        covariance[:, axis, :, axis] = np.where(np.eye(count, dtype=bool), shared, sign * shared)
+    return covariance.reshape(3 * count, 3 * count)
+
+
+def learned_std(
+    model: KeypointModel, known: KnownKeypoints, usual_m: Array, std_m: Array, left: Array, noise: Array
+) -> Array:
+    """(N,) error of a sure detection [m] by what is left at the keyframes.
+
+    A step of expectation maximization, in which the rows' error is what is not known.
+
+    Args:
+        model: The points' model.
+        known: The keypoints seen at J keyframes.
+        usual_m: (N,) usual errors.
+        std_m: (N,) the errors so far.
+        left: (J, 2 N) rows that the calibrated places leave.
+        noise: (J, 2 N, 2 N) their covariance.
+    """
+    judged, points = known.observed.confidence.shape
+    scale = _scale(model, known) / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)
+    own = np.repeat((scale * std_m) ** 2, 2, axis=1)
+    inverse = np.linalg.inv(noise)
+    mean = own * (inverse @ left[..., None])[..., 0]
+    spread = own - own**2 * np.diagonal(inverse, axis1=1, axis2=2)
+    squared = (mean**2 + spread).reshape(judged, points, 2).sum(-1) / scale**2  # of both axes [m²]
+    used = known.observed.seen
+    bounded = np.minimum(squared, LARGEST_ERROR**2 * 2.0 * std_m**2)
+    total, count = np.where(used, bounded, 0.0).sum(axis=0), 2.0 * used.sum(axis=0)
+    usual = usual_m**2
+    stems = np.array([name.partition(".")[0] for name in model.names])
+    variance = np.empty(points)
+    for stem in np.unique(stems):
+        same = stems == stem
+        pooled = (NAME_COUNT * usual[same].mean() + total[same].sum()) / (NAME_COUNT + count[same].sum())
+        variance[same] = (POINT_COUNT * pooled + total[same]) / (POINT_COUNT + count[same])
+    return np.sqrt(variance)
+
+
+def _scale(model: KeypointModel, known: KnownKeypoints) -> Array:
+    """(J, N) pixels of a meter at each point."""
+    depth = model.camera.depth(model.world(known.pose), known.frame[:, None])
+    return np.asarray(model.camera.focal_px / np.maximum(depth, 0.1))

@@ -1,0 +1,85 @@
+"""Keypoints against their prediction, in pixels: robust, and with errors that last."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array, BoolArray, IndexArray
+from ...body.kinematics import Pose
+from ...footage.keypoints.keypoints import Keypoints
+from ...observation.keypoints import KeypointModel
+from ..clip_state import ClipState
+from .drift import Drift, add_drift, drift
+from .term import NormalEquations
+
+PIXEL_STD = 0.35
+"""Standard deviation of a perfect detection, as of a region's centroid [px]."""
+LEAST_CONFIDENCE = 0.1
+"""A doubtful detection errs by up to ten times as much as a sure one."""
+SURE_QUANTILE = 0.9
+"""A source's sure detections have at least this quantile of its scores, whose scale is its own."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedKeypoints:
+    """N keypoints in F frames, with their confidence relative to the source's sure ones."""
+
+    pixel: Array
+    """(F, N, 2) [px], NaN where not seen."""
+    confidence: Array
+    """(F, N) 0.1 to 1; 0 where not seen."""
+
+    @classmethod
+    def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
+        """The keypoints of a clip."""
+        seen, confidence = keypoints.seen, np.zeros(keypoints.score.shape)
+        for source in dict.fromkeys(keypoints.sources):
+            own = np.array([name == source for name in keypoints.sources])
+            scores = keypoints.score[:, own]
+            if seen[:, own].any():
+                sure = max(float(np.quantile(scores[seen[:, own]], SURE_QUANTILE)), 1e-6)
+                confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
+        return cls(np.where(seen[..., None], keypoints.pixel, np.nan), np.where(seen, confidence, 0.0))
+
+    @property
+    def seen(self) -> BoolArray:
+        """(F, N) whether each is seen."""
+        return np.asarray(self.confidence > 0.0)
+
+    def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
+        """Those of some frames."""
+        return ObservedKeypoints(self.pixel[index], self.confidence[index])
+
+
+@dataclass(frozen=True, eq=False)
+class KeypointTerm:
+    """Compares every keypoint that is seen with its prediction."""
+
+    model: KeypointModel
+    observed: ObservedKeypoints
+    std_m: Array
+    """(N,) error of a sure detection along each axis [m]; infinite for what is not believed."""
+    kept: Array
+    """(F - 1, N) share of an error that is left in the next frame."""
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add two rows for each keypoint."""
+        error, std_px, used = self.errors(state.pose, state.frame)
+        rows = drift(error, used, self.kept, temperature)
+        jacobian = self.model.pixels_jacobian(state.pose, state.frame) / std_px[..., None, None]
+        jacobian = np.where(used[..., None, None], jacobian, 0.0)
+        add_drift(equations, jacobian @ state.tangent_jacobian[:, None], rows)
+
+    def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
+        """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""
+        pixel, depth = self.model.camera.project(self.model.world(pose), frame[:, None])
+        scale = self.model.camera.focal_px / np.maximum(depth, 0.1)
+        sure = np.maximum(self.observed.confidence, LEAST_CONFIDENCE)
+        std_px = np.hypot(self.std_m * scale / sure, PIXEL_STD)
+        error = (pixel - self.observed.pixel) / std_px[..., None]
+        return error, std_px, np.isfinite(error).all(axis=-1) & np.isfinite(std_px)
+
+    def weigh(self, pose: Pose, frame: IndexArray) -> Drift:
+        """The weights of all keypoints at given poses."""
+        error, _, used = self.errors(pose, frame)
+        return drift(error, used, self.kept)

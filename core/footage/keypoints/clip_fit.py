@@ -1,0 +1,184 @@
+"""What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
+
+import numpy as np
+
+from ...arrays import Array, BoolArray
+from ...errors import InputError
+from .detected_frames import DetectedFrames, DetectedPerson, check_points
+from .frame_numbers import MOST_FRAMES, Alignment, align_listed, align_numbered
+from .people import People, SeenPeople
+from .scores import confidences
+
+RATE_TOLERANCE = 0.01
+"""Frame rates closer than this share are one: 29.97 and 30."""
+MOST_OUTSIDE = 0.5
+"""Share of the points outside the picture, above which the detector saw another one."""
+LARGEST_SHARE = 2.0
+"""Shares of a picture lie about 0 to 1; guesses outside it are the exception."""
+SMALLEST_EXTENT_PX = 2.5
+"""Everyone's coordinates within so few pixels of the corner are no pixels."""
+
+
+def held_against_clip(
+    detected: DetectedFrames,
+    frame_count: int | None,
+    size: tuple[int, int],
+    fps: float | None,
+    frame_start: int,
+) -> People:
+    """The people of each frame of the clip, in its pixels.
+
+    A point is not seen where its score is 0, where it lies at exactly (0, 0), which stands for nothing found,
+    and outside the picture, where a network can only guess.
+
+    Args:
+        detected: What a file holds.
+        frame_count: Frames of the clip; None where it is not known.
+        size: Width and height of the clip's pictures [px].
+        fps: Frames per second of the clip; None where it is not known.
+        frame_start: Scene frame of the clip's first frame.
+
+    Raises:
+        InputError: It is of another clip, or nobody is seen in it.
+    """
+    if not any(detected.people.values()):
+        raise InputError(
+            f"{detected.where}: nobody is seen in any of its {len(detected.people)} frames; "
+            "it must show a person"
+        )
+    aligned = _aligned(detected, frame_count, fps, frame_start)
+    persons = [person for people in detected.people.values() for person in people]
+    check_points(len(persons) * detected.layout.count, detected.where)
+    place = np.stack([person.place for person in persons])[:, detected.layout.numbers]
+    scale, size_notes = _scale(detected, place, size)
+    place *= scale
+    scores = np.stack([person.score for person in persons])[:, detected.layout.numbers]
+    placed = np.isfinite(place).all(axis=-1) & place.any(axis=-1)
+    score = np.zeros(placed.shape)
+    score[placed], score_notes = confidences(scores[placed], detected.where)
+    seen = placed & (np.nan_to_num(score) > 0.0)
+    inside = ((place >= 0.0) & (place <= np.array(size))).all(axis=-1)
+    _check_places(detected, place, seen, inside, size)
+    seen &= inside
+    place[~seen], score[~seen] = np.nan, 0.0
+    hint = _hints(persons, detected.layout.numbers, seen)
+    frames, row = [_nobody(len(detected.layout.numbers))] * aligned.frame_count, 0
+    for number, people in detected.people.items():
+        rows = np.arange(row, row + len(people))
+        row += len(people)
+        rows = rows[seen[rows].any(axis=-1)] if len(people) else rows
+        index = number - aligned.first
+        if len(rows) and 0 <= index < aligned.frame_count:
+            frames[index] = SeenPeople(place[rows], score[rows], hint[rows])
+    if not any(len(frame.pixel) for frame in frames):
+        raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
+    return People(
+        detected.layout.names,
+        detected.source,
+        size,
+        tuple(frames),
+        file=detected.where,
+        by_hand=detected.by_hand,
+        notes=aligned.notes + size_notes + score_notes,
+    )
+
+
+def _nobody(points: int) -> SeenPeople:
+    return SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+
+
+def _aligned(
+    detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
+) -> Alignment:
+    where = detected.where
+    if detected.numbered:
+        aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete)
+    else:
+        rates = _other_rate(detected, fps)
+        why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}" if rates else ""
+        count = len(detected.people)
+        aligned = align_listed(count, frame_count, where, why)
+        notes = aligned.notes
+        start = detected.frame_start
+        if start not in (None, frame_start):
+            if frame_count is not None and count != frame_count:
+                raise InputError(
+                    f"{where}: frame_start is {start} and its {count} entries are not the clip's "
+                    f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
+                )
+            notes += (
+                f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first entry was "
+                "taken for the clip's first frame",
+            )
+        if rates and aligned.frame_count == count:
+            notes += (
+                f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was taken "
+                "frame by frame",
+            )
+        aligned = Alignment(aligned.first, aligned.frame_count, notes)
+    if aligned.frame_count > MOST_FRAMES:
+        raise InputError(f"{where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read")
+    return aligned
+
+
+def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, float] | None:
+    """The file's frame rate and the clip's, where they differ."""
+    if fps is None or detected.fps is None or abs(detected.fps - fps) <= RATE_TOLERANCE * fps:
+        return None
+    return detected.fps, fps
+
+
+def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
+    """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
+    known = place[np.isfinite(place)]
+    if detected.shares and (not len(known) or np.median(np.abs(known)) <= LARGEST_SHARE):
+        return np.array(size, dtype=np.float64), ()
+    if detected.size in (None, size):
+        return np.ones(2), ()
+    assert detected.size is not None
+    (width, height), (clip_width, clip_height) = detected.size, size
+    # The height that fits the other's width may differ by the rounding of both.
+    wanted = clip_height * width / clip_width
+    if abs(wanted - height) > 1.0 + width / clip_width:
+        turned = " (it was turned: width and height are swapped)" if size == (height, width) else ""
+        raise InputError(
+            f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
+            "proportions must be the same, so the keypoints must be found again in this clip"
+        )
+    scale = np.array([clip_width / width, clip_height / height])
+    note = f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's {size[0]} x"
+    return scale, (f"{note} {size[1]}",)
+
+
+def _check_places(
+    detected: DetectedFrames, place: Array, seen: BoolArray, inside: BoolArray, size: tuple[int, int]
+) -> None:
+    """Refuse coordinates that are not those of the clip's pixels.
+
+    Raises:
+        InputError: Most are outside the picture, or all in its corner, as shares of it would be.
+    """
+    if not seen.any():
+        raise InputError(f"{detected.where}: no point has a score above 0; it must show a person")
+    reach = float(np.abs(place[seen]).max())
+    if reach <= SMALLEST_EXTENT_PX < min(size) / 2:
+        raise InputError(
+            f"{detected.where}: all coordinates lie within {reach:.3g} of 0, as shares of a picture do; they "
+            "must be pixels of the clip (OpenPose writes them with --keypoint_scale 0)"
+        )
+    if (seen & ~inside).sum() > MOST_OUTSIDE * seen.sum():
+        x, y = np.median(place[seen], axis=0)
+        raise InputError(
+            f"{detected.where}: most points lie outside the clip's picture, around ({x:.0f}, {y:.0f}); "
+            f"they must be pixels of the clip, which is {size[0]} x {size[1]}"
+        )
+
+
+def _hints(persons: list[DetectedPerson], numbers: list[int], seen: BoolArray) -> Array:
+    """(S, N, 3) the guessed points of everyone [m], NaN where there are none."""
+    hint = np.full((*seen.shape, 3), np.nan)
+    for row, person in enumerate(persons):
+        if person.hint_m is not None:
+            hint[row] = person.hint_m[numbers]
+    hint[~seen] = np.nan
+    return hint

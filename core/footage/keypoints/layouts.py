@@ -1,0 +1,121 @@
+"""Layouts: which point of the body each number in a detector's list of points shows.
+
+What the points mean differs between detectors. COCO's points were clicked by people who saw clothes, so that
+hips lie higher and farther apart than the joints; OpenPose's Neck and MidHip are the middles of shoulders and
+hips; Halpe's Head is the top of the head, its Neck and Hip are points of their own; BlazePose's foot index is
+the tip of the big toe, and its mouth and the corners of its eyes are left out. Layouts without a point for
+the head have the ears: what was seen is kept, and the estimate makes of it what it can.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ...body.skeleton import SIDES
+
+OWN = "own"
+"""Name of a layout whose file lists the names itself."""
+INDEX_KNUCKLE, THUMB_KNUCKLE, PINKY_KNUCKLE = 5, 2, 17
+"""In the 21 points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """An order of points."""
+
+    name: str
+    count: int
+    """Number of points of a person in the file."""
+    points: Mapping[int, str]
+    """The body point by number; numbers that are missing show nothing that is used."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The body points that are used, in the order of their numbers."""
+        return tuple(self.points[number] for number in sorted(self.points))
+
+    @property
+    def numbers(self) -> list[int]:
+        """Their numbers."""
+        return sorted(self.points)
+
+
+def _both(*parts: str) -> list[str]:
+    """Left and right of each part, one after the other."""
+    return [f"{part}.{side}" for part in parts for side in SIDES]
+
+
+def _limb(side: str, *parts: str) -> list[str]:
+    return [f"{part}.{side}" for part in parts]
+
+
+def _layout(
+    name: str, count: int, names: Sequence[str | None], more: Mapping[int, str] | None = None
+) -> Layout:
+    points = {number: point for number, point in enumerate(names) if point is not None}
+    return Layout(name, count, MappingProxyType(points | dict(more or {})))
+
+
+def _hands(left: int, right: int) -> dict[int, str]:
+    """Knuckles of the two hands, whose 21 points begin at these numbers."""
+    knuckles = {"index": INDEX_KNUCKLE, "thumb": THUMB_KNUCKLE, "pinky": PINKY_KNUCKLE}
+    return {
+        first + knuckle: f"{finger}.{side}"
+        for side, first in zip(SIDES, (left, right), strict=True)
+        for finger, knuckle in knuckles.items()
+    }
+
+
+_ARM, _LEG = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
+_COCO = ["nose", *_both("eye", "ear", *_ARM, *_LEG)]
+_OPENPOSE_ARMS = ["nose", "neck", *_limb("R", *_ARM), *_limb("L", *_ARM)]
+_OPENPOSE_FACE = ["eye.R", "eye.L", "ear.R", "ear.L"]
+_HALPE = [*_COCO, "crown", "neck", "pelvis", *_both("toe", "small_toe", "heel")]
+_FOOT = ("toe", "small_toe", "heel")
+_BLAZEPOSE = [
+    *("nose", None, "eye.L", None, None, "eye.R", None, "ear.L", "ear.R", None, None),
+    *_both(*_ARM, "pinky", "index", "thumb", *_LEG, "heel", "toe"),
+]
+
+LAYOUTS: Mapping[str, Layout] = MappingProxyType(
+    {
+        layout.name: layout
+        for layout in (
+            _layout("coco17", 17, _COCO),
+            _layout("coco18", 18, [*_OPENPOSE_ARMS, *_limb("R", *_LEG), *_limb("L", *_LEG), *_OPENPOSE_FACE]),
+            _layout(
+                "body25",
+                25,
+                [
+                    *_OPENPOSE_ARMS,
+                    "pelvis",
+                    *_limb("R", *_LEG),
+                    *_limb("L", *_LEG),
+                    *_OPENPOSE_FACE,
+                    *_limb("L", *_FOOT),
+                    *_limb("R", *_FOOT),
+                ],
+            ),
+            _layout("halpe26", 26, _HALPE),
+            _layout("blazepose33", 33, _BLAZEPOSE),
+            _layout("wholebody133", 133, [*_COCO, *_limb("L", *_FOOT), *_limb("R", *_FOOT)], _hands(91, 112)),
+            _layout("halpe136", 136, _HALPE, _hands(94, 115)),
+        )
+    }
+)
+"""All that detectors use; no two have the same number of points."""
+
+
+def layout_of(count: int) -> Layout | None:
+    """The layout that has so many points; None where none has."""
+    return next((layout for layout in LAYOUTS.values() if layout.count == count), None)
+
+
+def own_layout(names: Sequence[str]) -> Layout:
+    """A layout of these body points."""
+    return _layout(OWN, len(names), names)
+
+
+def layout_words() -> str:
+    """The layouts with their numbers of points, for sentences."""
+    return ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())

@@ -1,0 +1,166 @@
+"""Measurement model of keypoints: points fixed to segments, seen in the image, with Jacobians.
+
+A detector's shoulder or hip is not the joint's center, and a nose, a knuckle or a toe is no principal point
+at all. So every point of the body has a usual place in the frame of one of the skeleton's joints, from which
+a calibration departs. Hands and feet do not turn against forearm and shin in a posture; their points err by
+what wrists and ankles really do.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.body_volume import HEAD_OVERSHOOT
+from ..body.human import HUMAN, WAIST_HEIGHT
+from ..body.kinematics import Body, Pose
+from ..body.skeleton import SIDES, Placement
+from ..body.soles import HEEL_BEHIND
+from ..footage.camera import Camera
+
+
+@dataclass(frozen=True)
+class UsualPlace:
+    """Where a point of the body usually is, and by how much a detector's point differs from it."""
+
+    joint: str
+    """The joint in whose frame it is fixed."""
+    placement: Placement
+    """Its place there, in shares of the actor's lengths."""
+    place_std_m: float
+    """Standard deviation, along each axis, of where detectors and performers have it [m]."""
+    error_std_m: float
+    """Usual error of a sure detection, along each axis of the image [m]."""
+
+
+JOINT_PLACE_STD_M, WIDE_PLACE_STD_M = 0.02, 0.035
+"""Of limbs' joints; and of hips, shoulders, head and trunk, which detectors define as they please [m]."""
+JOINT_ERROR_STD_M = 0.02
+"""An error of a fifth of a limb's length at most, as detectors have; also what annotators differ by."""
+WRIST_TURN_RAD, ANKLE_TURN_RAD = 0.35, 0.35
+"""How far hands and feet usually turn about wrist and ankle, which no posture tells [rad]."""
+NECK_HEAD = "neck_head"
+# Heights and breadths of the head over `neck_head`, from averages of adults (Gordon et al. 2014, as in
+# `body_volume`): pupils level with the head's center and 32 mm off the middle, tragus 15 mm below it.
+FACE: Mapping[str, tuple[float, float, float]] = {
+    "nose": (0.0, -0.48, 0.88),
+    "eye": (0.13, -0.36, 1.0),
+    "ear": (0.32, 0.0, 0.94),
+    "crown": (0.0, 0.0, HEAD_OVERSHOOT),
+}
+# Along the hand, toward the thumb and out of the palm's plane, in lengths of a hand, palms down and thumbs
+# forward at rest.
+HAND: Mapping[str, tuple[float, float, float]] = {
+    "index": (0.48, -0.12, 0.0),
+    "thumb": (0.27, -0.22, -0.08),
+    "pinky": (0.42, 0.15, 0.0),
+}
+# Out, back and up in lengths from ankle to the tip of the toes; a foot rigid with an upright shin.
+FOOT: Mapping[str, tuple[float, float, float]] = {
+    "heel": (0.0, HEEL_BEHIND, -0.36),
+    "toe": (0.0, -0.93, -0.36),
+    "small_toe": (0.22, -0.75, -0.36),
+}
+
+
+def _usual_places() -> dict[str, UsualPlace]:
+    joint = {point.name: HUMAN.joints[point.joint].name for point in HUMAN.points}
+    wide = ("shoulder", "hip", "head")
+    places = {
+        point.name: UsualPlace(
+            joint[point.name],
+            point.placement,
+            WIDE_PLACE_STD_M if point.name.split(".")[0] in wide else JOINT_PLACE_STD_M,
+            JOINT_ERROR_STD_M,
+        )
+        for point in HUMAN.points
+    }
+    middle = {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)}
+    places["neck"] = UsualPlace("waist", middle, WIDE_PLACE_STD_M, JOINT_ERROR_STD_M)
+    places["pelvis"] = UsualPlace("pelvis", {}, WIDE_PLACE_STD_M, JOINT_ERROR_STD_M)
+    for name, (out, back, up) in FACE.items():
+        for side, sign in (("", 0.0),) if out == 0.0 else ((".L", 1.0), (".R", -1.0)):
+            placement: Placement = {NECK_HEAD: (sign * out, back, up)}
+            places[name + side] = UsualPlace("neck", placement, JOINT_PLACE_STD_M, JOINT_ERROR_STD_M)
+    for side in SIDES:
+        sign = 1.0 if side == "L" else -1.0
+        length = HUMAN_LENGTHS_M["hand"]
+        for name, (along, back, up) in HAND.items():
+            placement = {f"forearm.{side}": (sign, 0.0, 0.0), f"hand.{side}": (sign * along, back, up)}
+            turned = WRIST_TURN_RAD * length * along
+            places[f"{name}.{side}"] = _at_an_extremity(f"forearm.{side}", placement, turned)
+        length = HUMAN_LENGTHS_M["foot"]
+        for name, (out, back, up) in FOOT.items():
+            placement = {f"shin.{side}": (0.0, 0.0, -1.0), f"foot.{side}": (sign * out, back, up)}
+            turned = ANKLE_TURN_RAD * length * float(np.hypot(back, up))
+            places[f"{name}.{side}"] = _at_an_extremity(f"shin.{side}", placement, turned)
+    return places
+
+
+HUMAN_LENGTHS_M: Mapping[str, float] = {"hand": 0.19, "foot": 0.19}
+
+
+def _at_an_extremity(joint: str, placement: Placement, turned_m: float) -> UsualPlace:
+    error = float(np.hypot(JOINT_ERROR_STD_M, turned_m))
+    return UsualPlace(joint, placement, JOINT_PLACE_STD_M, error)
+
+
+USUAL_PLACES: Mapping[str, UsualPlace] = _usual_places()
+"""By the name of the body point."""
+
+
+@dataclass(frozen=True, eq=False)
+class KeypointModel:
+    """Predicts where N named points of an actor are seen."""
+
+    body: Body
+    camera: Camera
+    names: tuple[str, ...]
+    """(N,) the body points; the same one may occur several times."""
+    place: Array
+    """(N, 3) where each sits in its joint's frame [m]."""
+
+    @classmethod
+    def usual(cls, body: Body, camera: Camera, names: tuple[str, ...]) -> "KeypointModel":
+        """Points at their usual places."""
+        places = [body.local(USUAL_PLACES[name].placement) for name in names]
+        return cls(body, camera, names, np.array(places).reshape(len(names), 3))
+
+    def changed(self, change: Array, camera: Camera) -> "KeypointModel":
+        """The model with places moved by `change` (N, 3) [m], before another camera."""
+        return replace(self, place=self.place + change, camera=camera)
+
+    @cached_property
+    def joint(self) -> IndexArray:
+        """(N,) the joint that each point moves with."""
+        index = [self.body.skeleton.joint_index(USUAL_PLACES[name].joint) for name in self.names]
+        return np.array(index, dtype=np.intp)
+
+    def world(self, pose: Pose) -> Array:
+        """(F, N, 3) the points in space [m]."""
+        turned = pose.rotation[:, self.joint] @ self.place[..., None]
+        return np.asarray(pose.origin[:, self.joint] + turned[..., 0])
+
+    def pixels(self, pose: Pose, frame: IndexArray) -> Array:
+        """(F, N, 2) the points in the image [px], NaN behind the camera; `frame` (F,) as in the clip."""
+        return self.camera.project(self.world(pose), frame[:, None])[0]
+
+    def pixels_jacobian(self, pose: Pose, frame: IndexArray) -> Array:
+        """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad]."""
+        rows, world = self._rows(pose, frame)
+        return np.asarray(rows @ pose.places_jacobian(self.joint.tolist(), world))
+
+    def place_jacobian(self, pose: Pose, frame: IndexArray) -> Array:
+        """(F, N, 2, 3) derivative of the pixels by each point's own place [px per m]."""
+        rows, _ = self._rows(pose, frame)
+        return np.asarray(rows @ pose.rotation[:, self.joint])
+
+    def lens_jacobian(self, pose: Pose, frame: IndexArray) -> Array:
+        """(F, N, 2) derivative of the pixels by the logarithm of the focal length [px]."""
+        return np.asarray(self.pixels(pose, frame) - self.camera.principal_point)
+
+    def _rows(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array]:
+        world = self.world(pose)
+        return self.camera.project_jacobian(world, frame[:, None]), world

@@ -1,0 +1,126 @@
+"""Keypoints beside the places where the motion puts them: which were followed, and how well."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array, BoolArray
+from ..footage.keypoints.body_points import FACE
+from .confidence import misfits
+
+PREFIX = "keypoint_"
+"""Of the names of the arrays in a cache."""
+PARTS = {
+    **{name.partition(".")[0]: "head" for name in (*FACE, "crown")},
+    **dict.fromkeys(("index", "thumb", "pinky"), "wrist"),
+    **dict.fromkeys(("heel", "toe", "small_toe"), "ankle"),
+}
+"""Points that lie beside a principal point, and err and hide with it."""
+
+
+def part_of(name: str) -> str:
+    """The principal point, neck or pelvis for which a body point stands: the head for an ear."""
+    stem, dot, side = name.partition(".")
+    part = PARTS.get(stem)
+    if part is None:
+        return name
+    return part if part == "head" else f"{part}{dot}{side}"
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedKeypoints:
+    """N keypoints in F frames; NaN where there is none."""
+
+    names: tuple[str, ...]
+    """(N,) the body point each shows."""
+    sources: tuple[str, ...]
+    """(N,) what saw each."""
+    seen: Array
+    """(F, N, 2) where each was seen [px]; left and right are exchanged back where they were swapped."""
+    predicted: Array
+    """(F, N, 2) where the motion puts it [px]."""
+    confidence: Array
+    """(F, N) of its source, 1 for what it is sure of, 0 where not seen."""
+    distance_px: Array
+    """(F, N) between the two; NaN where not compared."""
+    expected_px: Array
+    """(F, N) standard deviation of each coordinate of that distance; infinite for what is left out."""
+    thrown_out: BoolArray
+    """(F, N) seen, but not believed."""
+    swapped: BoolArray
+    """(F, N) seen on the other side of the body by its source."""
+
+    @classmethod
+    def none(cls, frames: int) -> "ComparedKeypoints":
+        """No keypoint at all, N = 0."""
+        places, numbers, no = np.zeros((frames, 0, 2)), np.zeros((frames, 0)), np.zeros((frames, 0), bool)
+        return cls((), (), places, places, numbers, numbers, numbers, no, no)
+
+    @property
+    def misfit(self) -> Array:
+        """(F, N) reduced squared distances: 1 on average where the noise is as assumed; NaN if unknown."""
+        known = np.where(np.isfinite(self.expected_px), self.distance_px, np.nan)
+        return misfits(known, self.expected_px)
+
+    def parts(self) -> tuple[str, ...]:
+        """The K parts of the body that any keypoint stands for, in the order of the keypoints."""
+        return tuple(self._columns())
+
+    def by_part(self, values: Array) -> Array:
+        """(F, K) medians over each part's keypoints of values (F, N); NaN where all are.
+
+        A detector errs alike on neighbors, and hides them together: five points of the face are one witness.
+        """
+        columns = self._columns()
+        result = np.full((len(values), len(columns)), np.nan)
+        for part, own in enumerate(columns.values()):
+            known = np.isfinite(values[:, own]).any(axis=1)
+            result[known, part] = np.nanmedian(values[known][:, own], axis=1)
+        return result
+
+    def quality(self) -> Array:
+        """(F, K) confidence of the best keypoint of each part, 0 where none is seen."""
+        best = [self.confidence[:, own].max(axis=1) for own in self._columns().values()]
+        return np.stack(best, axis=1) if best else np.zeros((len(self.confidence), 0))
+
+    def _columns(self) -> dict[str, list[int]]:
+        """The keypoints of each part, without those that are left out all along, which nobody misses."""
+        columns: dict[str, list[int]] = {}
+        for index in np.flatnonzero(np.isfinite(self.expected_px).any(axis=0)).tolist():
+            columns.setdefault(part_of(self.names[index]), []).append(index)
+        return columns
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """All fields as plain arrays for `from_arrays`."""
+        return {
+            PREFIX + field.name: np.asarray(getattr(self, field.name), dtype=_dtype(field.name))
+            for field in fields(self)
+        }
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]], frames: int) -> "ComparedKeypoints":
+        """Restore them from the arrays of `to_arrays`; none from arrays of before there were keypoints.
+
+        Raises:
+            KeyError: An array is missing.
+        """
+        if PREFIX + "names" not in arrays:
+            return cls.none(frames)
+        numbers = ("seen", "predicted", "confidence", "distance_px", "expected_px")
+        return cls(
+            names=tuple(arrays[PREFIX + "names"].tolist()),
+            sources=tuple(arrays[PREFIX + "sources"].tolist()),
+            thrown_out=np.asarray(arrays[PREFIX + "thrown_out"], dtype=np.bool_),
+            swapped=np.asarray(arrays[PREFIX + "swapped"], dtype=np.bool_),
+            **{name: np.asarray(arrays[PREFIX + name], dtype=np.float64) for name in numbers},
+        )
+
+
+def _dtype(name: str) -> type:
+    """Kind of an array in a cache: places and numbers are only drawn, in single precision."""
+    if name in ("names", "sources"):
+        return np.str_
+    return np.bool_ if name in ("thrown_out", "swapped") else np.float32

@@ -1,0 +1,211 @@
+"""`keymark detect`: run a user's detector on a clip, a take, or every take of a shoot."""
+
+import argparse
+import os
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
+from ....core.files.fields import listed
+from ....core.footage.clips.image_sequence import find_images
+from ....core.footage.keypoints.keypoint_file import write_keypoints
+from ....core.progress import run, stretch
+from ....core.shoot.discovery.find_takes import VIDEOS, find_takes, open_shoot
+from ....core.shoot.shoot import ShootTake
+from ....core.take.description import TAKE_FILE, Description, sidecar_file
+from ....core.take.shoot_file import find_shoot_files
+from ....core.text import pluralize
+from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
+from ...bridge.detector.detector_setting import Detector
+from ..console import Console, arguments_console
+from ..detector_choice import chosen_detector
+from ..refuse_existing import refuse_existing
+from ..usage import UsageError
+
+KEYPOINT_FILE = "keypoints.json"
+MOST_NAMED = 5
+
+
+@dataclass(frozen=True)
+class Footage:
+    """A clip to run the detector on, and where its keypoints go."""
+
+    name: str
+    clip: Path
+    fps: float | None
+    frame_start: int
+    output: Path
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one clip of several."""
+
+    name: str
+    output: Path | None
+    detection: Detection | None = None
+    error: str | None = None
+
+    @property
+    def text(self) -> str:
+        """A line on it."""
+        if self.error is not None:
+            return f"{self.name}: {self.error}"
+        if self.detection is None:
+            return f"{self.name}: {self.output} is there already"
+        return f"{self.name}: {_found_text(self.detection)}, in {self.output}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The outcome for `--json`."""
+        found = None if self.detection is None else _summary(self.detection)
+        output = None if self.error is not None or self.output is None else str(self.output)
+        return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
+
+
+def detect_command(arguments: argparse.Namespace) -> None:
+    """Detect the keypoints of what the command line names.
+
+    Raises:
+        UsageError: An option is unusable, or a file is there and `--replace` is not given.
+        InputError: What is named is unusable, or what the detector wrote.
+        ConversionError: The detector failed, in a shoot for some of the takes.
+    """
+    detector = chosen_detector(arguments.detector, arguments.time_limit)
+    one = _single(arguments.target)
+    with arguments_console(arguments) as console:
+        if one is not None:
+            footage = one if arguments.output is None else replace(one, output=arguments.output)
+            refuse_existing(footage.output, arguments.replace)
+            detection = _detect(footage, detector, console, 0.0, 1.0)
+            result = {"keypoints": str(footage.output), **_summary(detection)}
+            lines = [f"{_found_text(detection)}: {footage.output}", *detection.notes]
+            console.finish(result, "\n".join(lines))
+            return
+        if arguments.output is not None:
+            raise UsageError(
+                f"--output is one file, and {arguments.target} may hold several takes; their keypoints go "
+                "beside them"
+            )
+        outcomes = _detect_all(arguments, detector, console)
+        failed = [outcome.name for outcome in outcomes if outcome.error is not None]
+        there = sum(outcome.error is None and outcome.detection is None for outcome in outcomes)
+        found = len(outcomes) - len(failed) - there
+        counts = {"detected": found, "there_already": there, "failed": len(failed)}
+        takes = pluralize(len(outcomes), "take")
+        text = f"{takes}: {found} detected, {there} there already, {len(failed)} failed"
+        console.finish({**counts, "takes": [outcome.to_dict() for outcome in outcomes]}, text)
+    if failed:
+        raise ConversionError(f"{len(failed)} of {len(outcomes)} takes failed: {listed(failed, MOST_NAMED)}")
+
+
+def _found_text(detection: Detection) -> str:
+    """What was found, for a person."""
+    frames = len(detection.people.frames)
+    most = detection.people.most_people
+    who = "a person" if most == 1 else f"up to {most} people"
+    return f"{who} in {detection.seen_frames} of {pluralize(frames, 'frame')}"
+
+
+def _summary(detection: Detection) -> dict[str, Any]:
+    """What was found, for `--json`."""
+    return {
+        "detector": detection.people.source,
+        "frames": len(detection.people.frames),
+        "seen_frames": detection.seen_frames,
+        "most_people": detection.people.most_people,
+        "points": list(detection.people.names),
+        "notes": list(detection.notes),
+    }
+
+
+def _detect_all(arguments: argparse.Namespace, detector: Detector, console: Console) -> list[Outcome]:
+    """Run the detector on every take in turn; one that fails does not stop the others."""
+    target = arguments.target
+    shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
+    takes = shoot.takes
+    outcomes: list[Outcome] = []
+    for index, take in enumerate(takes):
+        outcome = _outcome(take, detector, arguments, console, index / len(takes), (index + 1) / len(takes))
+        outcomes.append(outcome)
+        console.take_line(outcome.text, None if outcome.error is None else outcome.text)
+    return outcomes
+
+
+def _outcome(
+    take: ShootTake,
+    detector: Detector,
+    arguments: argparse.Namespace,
+    console: Console,
+    first: float,
+    last: float,
+) -> Outcome:
+    output = None
+    try:
+        footage = _footage(take)
+        output = footage.output
+        if os.path.lexists(output) and not arguments.replace:
+            return Outcome(take.name, output)
+        return Outcome(take.name, output, _detect(footage, detector, console, first, last))
+    except KeymarkError as error:
+        return Outcome(take.name, output, error=str(error))
+    except Exception as error:
+        if arguments.debug:
+            raise
+        what = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
+        return Outcome(take.name, output, error=what)
+
+
+def _detect(footage: Footage, detector: Detector, console: Console, first: float, last: float) -> Detection:
+    """Run the detector on one clip and write its keypoints."""
+    if not os.access(footage.output.parent, os.W_OK | os.X_OK):
+        raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
+    job = detect_keypoints(footage.clip, detector, fps=footage.fps, frame_start=footage.frame_start)
+    with closing(stretch(job, first, last)) as stretched:
+        detection = run(stretched, console.progress)
+    write_keypoints(footage.output, detection.people, detection.frame_start, detection.fps)
+    return detection
+
+
+def _single(path: Path) -> Footage | None:
+    """The one clip or take that a path names; None for a shoot."""
+    is_take = path.is_dir() and (path / TAKE_FILE).is_file()
+    is_clip = (path.suffix.lower() in VIDEOS and path.is_file()) or _is_sequence(path)
+    return _footage(ShootTake(path.name, path)) if is_take or is_clip else None
+
+
+def _is_sequence(path: Path) -> bool:
+    """Whether a path is a folder or pattern of images, or one of them."""
+    try:
+        return find_images(path) is not None
+    except (InputError, OSError):
+        return False
+
+
+def _footage(take: ShootTake) -> Footage:
+    """The clip of a take, as its files describe it, or as it is where none do.
+
+    Raises:
+        InputError: A file is unusable.
+    """
+    path = take.path
+    described = (path / TAKE_FILE, sidecar_file(path, TAKE_FILE))
+    if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):
+        return Footage(take.name, path, None, 1, sidecar_file(path, KEYPOINT_FILE))
+    description = take.describe()
+    fields = description.fields
+    return Footage(
+        name=take.name,
+        clip=description.clip,
+        fps=fields.number("fps", 1.0, 1000.0, "frames per second") if fields.has("fps") else None,
+        frame_start=fields.integer("frame_start", -(10**6), 10**6) if fields.has("frame_start") else 1,
+        output=_keypoint_file(description),
+    )
+
+
+def _keypoint_file(description: Description) -> Path:
+    """The file that a take's keypoints go into."""
+    if description.clip == description.path:
+        return sidecar_file(description.path, KEYPOINT_FILE)
+    return description.folder / KEYPOINT_FILE

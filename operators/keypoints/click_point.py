@@ -1,0 +1,147 @@
+"""Click on points of the body in the footage, frame by frame, where no detector finds them."""
+
+from typing import Any
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.footage.keypoints.body_points import BODY_POINTS
+from ..shell.base_operator import BaseOperator
+from ..shell.cancel_on_esc import cancel_click
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import pixel_under
+from ..shell.messages import label, say
+from ..shell.redraw import redraw_footage, redraw_sidebars_soon
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take
+from .body_point_items import body_point_items, point_title
+from .clicks import clicked_here, set_click
+
+DONE = {"RET", "NUMPAD_ENTER"}
+REQUESTS = {
+    ".L": "Click on: {point}, the performer's own left",
+    ".R": "Click on: {point}, the performer's own right",
+}
+MIDDLE_REQUEST = "Click on: {point}"
+KEYS = "{request}   |   Tab: Next Point   |   Enter: Done   |   Esc: Cancel"
+
+
+class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
+    """Click on points of the body in this frame, one after another; the arrow keys go to other frames"""
+
+    bl_idname = "keymark.click_point"
+    bl_label = "Click Points"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    point: bpy.props.EnumProperty(
+        name="Body Point",
+        description="The point of the body; left and right are the performer's own",
+        items=body_point_items(),
+    )
+    pixel: bpy.props.FloatVectorProperty(
+        name="Pixel",
+        description="Where it is, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+
+    _before: Any = None
+    """The clicks when the operator began; not named as type, since Blender evaluates annotations."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for clicks on the footage, beginning with the point that is chosen in the panel."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        self._before = _all_clicks(take)
+        context.window.cursor_modal_set("CROSSHAIR")
+        _ask(context, take)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Take clicks until Enter, or a click beside the footage; Esc takes all of them back."""
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        take = active_take(context.scene)
+        if event.value == "PRESS" and event.type in DONE:
+            return self._finish(context)
+        if event.value == "PRESS" and event.type == "TAB":
+            _choose_next(take)
+            _ask(context, take)
+            return {"RUNNING_MODAL"}
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            pixel = pixel_under(context, take, event.mouse_x, event.mouse_y)
+            if pixel is None:
+                return {*self._finish(context), "PASS_THROUGH"}
+            set_click(take, take.follow.clicked_point, pixel)
+            _choose_next(take)
+            _ask(context, take)
+            return {"RUNNING_MODAL"}
+        # Navigation: the animator may zoom in, or click on the same points in other frames.
+        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+
+    def _finish(self, context: bpy.types.Context) -> set[str]:
+        """Keep the clicks, as one step of undo; without any nothing has happened."""
+        take = active_take(context.scene)
+        changed = _all_clicks(take) != self._before
+        self._before = None
+        self.cancel(context)
+        if not changed:
+            return {"CANCELLED"}
+        say(self, "INFO", "{count} points are clicked on in this frame", count=len(clicked_here(take)))
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and clicks; Blender calls this as well."""
+        if self._before is not None:
+            clicks = active_take(context.scene).follow.clicks
+            clicks.clear()
+            for point, frame, pixel in self._before:
+                click = clicks.add()
+                click.point, click.frame, click.pixel = point, frame, pixel
+            self._before = None
+        if context.window is not None:  # None while Blender closes it or opens another file
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
+            redraw_footage(context)
+        redraw_sidebars_soon()
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Set one point in the current frame.
+
+        Raises:
+            InputError: The pixel lies outside the footage.
+        """
+        take = active_take(context.scene)
+        width, height = take.clip.size
+        if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
+            x, y = self.pixel
+            raise InputError(
+                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
+            )
+        set_click(take, self.point, tuple(self.pixel))
+        redraw_footage(context)
+
+
+def _all_clicks(take: bpy.types.PropertyGroup) -> list[tuple[str, int, tuple[float, ...]]]:
+    return [(click.point, click.frame, tuple(click.pixel)) for click in take.follow.clicks]
+
+
+def _choose_next(take: bpy.types.PropertyGroup) -> None:
+    """Choose the next point in the order of the menu that was not clicked on in this frame yet."""
+    begun = BODY_POINTS.index(take.follow.clicked_point) + 1
+    done = clicked_here(take)
+    order = (*BODY_POINTS[begun:], *BODY_POINTS[:begun])
+    take.follow.clicked_point = next((point for point in order if point not in done), order[0])
+
+
+def _ask(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    point = take.follow.clicked_point
+    request = label(REQUESTS.get(point[-2:], MIDDLE_REQUEST), point=label(point_title(point)))
+    context.workspace.status_text_set(label(KEYS, request=request))
+    redraw_footage(context)
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_click_point,))

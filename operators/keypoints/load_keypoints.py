@@ -1,0 +1,109 @@
+"""Load keypoints that a detector has found in the clip."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.progress import run
+from ..shell.base_operator import BaseOperator
+from ..shell.messages import say
+from ..shell.redraw import redraw_footage
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take, footage_of
+from .keypoint_paths import add_keypoint_file
+from .keypoint_readings import clear_readings
+
+if TYPE_CHECKING:
+    from ...core.footage.keypoints.people import People
+
+
+class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
+    """Load points of the body that a detector has found in this clip: a file, or a folder with one a frame"""
+
+    bl_idname = "keymark.load_keypoints"
+    bl_label = "Load Keypoints"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="Keypoints of this clip: Keymark's own file or a detector's; where that writes a file a "
+        "frame, the folder or any file in it",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    replace: bpy.props.BoolProperty(
+        name="Replace",
+        description="Let it take the place of the chosen file, as of one that was moved",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the file browser, beginning beside the clip, unless a file was dropped or is loaded again."""
+        if self.filepath:
+            return self.execute(context)
+        clip = active_take(context.scene).clip
+        self.filepath = str(Path(bpy.path.abspath(clip.filepath)).parent) + "/"
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the keypoints and hold them against the clip, and only then add them to the take."""
+        take = active_take(context.scene)
+        path = _whole(Path(bpy.path.abspath(self.filepath)))
+        people = _read(context.scene, take, path)
+        add_keypoint_file(take, path, self.replace)
+        take.follow.use_keypoints = True
+        clear_readings()
+        redraw_footage(context)
+        for note in people.notes:
+            self.report({"WARNING"}, note)
+        say(
+            self,
+            "INFO",
+            "Loaded {points} points of {source}, in {found} of {count} frames",
+            points=len(people.names),
+            source=people.source,
+            found=sum(len(frame.pixel) > 0 for frame in people.frames),
+            count=len(people.frames),
+        )
+
+
+def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":
+    """Read keypoints and hold them against the clip.
+
+    Raises:
+        InputError: The clip or the file is missing or unusable, or they do not belong together.
+    """
+    from ..bridge.keypoint_files import read_keypoint_file
+    from ..bridge.take_from_scene import clip_frames
+
+    source = footage_of(scene, take)
+    frames = run(clip_frames(source))
+    size = source.clip.size
+    return read_keypoint_file(path, len(frames), (size[0], size[1]), source.rate, source.first_frame)
+
+
+def _whole(path: Path) -> Path:
+    """The folder of a detector that writes a file a frame, where one of its files was chosen.
+
+    Raises:
+        InputError: It is no file that can be read.
+    """
+    from ...core.files.json_file import read_json_value
+    from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
+    from ...core.footage.keypoints.openpose_folder import is_openpose_frame
+
+    if path.is_dir():
+        return path
+    if not path.name:
+        raise InputError("filepath is empty; name the file of keypoints, or the folder with a file a frame")
+    return path.parent if is_openpose_frame(read_json_value(path, LARGEST_BYTES)) else path
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_keypoints,))

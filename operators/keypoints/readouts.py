@@ -1,0 +1,64 @@
+"""What keypoints, tracks and contours see in the current frame, as labels of the panels."""
+
+import bpy
+import numpy as np
+
+from ..bridge.footage_camera import may_move
+from ..bridge.track_keypoints import tracks_at
+from ..shell.messages import label
+from ..shell.takes import footage_of
+from .assigned_tracks import assigned_tracks
+from .clicks import clicked_here
+from .frame_keypoints import FrameKeypoints, keypoints_at
+
+
+def seen_label(frame: FrameKeypoints) -> str:
+    """What a source sees in a frame, of the person of whom it sees most: `27 of 33 points, score 0.91`."""
+    seen = np.isfinite(frame.pixel).all(axis=-1)
+    if not seen.any():
+        return label("Nobody in this frame")
+    row = int(seen.sum(axis=-1).argmax())
+    return label(
+        "{seen} of {count} points, score {score:.2f}",
+        seen=int(seen[row].sum()),
+        count=len(frame.names),
+        score=float(frame.score[row][seen[row]].mean()),
+    )
+
+
+def keypoints_label(take: bpy.types.PropertyGroup) -> str:
+    """How many points all files and clicks see in the current frame, as in `27 of 33`; empty without any."""
+    if not take.follow.use_keypoints:
+        return label("Off")
+    sources = [each for each in keypoints_at(take, take.id_data.frame_current) if not each.is_tracked]
+    if not sources:
+        return ""
+    seen = sum(each.seen_count for each in sources)
+    return label("{seen} of {count}", seen=seen, count=sum(len(each.names) for each in sources))
+
+
+def tracks_label(take: bpy.types.PropertyGroup) -> str:
+    """How many of the assigned tracks are seen in the current frame: `4 of 6`; empty without any."""
+    if not take.follow.use_tracks:
+        return label("Off")
+    assigned = assigned_tracks(take)
+    if not assigned:
+        return ""
+    scene = take.id_data
+    seen = len(tracks_at(footage_of(scene, take), scene.frame_current, assigned))
+    return label("{seen} of {count}", seen=seen, count=len(assigned))
+
+
+def contours_label(take: bpy.types.PropertyGroup) -> str:
+    """Whether contours can be followed."""
+    if not take.follow.use_contours:
+        return label("Off")
+    if take.camera is None:
+        return ""
+    return label("Camera moves") if may_move(take.camera) else label("Camera stands still")
+
+
+def clicked_label(take: bpy.types.PropertyGroup) -> str:
+    """How many points were clicked on in the current frame, and in how many frames any was."""
+    frames = len({click.frame for click in take.follow.clicks})
+    return label("{here} here, in {frames} frames", here=len(clicked_here(take)), frames=frames)

@@ -1,0 +1,124 @@
+"""Keypoints as items: a cross where each is seen, a ring where the motion puts it, marks of what is wrong.
+
+Shapes tell apart what colors do: a keypoint that is not believed is a slanting cross, one that its source saw
+on the other side of the body a cross in a square.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...core.arrays import Array, BoolArray
+from ...core.footage.keypoints.body_points import mirrored_point
+from ..keypoints.frame_keypoints import FrameKeypoints
+from .figures import circles, segments
+from .picture import Item, Stroke
+from .style import SOURCES, THROWN_OUT, Style
+
+if TYPE_CHECKING:
+    from ...core.review.compared_keypoints import ComparedKeypoints
+
+ToRegion = Callable[[Array], Array]
+ARM, RING = 4.5, 3.0
+"""Half-length of a cross's arms, and radius of a ring [px]."""
+THIN = 0.8
+"""Thickness of marks relative to outlines."""
+SAME_PX = 0.5
+"""Distance within which two keypoints of a body point are one [px of the footage]."""
+UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
+SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5
+
+
+def source_color(sources: Sequence[str], source: str, style: Style) -> tuple[float, ...]:
+    """The color of a source among all that are drawn; the fifth has the first's again."""
+    return style.color(SOURCES[list(dict.fromkeys(sources)).index(source) % len(SOURCES)])
+
+
+def all_sources(keypoints: "ComparedKeypoints | None", seen: Sequence[FrameKeypoints]) -> tuple[str, ...]:
+    """The sources of what is drawn, those of the motion's keypoints first."""
+    compared = () if keypoints is None else keypoints.sources
+    return tuple(dict.fromkeys((*compared, *(each.source for each in seen))))
+
+
+def compared_marks(
+    keypoints: "ComparedKeypoints", index: int, to_region: ToRegion, sources: Sequence[str], style: Style
+) -> list[Item]:
+    """The keypoints of one frame that a motion was held against.
+
+    Args:
+        keypoints: The keypoints.
+        index: Index of the frame.
+        to_region: Converts footage pixels (..., 2) to region pixels.
+        sources: All sources that are drawn, in the order of their colors.
+        style: Colors and sizes.
+    """
+    if not keypoints.names:
+        return []
+    seen, predicted = to_region(keypoints.seen[index]), to_region(keypoints.predicted[index])
+    colors = np.array([source_color(sources, source, style) for source in keypoints.sources])
+    thrown_out, swapped = keypoints.thrown_out[index], keypoints.swapped[index]
+    red = np.broadcast_to(style.color(THROWN_OUT), colors.shape)
+    links = np.stack([seen, predicted], axis=1)
+    linked = np.isfinite(links).all(axis=(-2, -1)) & ~thrown_out
+    shown = np.isfinite(seen).all(axis=-1)
+    rims = circles(predicted, style.size(RING), 12)
+    ringed = np.isfinite(predicted).all(axis=-1)
+    squares = circles(seen, style.size(1.4 * ARM), 4)
+    return [
+        Stroke(links[linked], colors[linked], THIN * style.width),
+        _outlines(rims, ringed, colors, style),
+        _crosses(seen, shown & ~thrown_out, colors, UPRIGHT, style),
+        _crosses(seen, shown & thrown_out, red, SLANTING, style),
+        _outlines(squares, shown & swapped, colors, style),
+    ]
+
+
+def seen_marks(
+    seen: Sequence[FrameKeypoints], to_region: ToRegion, sources: Sequence[str], style: Style
+) -> list[Item]:
+    """The keypoints that a take's sources see in a frame, of everyone.
+
+    Args:
+        seen: Those of each source.
+        to_region: Converts footage pixels (..., 2) to region pixels.
+        sources: All sources that are drawn, in the order of their colors.
+        style: Colors and sizes.
+    """
+    items: list[Item] = []
+    for each in seen:
+        places = to_region(each.pixel.reshape(-1, 2))
+        color = np.array(source_color(sources, each.source, style))
+        known = np.isfinite(places).all(axis=-1)
+        items.append(_crosses(places, known, np.broadcast_to(color, (len(places), 4)), UPRIGHT, style))
+    return items
+
+
+def not_yet_compared(
+    seen: Sequence[FrameKeypoints], keypoints: "ComparedKeypoints", index: int
+) -> tuple[FrameKeypoints, ...]:
+    """What of a frame's keypoints the motion was not held against: clicked since, or other people's."""
+    found = []
+    for each in seen:
+        pixel = each.pixel.copy()
+        for column, name in enumerate(each.names):
+            same = [i for i, other in enumerate(keypoints.names) if other in (name, mirrored_point(name))]
+            apart = np.linalg.norm(pixel[:, column, None] - keypoints.seen[index, same], axis=-1)
+            pixel[(apart < SAME_PX).any(axis=1), column] = np.nan
+        if np.isfinite(pixel).any():
+            found.append(FrameKeypoints(each.source, each.names, pixel, each.score))
+    return tuple(found)
+
+
+def _crosses(places: Array, shown: BoolArray, colors: Array, directions: Array, style: Style) -> Stroke:
+    arms = style.size(ARM) * directions
+    lines = places[shown][:, None, None] + np.stack([-arms, arms], axis=1)  # (N, 2, 2, 2)
+    return Stroke(
+        lines.reshape(-1, 2, 2), np.repeat(colors[shown], 2, axis=0), THIN * style.width, style.halo
+    )
+
+
+def _outlines(corners: Array, shown: BoolArray, colors: Array, style: Style) -> Stroke:
+    count = corners.shape[1]
+    lines = segments(corners[shown], closed=True)
+    return Stroke(lines, np.repeat(colors[shown], count, axis=0), THIN * style.width, style.halo)

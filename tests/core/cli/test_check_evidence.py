@@ -1,0 +1,216 @@
+"""`keymark check` of evidence: what a take has, how good its keypoints look, and what is wrong with them."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from _shoot import write_shoot
+from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints
+from keymark.core.footage.keypoints.body_points import mirrored_point
+from keymark.core.shoot.check.cost_estimate import estimate_cost
+from keymark.operators.cli.main import main
+
+FRAMES = 10
+TAKE = "day1/take01"
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shoot of one take with keypoints, that tests must not change."""
+    folder = write_shoot(tmp_path_factory.mktemp("evidence") / "shoot", 1, FRAMES)
+    write_keypoints(folder / f"{TAKE}.keypoints.json", true_postures(FRAMES + 1)[:FRAMES])
+    return folder
+
+
+@pytest.fixture
+def shoot(pristine: Path, tmp_path: Path) -> Path:
+    """A copy for the test."""
+    return Path(shutil.copytree(pristine, tmp_path / "shoot"))
+
+
+@pytest.fixture
+def check(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, dict[str, Any]]]:
+    """Run `keymark check --json`; returns the exit status and what it says of the first take."""
+
+    def run(*words: object) -> tuple[int, dict[str, Any]]:
+        status = main(["check", *map(str, words), "--json"])
+        return status, json.loads(capsys.readouterr().out)["takes"][0]
+
+    return run
+
+
+def edit(path: Path, **fields: Any) -> None:
+    """Set fields of a JSON file, which may be new."""
+    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    write_json(path, {**value, **fields})
+
+
+def rewrite(shoot: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    """Change the file of keypoints."""
+    path = shoot / f"{TAKE}.keypoints.json"
+    value = json.loads(path.read_text(encoding="utf-8"))
+    change(value)
+    write_json(path, value)
+
+
+def no_markers(shoot: Path) -> None:
+    """Any clothes are worn."""
+    edit(shoot / f"{TAKE}.take.json", markers=None)
+
+
+def test_good_keypoints_are_said_to_be_good(
+    pristine: Path, check: Callable[..., Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Seen everywhere, at the posed joints; the table has a column for them and a line on the evidence."""
+    status, take = check(pristine)
+    assert status == 0 and take["status"] == "ready" and take["warnings"] == []
+    assert take["evidence"] == ["markers", "keypoints", "contours"] and len(take["markers"]) == 5
+    (readout,) = take["keypoints"]
+    assert readout["file"] == "take01.keypoints.json" and readout["source"] == "drawn"
+    assert (readout["points"], readout["people"], readout["depth_hints"]) == (13, 1, False)
+    assert readout["seen_frames"] == readout["seen_points"] == 1.0 and readout["error_px"] < 0.5
+    assert main(["check", str(pristine)]) == 0
+    said = capsys.readouterr().out
+    assert "keyframes  keypoints  trunk" in said and "  100% 0px  " in said
+    assert "Held against markers, keypoints and contours." in said
+
+
+def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any]) -> None:
+    """With keypoints; with contours alone it is one to look at, and the evidence may be chosen."""
+    no_markers(shoot)
+    status, take = check(shoot)
+    assert status == 0 and take["status"] == "ready"
+    assert take["evidence"] == ["keypoints", "contours"] and take["markers"] == {}
+    status, take = check(shoot, "--evidence", "contours")
+    assert status == 0 and take["status"] == "look" and take["keypoints"] == []
+    assert "held against contours alone" in take["warnings"][0]
+    status, take = check(shoot, "--evidence", "markers")
+    assert status == 1 and "names markers, which this take has not got" in take["problems"][0]
+    edit(shoot / f"{TAKE}.take.json", markers=None, method="ekf")
+    status, take = check(shoot)
+    assert status == 1 and take["problems"][0].startswith("take01: method is ekf")
+
+
+def exchanged(value: dict[str, Any]) -> None:
+    """Left and right are exchanged throughout."""
+    value["names"] = [mirrored_point(name) for name in value["names"]]
+
+
+def elsewhere(value: dict[str, Any]) -> None:
+    """Another person at the edge of the picture."""
+    value["frames"] = [[[x - 45.0, y, score] for x, y, score in frame] for frame in value["frames"]]
+
+
+def late(value: dict[str, Any]) -> None:
+    """Each frame shows the one three before it."""
+    value["frames"] = 3 * [value["frames"][0]] + value["frames"][:-3]
+
+
+def rare(value: dict[str, Any]) -> None:
+    """Found in the first three frames only."""
+    value["frames"] = value["frames"][:3] + [None] * (FRAMES - 3)
+
+
+def half_the_size(value: dict[str, Any]) -> None:
+    """Found in pictures of half the size."""
+    value["size"] = [side // 2 for side in SIZE]
+    value["frames"] = [[[x / 2, y / 2, score] for x, y, score in frame] for frame in value["frames"]]
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (exchanged, "left and right seem to be exchanged"),
+        (elsewhere, "from those of the posed keyframes, where the performer is"),
+        (late, "they seem to be 3 frames late"),
+        (rare, "the performer is seen in 30% of the frames only"),
+        (half_the_size, "was found in pictures of 80 x 60"),
+    ],
+)
+def test_keypoints_that_look_wrong_are_said(
+    shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], None], sentence: str
+) -> None:
+    """The take would convert, and is one to look at."""
+    if change is late:  # which is seen in fast movement only
+        faster(shoot)
+    rewrite(shoot, change)
+    status, take = check(shoot)
+    assert status == 0 and take["status"] == "look"
+    assert any(sentence in warning for warning in take["warnings"]), take["warnings"]
+
+
+def faster(shoot: Path) -> None:
+    """Let the performer of keyframes and keypoints squat and rise; the clip does not matter here."""
+    names, vector = BODY.skeleton.dof_names, true_postures(FRAMES).to_vector()
+    vector[:, names.index("pelvis.location_x")] = 0.5 * np.sin(np.linspace(0.0, 2.0 * np.pi, FRAMES))
+    posture = type(true_postures(2)).from_vector(BODY.skeleton, vector)
+    write_keypoints(shoot / f"{TAKE}.keypoints.json", posture)
+    rows = [
+        {"frame": index + 1, "posture": dict(zip(names, vector[index].tolist(), strict=True))}
+        for index in range(0, FRAMES - 3, 2)
+    ]
+    write_json(shoot / f"{TAKE}.keyframes.json", {"keyframes": rows})
+    no_markers(shoot)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda value: value.update(size=[120, 160]), "size"),
+        (lambda value: value["frames"].extend(value["frames"]), f"has {2 * FRAMES} frames"),
+        (lambda value: value.update(frames=[None] * FRAMES), "nobody is seen"),
+        (lambda value: value.pop("layout"), "no known format has"),
+    ],
+)
+def test_keypoints_that_stop_a_take_are_said(
+    shoot: Path, check: Callable[..., Any], change: Callable[[dict[str, Any]], object], sentence: str
+) -> None:
+    """One problem; the markers are looked at all the same."""
+    rewrite(shoot, change)
+    status, take = check(shoot)
+    assert status == 1 and len(take["problems"]) == 1 and sentence in take["problems"][0]
+    assert "take01.keypoints.json" in take["problems"][0] and len(take["markers"]) == 5
+
+
+def test_two_people_need_a_keyframe(shoot: Path, check: Callable[..., Any]) -> None:
+    """Which says who performs; without one, a library matches whoever is seen best."""
+
+    def doubled(value: dict[str, Any]) -> None:
+        other = [[[x / 2, y, score] for x, y, score in frame] for frame in value["frames"]]
+        value["people"] = [list(pair) for pair in zip(value.pop("frames"), other, strict=True)]
+
+    rewrite(shoot, doubled)
+    status, take = check(shoot)
+    assert status == 0 and take["keypoints"][0]["people"] == 2 and take["warnings"] == []
+    assert take["keypoints"][0]["error_px"] < 0.5
+    (shoot / f"{TAKE}.keyframes.json").unlink()
+    take = check(shoot, "--library", "waving")[1]
+    assert any("no keyframe says which of them performs" in warning for warning in take["warnings"])
+
+
+@pytest.mark.parametrize("words", [("--evidence", "sound"), ("--keypoints", "../k.json")])
+def test_an_option_that_is_none_is_one_line(
+    pristine: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, str]
+) -> None:
+    """Status 2, and what would be valid; an empty one counts as none, as farms pass it."""
+    assert main(["check", str(pristine), *words]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and words[1] in said
+    assert main(["check", str(pristine), f"{words[0]}=", "--quiet"]) == 0
+
+
+def test_evidence_costs_time() -> None:
+    """Keypoints a little, contours that are searched without markers more."""
+    seconds = [
+        estimate_cost(1000, (320, 240), "map", None, kinds).seconds
+        for kinds in (
+            ("markers", "contours"),
+            ("markers", "keypoints", "contours"),
+            ("keypoints", "contours"),
+        )
+    ]
+    assert seconds == sorted(seconds) and len(set(seconds)) == 3

@@ -1,0 +1,357 @@
+"""Files of keypoints: every format gives the same people, and what does not fit the clip is said."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from _keypoints import (
+    BLAZEPOSE33,
+    BODY25,
+    COCO17,
+    FRAMES,
+    HALPE26,
+    SIZE,
+    coco_value,
+    mediapipe_value,
+    mmpose_value,
+    moving_person,
+    openpose_frame,
+    own_value,
+    write,
+    write_openpose,
+)
+from keymark.core.arrays import Array
+from keymark.core.errors import InputError
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
+from keymark.core.footage.keypoints.layouts import Layout
+from keymark.core.footage.keypoints.people import People, SeenPeople
+
+
+def read(path: Path, frames: int | None = FRAMES, size: tuple[int, int] = SIZE, **more: Any) -> People:
+    """Read a file of a clip of twelve frames."""
+    return read_keypoints(path, frames, size, **more)
+
+
+def assert_shows(people: People, person: Array, layout: Layout, frames: list[int] | None = None) -> None:
+    """One person is seen in these frames, by default in all, and nobody in the others."""
+    assert people.names == layout.names
+    shown = [index for index, frame in enumerate(people.frames) if len(frame.pixel)]
+    assert shown == (list(range(len(person))) if frames is None else frames)
+    for index in shown:
+        np.testing.assert_allclose(
+            people.frames[index].pixel[0], person[index][layout.numbers, :2], atol=1e-9
+        )
+        np.testing.assert_allclose(people.frames[index].score[0], person[index][layout.numbers, 2], atol=1e-9)
+
+
+@pytest.mark.parametrize("layout", [COCO17, BODY25, HALPE26])
+@pytest.mark.parametrize("first", [0, 1, 1001])
+def test_openpose_folder(tmp_path: Path, layout: Layout, first: int) -> None:
+    """Files are counted from 0, 1 or anything else, where there is one for every frame."""
+    person = moving_person(layout)
+    people = read(write_openpose(tmp_path / "json", person, first))
+    assert_shows(people, person, layout)
+    assert (people.source, people.notes, people.by_hand) == ("json", (), False)
+
+
+def test_openpose_folder_with_holes(tmp_path: Path) -> None:
+    """Nobody is seen where a file is missing, and nothing after it is shifted."""
+    person = moving_person(BODY25)
+    people = read(write_openpose(tmp_path / "json", person, 0, holes=(3, 4, 11)))
+    assert_shows(people, person, BODY25, [0, 1, 2, 5, 6, 7, 8, 9, 10])
+    (note,) = people.notes
+    assert "lacks 3 of 12 frames" in note
+
+
+def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
+    """Never shifted in silence."""
+    person = moving_person(BODY25)
+    folder = write_openpose(tmp_path / "json", person, 7)
+    with pytest.raises(InputError, match="numbered 7 to 18; the clip has 13"):
+        read(folder, 13)
+    with pytest.raises(InputError, match="ends with frame 18"):
+        read(folder, 30)
+    with pytest.raises(InputError, match=r"before the clip's last.*a share of 2"):
+        read(write_openpose(tmp_path / "half", person), 24)
+    with pytest.raises(InputError, match="must begin with 0, 1 or"):
+        read(folder, None)
+    assert len(read(write_openpose(tmp_path / "one", person, 1), None).frames) == FRAMES
+
+
+def test_a_few_frames_more_or_less_are_noted(tmp_path: Path) -> None:
+    """Decoders disagree at a clip's end."""
+    person = moving_person(BODY25)
+    folder = write_openpose(tmp_path / "json", person)
+    longer, shorter = read(folder, FRAMES - 1), read(folder, FRAMES + 2)
+    assert_shows(longer, person[:-1], BODY25)
+    assert "goes on to frame 11" in longer.notes[0]
+    assert_shows(shorter, person, BODY25, list(range(FRAMES)))
+    assert len(shorter.frames) == FRAMES + 2 and "lacks 2" in shorter.notes[0]
+
+
+@pytest.mark.parametrize("as_list", [False, True])
+def test_mmpose(tmp_path: Path, as_list: bool) -> None:
+    """The demonstration's object, and the plain list of the inferencer."""
+    person = moving_person(HALPE26)
+    value: Any = mmpose_value(person)
+    people = read(write(tmp_path / "results.json", value["instance_info"] if as_list else value))
+    assert_shows(people, person, HALPE26)
+    assert people.source == "results.json"
+
+
+@pytest.mark.parametrize("names", ["{}.jpg", "clip_{}", "{}"])
+def test_coco(tmp_path: Path, names: str) -> None:
+    """Images are numbered by their names; those in which nobody was seen are not listed."""
+    person = moving_person(COCO17)
+    value = coco_value(person, names)
+    if names == "{}":
+        for entry in value:
+            entry["image_id"] = int(entry["image_id"])
+    del value[4]
+    people = read(write(tmp_path / "results.json", value))
+    assert_shows(people, person, COCO17, [0, 1, 2, 3, 5, 6, 7, 8, 9, 10, 11])
+
+
+@pytest.mark.parametrize("form", ["objects", "lists", "messages", "people", "frames", "pixels"])
+def test_mediapipe(tmp_path: Path, form: str) -> None:
+    """Every way in which its landmarks are dumped."""
+    person = moving_person(BLAZEPOSE33)
+    value: Any = mediapipe_value(person, (1, 1) if form == "pixels" else SIZE)
+    value[2] = None if form in ("lists", "frames") else {"landmarks": []}
+    if form == "lists":
+        value = [frame and frame["landmarks"] for frame in value]
+    elif form == "messages":
+        value = [{"pose_landmarks": {"landmark": frame["landmarks"]}} for frame in value]
+    elif form == "people":
+        names = {"landmarks": "landmarks", "worldLandmarks": "world_landmarks"}
+        value = [{names[name]: [one] if one else [] for name, one in frame.items()} for frame in value]
+    elif form == "frames":
+        value = {"frames": value}
+    people = read(write(tmp_path / "pose.json", value))
+    assert_shows(people, person, BLAZEPOSE33, [0, 1, *range(3, FRAMES)])
+    hint = people.frames[5].hint_m[0]
+    if form in ("lists", "messages"):
+        assert np.isnan(hint).all()
+    else:
+        x, y, _ = person[5][BLAZEPOSE33.numbers].T
+        np.testing.assert_allclose(hint, np.stack([x / 100 - 1, y / 100 - 1, np.full(len(x), 0.2)], 1))
+
+
+def test_own_file_is_read_back(tmp_path: Path) -> None:
+    """Several people, with hints, with points and people that are missing."""
+    generator = np.random.default_rng(3)
+    frames = []
+    for count in (1, 0, 3, 2, 0):
+        pixel = np.round(generator.uniform(1.0, 239.0, (count, 2, 2)), 3)
+        score = np.round(generator.uniform(0.1, 1.0, (count, 2)), 4)
+        hint = np.round(generator.normal(size=(count, 2, 3)), 4)
+        pixel[:1, 1], score[:1, 1], hint[:1, 1] = np.nan, 0.0, np.nan
+        hint[1:2] = np.nan
+        frames.append(SeenPeople(pixel, score, hint))
+    people = People(("head", "heel.L"), "a detector", SIZE, tuple(frames), by_hand=True)
+    write_keypoints(tmp_path / "keypoints.json", people, 7, 25.0)
+    again = read(tmp_path / "keypoints.json", 5, fps=25.0, frame_start=7)
+    assert (again.names, again.source, again.size, again.by_hand) == (people.names, "a detector", SIZE, True)
+    assert again.notes == ()
+    for one, other in zip(people.frames, again.frames, strict=True):
+        for name in ("pixel", "score", "hint_m"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
+def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
+    """`frames` where nobody else is there, and a faint score is not rounded to none."""
+    frame = SeenPeople(np.array([[[5.0, 6.0]]]), np.array([[1e-7]]), np.full((1, 1, 3), np.nan))
+    write_keypoints(tmp_path / "k.json", People(("head",), "x", SIZE, (frame,) * 2), 1)
+    text = (tmp_path / "k.json").read_text(encoding="utf-8")
+    assert '"frames":[[[5.0,6.0,0.0001]]' in text and "world" not in text
+    assert read(tmp_path / "k.json", 2).frames[1].pixel[0].tolist() == [[5.0, 6.0]]
+
+
+def test_pixels_of_a_smaller_picture_are_scaled(tmp_path: Path) -> None:
+    """Only where the proportions are the clip's."""
+    person = moving_person(COCO17)
+    path = write(tmp_path / "own.json", own_value(person))
+    twice = read(path, FRAMES, (640, 480))
+    assert_shows(twice, person * [2.0, 2.0, 1.0], COCO17)
+    assert "scaled to the clip's 640 x 480" in twice.notes[0] and twice.size == (640, 480)
+    with pytest.raises(InputError, match="proportions must be the same"):
+        read(path, FRAMES, (640, 360))
+    with pytest.raises(InputError, match="was turned"):
+        read(path, FRAMES, (240, 320))
+
+
+def test_points_not_seen(tmp_path: Path) -> None:
+    """Score 0, the corner, and places outside the picture say nothing; a person without points is nobody."""
+    person = moving_person(COCO17)
+    person[0, 3] = [0.0, 0.0, 0.7]
+    person[0, 4, 2] = 0.0
+    person[0, 5, 0] = -3.0
+    person[1] = 0.0
+    people = read(write(tmp_path / "own.json", own_value(person)))
+    first = people.frames[0]
+    assert np.isnan(first.pixel[0, [3, 4, 5]]).all() and not first.score[0, [3, 4, 5]].any()
+    assert np.isfinite(first.pixel[0, [0, 1, 2, *range(6, 17)]]).all()
+    assert len(people.frames[1].pixel) == 0 and len(people.frames[2].pixel) == 1
+
+
+def test_nan_of_other_programs_is_not_seen(tmp_path: Path) -> None:
+    """Pose2Sim pads people who are lost with NaN; our own file may not have it."""
+    person = moving_person(HALPE26)
+    person[2] = np.nan
+    person[3, 0, :2] = np.nan
+    people = read(write_openpose(tmp_path / "json", person))
+    assert len(people.frames[2].pixel) == 0
+    assert np.isnan(people.frames[3].pixel[0, 0]).all() and people.frames[3].score[0, 0] == 0.0
+    with pytest.raises(InputError, match="null or NaN"):
+        read(write(tmp_path / "own.json", own_value(person, "halpe26")))
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (lambda s: 12.0 * s - 9.0, "logits"),
+        (lambda s: 9.0 * s, "count as certain"),
+        (lambda s: 0.0 * s, "no scores"),
+    ],
+)
+def test_scores_become_confidences(tmp_path: Path, change: Any, word: str) -> None:
+    """Whatever the range, the order stays, and a note says what was done."""
+    person = moving_person(COCO17)
+    before = person[:, :, 2].copy()
+    person[:, :, 2] = change(before)
+    person[0, 0, 2] = person[:, :, 2].max()
+    people = read(write(tmp_path / "own.json", own_value(person)))
+    after = np.concatenate([frame.score for frame in people.frames])
+    assert after.min() > 0.0 and after.max() <= 1.0 and len(people.notes) == 1 and word in people.notes[0]
+    if word != "no scores":
+        order = np.argsort(before[3])
+        assert np.all(np.diff(after[3][order]) >= 0.0) and after[3].min() < 0.9
+
+
+def test_one_high_score_sets_no_scale(tmp_path: Path) -> None:
+    """An outlier is cut off instead."""
+    person = moving_person(COCO17)
+    person[0, 0, 2] = 500.0
+    people = read(write(tmp_path / "own.json", own_value(person)))
+    np.testing.assert_allclose(people.frames[5].score[0], person[5, :, 2])
+
+
+def test_negative_scores_beside_probabilities_are_not_seen(tmp_path: Path) -> None:
+    """Some programs write -1 for what they did not find."""
+    person = moving_person(COCO17)
+    person[:, 3, 2] = -1.0
+    people = read(write(tmp_path / "own.json", own_value(person)))
+    assert people.notes == () and np.isnan(people.frames[0].pixel[0, 3]).all()
+    np.testing.assert_allclose(people.frames[0].score[0, 4], person[0, 4, 2])
+
+
+def test_frame_rate_and_start_of_the_file(tmp_path: Path) -> None:
+    """They are compared with the clip's; with one entry a frame there is nothing to shift."""
+    person = moving_person(COCO17)
+    path = write(tmp_path / "own.json", own_value(person) | {"fps": 60.0})
+    assert any("60 frames per second" in note for note in read(path, fps=30.0).notes)
+    assert read(path, fps=59.94).notes == ()
+    assert any(
+        "frame_start is 1, that of the clip is 101" in note for note in read(path, frame_start=101).notes
+    )
+    with pytest.raises(InputError, match="made at 60 frames per second"):
+        read(path, 6, fps=30.0)
+    with pytest.raises(InputError, match="begin with 101"):
+        read(path, 13, frame_start=101)
+
+
+def broken(tmp_path: Path, kind: str) -> Path:
+    """A file or folder that cannot be used."""
+    person, path = moving_person(COCO17), tmp_path / "x.json"
+    value = own_value(person)
+    if kind == "truncated":
+        path.write_text('{"layout": "coco17", "frames": [[[1, 2', encoding="utf-8")
+        return path
+    if kind == "truncated in a folder":
+        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
+        (folder / "clip_000000000003_keypoints.json").write_text('{"people": [', encoding="utf-8")
+        return folder
+    if kind in ("two alike", "no frames", "link", "points", "other points", "many people"):
+        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
+        one = folder / "clip_000000000003_keypoints.json"
+        if kind == "two alike":
+            write(folder / "other_3.json", openpose_frame([]))
+        elif kind == "no frames":
+            for file in folder.iterdir():
+                file.rename(file.with_name("x" + "y" * int(file.name[5:17]) + ".json"))
+        elif kind == "link":
+            one.rename(tmp_path / "outside.json")
+            one.symlink_to(tmp_path / "outside.json")
+        elif kind == "many people":
+            write(one, openpose_frame([moving_person(BODY25)[0]] * 101))
+        else:
+            count = {"points": 20, "other points": 17}[kind]
+            write(one, openpose_frame([np.ones((count, 3))]))
+        return folder
+    values: dict[str, Any] = {
+        "one picture": openpose_frame([moving_person(BODY25)[0]]),
+        "one picture of MMPose": mmpose_value(person)["instance_info"][0]["instances"],
+        "of no kind": {"poses": []},
+        "a text": "keypoints",
+        "nobody": value | {"frames": [None] * FRAMES},
+        "nobody scored": value | {"frames": (person * 0.0).tolist()},
+        "empty": value | {"frames": []},
+        "shares": value | {"frames": (person / [320.0, 240.0, 1.0]).tolist()},
+        "larger picture": own_value(person * [6.0, 6.0, 1.0]),
+        "in space": {"instance_info": [{"frame_id": 0, "instances": [{"keypoints": [[1, 2, 3]] * 17}]}]},
+        "half the frames": value | {"frames": person[::2].tolist()},
+        "far": value | {"frames": (person * 1e8).tolist()},
+    }
+    return write(path, values[kind])
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("truncated", "no valid JSON"),
+        ("truncated in a folder", "000003_keypoints.json.*no valid JSON"),
+        ("two alike", "the same number"),
+        ("no frames", "ends in a number"),
+        ("link", "leads by a link"),
+        ("points", "has 20 points; those before have 25"),
+        ("other points", "all must be alike"),
+        ("many people", "has 101 people; at most 100"),
+        ("one picture", "one frame of OpenPose, whose folder"),
+        ("one picture of MMPose", "one picture of MMPose"),
+        ("of no kind", "the fields .'poses'., which no known format has"),
+        ("a text", "it must be Keymark's own file"),
+        ("nobody", "nobody is seen in any of its 12 frames"),
+        ("nobody scored", "no point has a score above 0|nobody"),
+        ("empty", "a list with one entry a frame"),
+        ("shares", "must be pixels of the clip"),
+        ("larger picture", "outside the clip's picture"),
+        ("in space", "points in space"),
+        ("half the frames", "has 6 frames, the clip 12.*a share of 2"),
+        ("far", "a number beyond 1e"),
+    ],
+)
+def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, words: str) -> None:
+    """It names the file and what would be valid."""
+    path = broken(tmp_path, kind)
+    with pytest.raises(InputError, match=words) as caught:
+        read(path)
+    text = str(caught.value)
+    assert str(path) in text and len(text.splitlines()) == 1
+    assert any(valid in text for valid in ("must", "at most", "no valid JSON", "layouts that are read"))
+
+
+def test_the_takes_at_hand(shared_takes: Path) -> None:
+    """What a real detector wrote is read without a word."""
+    for take in sorted(shared_takes.iterdir()):
+        path = take / "keypoints_mediapipe.json"
+        if path.exists():
+            people = read_keypoints(path, None, _size(take), None, 1)
+            assert people.names == BLAZEPOSE33.names and people.most_people == 1 and not people.notes
+            assert any(np.isfinite(frame.hint_m).any() for frame in people.frames)
+
+
+def _size(take: Path) -> tuple[int, int]:
+    width, height = json.loads((take / "take.json").read_text(encoding="utf-8"))["camera"]["resolution"]
+    return width, height

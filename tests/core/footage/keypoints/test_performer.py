@@ -1,0 +1,135 @@
+"""The performer among several people: kept through crossings, gaps and exchanged order."""
+
+import numpy as np
+import pytest
+from keymark.core.arrays import Array, IndexArray
+from keymark.core.footage.keypoints.performer import (
+    MOST_CANDIDATES,
+    NOBODY,
+    Expected,
+    Sightings,
+    choose_performer,
+    person_size,
+)
+
+FPS = 30.0
+FIGURE = np.array([[0, 0], [-8, 12], [8, 12], [-6, 40], [6, 40], [-7, 75], [7, 75]], dtype=np.float64)
+"""Points of a person 75 px tall."""
+
+
+def walker(
+    start: tuple[float, float], velocity: tuple[float, float], frames: int, seed: int, swing: float = 4.0
+) -> Array:
+    """(F, 7, 2) somebody who crosses the picture with swinging limbs and a detector's noise."""
+    generator = np.random.default_rng(seed)
+    time = np.arange(frames)[:, None]
+    place = np.array(start) + time * np.array(velocity)
+    limbs = swing * np.sin(0.4 * time + np.arange(len(FIGURE)) * (1 + seed))
+    points = FIGURE + place[:, None]
+    points[:, :, 0] += limbs
+    return points + generator.normal(scale=0.7, size=points.shape)
+
+
+def scene(people: list[Array], present: Array, seed: int = 0) -> tuple[Sightings, IndexArray]:
+    """People in random order a frame, and the index of the first of them, `NOBODY` where missing."""
+    generator = np.random.default_rng(seed)
+    pixels, scores, truth = [], [], []
+    for frame in range(len(people[0])):
+        order = [int(one) for one in generator.permutation(len(people)) if present[frame, one]]
+        pixels.append(np.array([people[one][frame] for one in order]).reshape(-1, len(FIGURE), 2))
+        scores.append(np.full((len(order), len(FIGURE)), 0.9))
+        truth.append(order.index(0) if 0 in order else NOBODY)
+    return Sightings(tuple(pixels), tuple(scores)), np.array(truth)
+
+
+def expected_from(person: Array, every: int, std_px: float = 5.0) -> Expected:
+    """The person as keyframes of every so many frames would have it, interpolated linearly."""
+    frames = len(person)
+    keys = np.arange(0, frames, every)
+    flat = person.reshape(frames, -1)
+    between = np.stack([np.interp(np.arange(frames), keys, column[keys]) for column in flat.T], 1)
+    away = np.abs(np.arange(frames)[:, None] - keys).min(axis=1)
+    std = np.repeat((std_px + 1.0 * away)[:, None], person.shape[1], axis=1)
+    weight = np.where(away == 0, 3.0, 1.0)
+    return Expected(between.reshape(person.shape), std, weight)
+
+
+@pytest.mark.parametrize("missing", [0.0, 0.1, 0.3])
+@pytest.mark.parametrize("knows", ["keyframes", "one click"])
+def test_two_people_who_cross(missing: float, knows: str) -> None:
+    """Both walk through each other, in any order, and some sightings are missing."""
+    frames = 90
+    people = [walker((20, 60), (2.5, 0), frames, 0), walker((240, 62), (-2.5, 0), frames, 1)]
+    present = np.random.default_rng(4).random((frames, 2)) >= missing
+    present[0] = True
+    seen, truth = scene(people, present)
+    expected = expected_from(people[0], 12)
+    if knows == "one click":
+        only = np.full_like(expected.pixel, np.nan)
+        only[0, 3] = people[0][0, 3]
+        expected = Expected(only, expected.std_px, expected.weight)
+    assert (choose_performer(seen, expected, FPS) == truth).mean() > 0.97
+
+
+def test_a_performer_who_is_hidden_is_nobody() -> None:
+    """Somebody else who is seen meanwhile does not take the place."""
+    frames = 100
+    people = [walker((40, 60), (1.5, 0), frames, 0), walker((200, 50), (0, 0), frames, 1)]
+    present = np.ones((frames, 2), dtype=bool)
+    present[40:65, 0] = False
+    seen, truth = scene(people, present)
+    np.testing.assert_array_equal(choose_performer(seen, expected_from(people[0], 15), FPS), truth)
+
+
+def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
+    """A smaller person behind, and a large one who is there for a moment, are not."""
+    frames = 80
+    people = [
+        walker((60, 60), (1.0, 0), frames, 0),
+        0.5 * walker((300, 150), (-2.0, 0), frames, 1),
+        1.3 * walker((150, 20), (0, 0), frames, 2),
+    ]
+    present = np.ones((frames, 3), dtype=bool)
+    present[:, 2] = False
+    present[30:34, 2] = True
+    present[50:55, 0] = False
+    seen, truth = scene(people, present)
+    chosen = choose_performer(seen, None, FPS)
+    np.testing.assert_array_equal(chosen, truth)
+
+
+def test_nobody_anywhere() -> None:
+    """No frame has anybody."""
+    empty = Sightings((np.zeros((0, 7, 2)),) * 5, (np.zeros((0, 7)),) * 5)
+    assert (choose_performer(empty, None, FPS) == NOBODY).all()
+
+
+def test_a_jump_to_somebody_else_is_left_out() -> None:
+    """A detector of one person that follows a passer-by for a while shows nobody then."""
+    frames = 60
+    performer, other = walker((60, 60), (0.5, 0), frames, 0), walker((280, 40), (-1, 0), frames, 1)
+    person = performer.copy()
+    person[20:32] = other[20:32]
+    seen, _ = scene([person], np.ones((frames, 1), dtype=bool))
+    chosen = choose_performer(seen, expected_from(performer, 10), FPS)
+    assert (chosen[20:32] == NOBODY).all() and (np.delete(chosen, slice(20, 32)) == 0).all()
+
+
+def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
+    """More people than are looked at: those nearest are."""
+    frames = 25
+    people = [walker((30, 60), (2.0, 0), frames, 0)]
+    generator = np.random.default_rng(8)
+    people += [
+        walker((generator.uniform(0, 600), generator.uniform(0, 300)), (0, 0), frames, 1 + index)
+        for index in range(3 * MOST_CANDIDATES)
+    ]
+    seen, truth = scene(people, np.ones((frames, len(people)), dtype=bool))
+    assert (choose_performer(seen, expected_from(people[0], 8), FPS) == truth).mean() > 0.95
+
+
+def test_size_ignores_points_not_seen() -> None:
+    """The box about the seen points; a person without any has a size too, by which can be divided."""
+    points = np.stack([FIGURE, np.full_like(FIGURE, np.nan)])
+    points[0, 1:3] = np.nan
+    np.testing.assert_allclose(person_size(points), [np.hypot(14.0, 75.0), 1.0])

@@ -1,0 +1,148 @@
+"""Keypoints and evidence of many takes: names that every take has, sidecars of clips, lists, digests."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _shoot import write_shoot
+from _synthetic_take import true_postures, write_json, write_keypoints
+from keymark.core.errors import InputError
+from keymark.core.shoot.discovery.find_takes import open_shoot
+from keymark.core.take.conversion_digest import conversion_digest
+from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSettings
+from keymark.core.take.description import Description, describe, effective_settings
+from keymark.core.take.evidence import evidence_of
+from keymark.core.take.take_file import read_described, read_take
+from keymark.operators.cli.batch.protocol import Job
+
+FRAMES = 8
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A shoot of two clips and a folder, all with keypoints of two detectors; tests must not change it."""
+    folder = write_shoot(tmp_path_factory.mktemp("evidence") / "shoot", 3, FRAMES)
+    every = true_postures(FRAMES + 3)
+    for take, start in enumerate(("day1/take01.", "day1/take02.", "day1/take03/")):
+        posture = every[take : take + FRAMES]
+        write_keypoints(folder / f"{start}keypoints.json", posture)
+        write_keypoints(folder / f"{start}pose.json", posture, detector="other")
+    return folder
+
+
+@pytest.fixture
+def shoot(pristine: Path, tmp_path: Path) -> Path:
+    """A copy for the test."""
+    return Path(shutil.copytree(pristine, tmp_path / "shoot"))
+
+
+def edit(path: Path, **fields: Any) -> None:
+    """Set fields of a JSON file, which may be new."""
+    value = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    write_json(path, {**value, **fields})
+
+
+def names(shoot: Path, defaults: ConversionSettings = NO_SETTINGS) -> list[list[str]]:
+    """Paths of the files that each take's conversion reads its keypoints from."""
+    found = []
+    for take in open_shoot(shoot).takes:
+        described = take.describe()
+        settings = take.settings(described, defaults)
+        people = read_described(described, settings.keyframes, settings=settings).keypoints
+        folder = shoot if shoot.is_dir() else shoot.parent
+        found.append([Path(one.file).relative_to(folder).as_posix() for one in people])
+    return found
+
+
+def test_sidecars_of_clips_are_found(shoot: Path) -> None:
+    """`NAME.keypoints.json` beside the clip NAME, `keypoints.json` in a folder."""
+    own = ["day1/take01.keypoints.json", "day1/take02.keypoints.json", "day1/take03/keypoints.json"]
+    assert names(shoot) == [[name] for name in own]
+
+
+def test_a_shoot_names_the_file_of_every_take(shoot: Path) -> None:
+    """So does an option of the command line, which counts where no file says it."""
+    others = ["day1/take01.pose.json", "day1/take02.pose.json", "day1/take03/pose.json"]
+    assert names(shoot, ConversionSettings(keypoints=(Path("pose.json"),))) == [[name] for name in others]
+    edit(shoot / "shoot.json", keypoints=["pose.json", "keypoints.json"])
+    assert [one[0] for one in names(shoot)] == others
+    assert names(shoot)[0] == ["day1/take01.pose.json", "day1/take01.keypoints.json"]
+    edit(shoot / "day1" / "take02.take.json", keypoints="take01.pose.json")
+    assert names(shoot)[1] == ["day1/take01.pose.json"]
+    edit(shoot / "day1" / "take02.take.json", keypoints=None)
+    assert names(shoot)[1] == ["day1/take02.keypoints.json"]
+
+
+def test_a_take_without_the_file_is_refused(shoot: Path) -> None:
+    """The sentence names the file that this take should have."""
+    (shoot / "day1" / "take02.pose.json").unlink()
+    edit(shoot / "shoot.json", keypoints="pose.json")
+    assert len(read_take(shoot / "day1" / "take01.mp4").keypoints) == 1
+    with pytest.raises(InputError, match=r"take02\.pose\.json"):
+        read_take(shoot / "day1" / "take02.mp4")
+
+
+def test_evidence_is_inherited(shoot: Path) -> None:
+    """A clip may have other evidence than its shoot, or no markers; a line of a list counts first."""
+    edit(shoot / "shoot.json", evidence=["markers"])
+    edit(shoot / "day1" / "take02.take.json", markers=None, evidence=None)
+    kinds = [evidence_of(read_take(take.path)) for take in open_shoot(shoot).takes]
+    assert kinds == [("markers",), ("keypoints", "contours"), ("markers",)]
+    line = {"take": "day1/take01.mp4", "evidence": ["keypoints"], "keypoints": "take01.pose.json"}
+    (shoot / "list.jsonl").write_text(json.dumps(line), encoding="utf-8")
+    assert names(shoot / "list.jsonl") == [["day1/take01.pose.json"]]
+    (take,) = open_shoot(shoot / "list.jsonl").takes
+    assert evidence_of(read_described(take.describe())) == ("keypoints",)
+
+
+def test_a_worker_gets_the_settings(shoot: Path) -> None:
+    """Keypoints and evidence survive the way to another process."""
+    defaults = ConversionSettings(keypoints=(Path("a.json"), Path("b")), evidence=("keypoints", "contours"))
+    job = Job(open_shoot(shoot).takes[0], shoot / "out", defaults)
+    assert Job.from_line(job.to_line()).defaults == defaults
+    assert Job.from_line(Job(job.take, job.folder, NO_SETTINGS).to_line()).defaults == NO_SETTINGS
+
+
+def digest(described: Description, **chosen: Any) -> str:
+    """The digest of a conversion of a take."""
+    settings = effective_settings(described, ConversionSettings(**chosen))
+    return conversion_digest(described, settings, (), described.folder / "out", "1")
+
+
+def test_the_digest_follows_content_and_choice(shoot: Path) -> None:
+    """Not the path that names a file, and no file that is left aside."""
+    clip = shoot / "day1" / "take01.mp4"
+    digests = [digest(describe(clip))]
+    digests += [digest(describe(clip), evidence=kinds) for kinds in (("markers",), ("keypoints",))]
+    digests.append(digest(describe(clip), keypoints=(Path("pose.json"),)))
+    write_keypoints(shoot / "day1" / "take01.keypoints.json", true_postures(FRAMES), detector="newer")
+    digests.append(digest(describe(clip)))
+    assert len(set(digests)) == len(digests)
+    assert digest(describe(clip), evidence=("markers",)) == digests[1]
+    edit(shoot / "shoot.json", evidence=["markers"])
+    assert digest(describe(clip)) == digests[1]
+
+
+def test_a_take_without_keypoints_has_the_digest_it_had(tmp_path: Path) -> None:
+    """What nobody said anything of is not converted anew."""
+    clip = write_shoot(tmp_path / "shoot", 1, FRAMES) / "day1" / "take01.mp4"
+    before = digest(describe(clip))
+    assert digest(describe(clip), keypoints=None, evidence=None) == before
+    write_keypoints(clip.with_name("take01.pose.json"), true_postures(FRAMES))
+    assert digest(describe(clip)) == before
+
+
+def test_the_files_of_a_folder_count(shoot: Path) -> None:
+    """As of detectors that write a file a frame."""
+    clip, folder = shoot / "day1" / "take01.mp4", shoot / "day1" / "take01.openpose"
+    folder.mkdir()
+    for frame in range(FRAMES):
+        write_json(folder / f"take01_{frame:012d}_keypoints.json", {"people": []})
+    edit(shoot / "day1" / "take01.take.json", keypoints="take01.openpose")
+    before = digest(describe(clip))
+    (folder / f"take01_{FRAMES - 1:012d}_keypoints.json").unlink()
+    fewer = digest(describe(clip))
+    write_json(folder / f"take01_{0:012d}_keypoints.json", {"people": [], "version": 1.3})
+    assert len({before, fewer, digest(describe(clip))}) == 3

@@ -1,0 +1,262 @@
+"""Evidence of a take: markers, keypoints, hints of depth and contours, each of which may be missing."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from _synthetic_take import MATRIX_WORLD, true_postures, write_json, write_keypoints, write_synthetic_take
+from keymark.core.errors import InputError
+from keymark.core.estimate.reconstruct import check_method
+from keymark.core.take.clip_check import check_frame_count, open_clip
+from keymark.core.take.conversion_settings import MOST_KEYPOINT_FILES
+from keymark.core.take.description import describe
+from keymark.core.take.evidence import evidence_of
+from keymark.core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
+from keymark.core.take.take import Take
+from keymark.core.take.take_file import read_take, write_take
+
+FRAMES = 16
+MOVING = {"matrix_world": None, "matrix_world_frames": FRAMES * [MATRIX_WORLD]}
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A take that tests must not change."""
+    return write_synthetic_take(tmp_path_factory.mktemp("evidence") / "pristine", FRAMES)
+
+
+@pytest.fixture
+def folder(pristine: Path, tmp_path: Path) -> Path:
+    """A take of the test's own."""
+    return Path(shutil.copytree(pristine, tmp_path / "take"))
+
+
+def edit(folder: Path, **fields: Any) -> None:
+    """Change fields of take.json, objects by their own fields; None removes one."""
+    value = json.loads((folder / "take.json").read_text(encoding="utf-8"))
+    for name, field in fields.items():
+        inner = value.get(name)
+        value[name] = {**inner, **field} if isinstance(inner, dict) and isinstance(field, dict) else field
+        if field is None:
+            del value[name]
+    write_json(folder / "take.json", value)
+
+
+def hinted(folder: Path, name: str = "keypoints.json") -> Path:
+    """A file of keypoints with a depth for each."""
+    path = write_keypoints(folder / name, true_postures(FRAMES))
+    points = len(json.loads(path.read_text(encoding="utf-8"))["names"])
+    return write_keypoints(path, true_postures(FRAMES), world=FRAMES * [points * [[0.1, 0.2, 0.3]]])
+
+
+def marked(take: Take) -> bool:
+    """Whether all five markers are there."""
+    return len(take.markers) == 5
+
+
+def test_a_take_has_markers_and_contours_as_ever(folder: Path) -> None:
+    """Where nothing is said of evidence and no file of keypoints is there."""
+    take = read_take(folder)
+    assert marked(take) and take.keypoints == () and take.contours
+    assert evidence_of(take) == (MARKERS, CONTOURS)
+
+
+@pytest.mark.parametrize("markers", [None, {}])
+def test_markers_may_be_missing(folder: Path, markers: object) -> None:
+    """The field is absent or empty: any clothes are worn, and the contours are left."""
+    edit(folder, markers=None)
+    edit(folder, **({} if markers is None else {"markers": markers}))
+    assert evidence_of(read_take(folder)) == (CONTOURS,)
+
+
+def test_keypoints_beside_are_found(folder: Path) -> None:
+    """`keypoints.json` of the folder, as `keyframes.json`; the clip's frames and pixels are its own."""
+    hinted(folder)
+    take = read_take(folder)
+    assert evidence_of(take) == EVIDENCE
+    (people,) = take.keypoints
+    assert len(people.frames) == FRAMES and people.source == "drawn"
+
+
+def test_keypoints_may_be_several_files(folder: Path) -> None:
+    """In their order; one that is named takes the place of the usual one."""
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    for name in ("one", "two"):
+        write_keypoints(folder / f"{name}.json", true_postures(FRAMES), detector=name)
+    edit(folder, keypoints="two.json")
+    assert [people.source for people in read_take(folder).keypoints] == ["two"]
+    edit(folder, keypoints=["two.json", "one.json"])
+    assert [people.source for people in read_take(folder).keypoints] == ["two", "one"]
+
+
+def test_evidence_names_what_is_used(folder: Path) -> None:
+    """The rest is left aside, and read as well where a take is opened whole."""
+    hinted(folder)
+    edit(folder, evidence=["contours", "keypoints"])
+    take = read_take(folder)
+    assert evidence_of(take) == (KEYPOINTS, CONTOURS) and take.markers == ()
+    assert evidence_of(read_take(folder, whole=True)) == EVIDENCE
+    assert describe(folder).settings.evidence == (KEYPOINTS, CONTOURS)
+    edit(folder, evidence=["markers"])
+    (folder / "keypoints.json").write_text("no JSON", encoding="utf-8")
+    take = read_take(folder)
+    assert evidence_of(take) == (MARKERS,) and marked(take) and not take.contours
+
+
+def test_a_camera_that_moves_has_no_contours(folder: Path) -> None:
+    """So markers or keypoints must be there; opened whole, a take may have nothing yet."""
+    edit(folder, camera=MOVING)
+    assert evidence_of(read_take(folder)) == (MARKERS,)
+    edit(folder, markers=None)
+    with pytest.raises(InputError, match=r"take\.json: has nothing to follow, neither markers nor keypoints"):
+        read_take(folder)
+    assert evidence_of(read_take(folder, whole=True)) == ()
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    assert evidence_of(read_take(folder)) == (KEYPOINTS,)
+
+
+@pytest.mark.parametrize(
+    ("fields", "sentence"),
+    [
+        (
+            {"evidence": ["keypoints"]},
+            "names keypoints, which this take has not got .*it has markers, contours",
+        ),
+        ({"evidence": ["markers"], "markers": None}, r"names markers, .*\(markers must say which are worn\)"),
+        ({"evidence": ["contours"], "camera": MOVING}, "need a camera that stands still.*it has markers"),
+        (
+            {"evidence": ["sound"]},
+            r"evidence is \['sound'\]; it must be a list of one or more of markers, keyp",
+        ),
+        ({"evidence": []}, "it must be a list of one or more of"),
+        ({"evidence": "markers"}, "evidence is 'markers'; it must be a list"),
+        ({"evidence": ["markers", "markers"]}, "each once"),
+        ({"evidence": ["markers", "depth_hints"]}, "depth_hints are guesses .* need keypoints beside them"),
+        ({"keypoints": "../keypoints.json"}, "it must be a file or folder inside the take's folder"),
+        ({"keypoints": "/etc/passwd"}, "it must be a file or folder inside the take's folder"),
+        ({"keypoints": ["keypoints.json", 3]}, "keypoints is 3; it must be"),
+        ({"keypoints": []}, "keypoints lists 0 files"),
+        ({"keypoints": (MOST_KEYPOINT_FILES + 1) * ["k.json"]}, "keypoints lists 17 files"),
+        ({"keypoints": ["k.json", "./k.json"]}, "keypoints names a file twice"),
+        ({"keypoints": "missing.json"}, r"missing\.json: "),
+        ({"marker": {"trunk": {"color_srgb": [1, 2, 3]}}, "markers": None}, "'marker' meant"),
+    ],
+)
+def test_a_mistake_in_the_evidence_is_one_sentence(folder: Path, fields: Any, sentence: str) -> None:
+    """With the file that says it."""
+    edit(folder, **fields)
+    with pytest.raises(InputError, match=sentence) as caught:
+        read_take(folder)
+    assert str(folder) in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_hints_that_no_file_has_are_missed(folder: Path) -> None:
+    """Evidence that is asked for by name must be there."""
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    edit(folder, evidence=["keypoints", "depth_hints"])
+    with pytest.raises(
+        InputError, match="names depth_hints, .*none of its files of keypoints guesses depths"
+    ):
+        read_take(folder)
+
+
+def _nobody(value: dict[str, Any]) -> None:
+    value["frames"] = [None] * len(value["frames"])
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda v: v.update(layout="coco19"), "layout"),
+        (lambda v: v.update(size=[120, 160]), "size"),
+        (lambda v: v.update(fps=25, frames=v["frames"][: FRAMES * 5 // 6]), "frames"),
+        (lambda v: v.update(frames=v["frames"] * 2), f"{2 * FRAMES} frames"),
+        (lambda v: v["frames"].clear(), "frames"),
+        (lambda v: v["frames"][3].pop(), r"frames\[3\]"),
+        (_nobody, "nobody"),
+    ],
+    ids=["layout", "size", "rate", "count", "empty", "points", "nobody"],
+)
+def test_keypoints_of_another_clip_are_one_sentence(folder: Path, change: Any, sentence: str) -> None:
+    """Which names the file."""
+    path = write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    value = json.loads(path.read_text(encoding="utf-8"))
+    change(value)
+    write_json(path, value)
+    with pytest.raises(InputError, match=sentence) as caught:
+        read_take(folder)
+    assert "keypoints.json: " in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("content", [b'{"layout": "own", "frames": [[[1', b'{"layout": NaN}', b""])
+def test_keypoints_that_are_no_json_are_one_sentence(folder: Path, content: bytes) -> None:
+    """Cut off, not a number, and nothing at all."""
+    (folder / "keypoints.json").write_bytes(content)
+    with pytest.raises(InputError, match=r"keypoints\.json: ") as caught:
+        read_take(folder)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_clip_without_a_count_is_counted_for_its_keypoints(folder: Path) -> None:
+    """A file of another number of frames is refused on reading, with or without `frame_count`."""
+    edit(folder, frame_count=None)
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    assert open_clip(read_take(folder)).frame_count == FRAMES
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES // 2))
+    with pytest.raises(InputError, match=rf"keypoints\.json: has {FRAMES // 2} frames, the clip {FRAMES}"):
+        read_take(folder)
+
+
+def test_a_clip_that_is_shorter_than_it_claims_has_other_keypoints(folder: Path) -> None:
+    """The true count, once it is known, is held against the keypoints too."""
+    write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
+    edit(folder, frame_count=None)
+    take = read_take(folder)
+    check_frame_count(take, FRAMES)
+    with pytest.raises(InputError, match=rf"keypoints of {FRAMES} frames; frames has 10; it claims 16"):
+        check_frame_count(take, 10, FRAMES)
+
+
+def test_keypoints_may_not_leave_the_folder_by_a_link(folder: Path, tmp_path: Path) -> None:
+    """Neither a file, nor a link in a folder of files."""
+    outside = write_keypoints(tmp_path / "outside.json", true_postures(FRAMES))
+    (folder / "keypoints.json").symlink_to(outside)
+    with pytest.raises(InputError, match=r"keypoints\.json: leads by a link"):
+        read_take(folder)
+    (folder / "keypoints.json").unlink()
+    (folder / "openpose").mkdir()
+    (folder / "openpose" / "clip_000000000000_keypoints.json").symlink_to(outside)
+    edit(folder, keypoints="openpose")
+    with pytest.raises(InputError, match="leads by a link"):
+        read_take(folder)
+
+
+def test_the_papers_filter_needs_markers(folder: Path) -> None:
+    """One sentence says what is valid instead."""
+    take = read_take(folder)
+    check_method(take, "ekf")
+    edit(folder, markers=None)
+    bare = read_take(folder)
+    check_method(bare, "map")
+    check_method(bare, "interpolation")
+    with pytest.raises(InputError, match="method is ekf, .* follows markers alone.*; map is valid"):
+        check_method(bare, "ekf")
+
+
+def test_a_written_take_has_its_evidence(folder: Path, tmp_path: Path) -> None:
+    """Markers or none, every source of keypoints, and the kinds that are used."""
+    hinted(folder)
+    write_keypoints(folder / "other.json", true_postures(FRAMES), detector="other")
+    edit(folder, keypoints=["other.json", "keypoints.json"], markers=None)
+    take = read_take(folder)
+    write_take(take, tmp_path / "copy", evidence=("keypoints",))
+    back = read_take(tmp_path / "copy", whole=True)
+    assert back.markers == () and evidence_of(back) == (KEYPOINTS, DEPTH_HINTS, CONTOURS)
+    assert [people.source for people in back.keypoints] == ["other", "drawn"]
+    assert evidence_of(read_take(tmp_path / "copy")) == (KEYPOINTS,)
+    before = {path: path.read_bytes() for path in (folder / "other.json", folder / "keypoints.json")}
+    write_take(take, folder)
+    assert {path: path.read_bytes() for path in before} == before
+    assert [people.source for people in read_take(folder).keypoints] == ["other", "drawn"]
