@@ -5,7 +5,7 @@ from the keyframes, where the posture is known best; then edges are measured eve
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +86,17 @@ class ContourEvidence:
             variance[chunk] = edges.variance + (PIXEL_STD * album.factor) ** 2
             yield (chunk[-1] + 1) / len(frame)
         return ContourTerm(model, edge, normal, variance)
+
+    def near(
+        self, posture: Posture, frame: IndexArray, search: SearchRange
+    ) -> tuple[ContourPrediction, Edges]:
+        """The contours of well known postures, and the edges near them."""
+        pictures = self.album.pictures(frame)
+        return _measure(self.model, self.album, self.appearance, posture, frame, pictures, search)
+
+    def with_camera(self, camera: Camera) -> "ContourEvidence":
+        """The same before another camera."""
+        return replace(self, model=replace(self.model, camera=camera))
 
     def measure_along(
         self, posture: Posture, frame: IndexArray, search: SearchRange

@@ -7,7 +7,7 @@ and lens are the most probable ones given those sizes. Regions that fit none cou
 a marker that never fits is distrusted in all frames.
 """
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -50,6 +50,10 @@ PARAMETER_COUNT = len(PRIOR_STD)
 MOST_DISTRUST = 10.0
 
 
+ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
+"""Reads the rows of contours at posed postures in given frames."""
+
+
 @dataclass(frozen=True, eq=False)
 class KeyframeEvidence:
     """The calibrated model and the trust that keyframes and markers deserve."""
@@ -79,6 +83,7 @@ def read_keyframes(
     frame: IndexArray,
     keypoints: KeypointEvidence | None = None,
     points: ObservedKeypoints | None = None,
+    contours: ContourReader | None = None,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate markers and keypoints on the keyframes and judge the keyframes by them.
 
@@ -93,11 +98,12 @@ def read_keyframes(
         frame: (K,) their indices in the clip.
         keypoints: Usual evidence of the N keypoints; None for none.
         points: Those seen at the K keyframes.
+        contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
     keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
-    if not model.placements and (points is None or not points.seen.any()):
+    if not model.placements and (points is None or not points.seen.any()) and contours is None:
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
         found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
         return replace(found, keypoints=keypoints)
@@ -111,6 +117,9 @@ def read_keyframes(
     if points is not None and points.seen.any():
         seen_points = KnownKeypoints(pose, frame[judged], points[judged])
         groups += [2] * len(keypoints.model.names)
+    outlines = None if contours is None else contours(posture[judged], frame[judged])
+    if outlines is not None:
+        groups += [1] * outlines.residual.shape[1]
     usual, placed, std_m = keypoints.model, keypoints.model, keypoints.std_m
     size = np.array(groups)
     weight = np.ones((len(judged), int(size.sum())))
@@ -125,6 +134,8 @@ def read_keyframes(
             parts.append(regions)
         if seen_points is not None:
             parts.append(keypoint_rows(placed, usual, seen_points, std_m))
+        if outlines is not None:
+            parts.append(outlines)
         seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
@@ -140,8 +151,9 @@ def read_keyframes(
         trust = student_weight(squared / doubt**2, DEGREES, size) / doubt**2
         weight = np.repeat(trust, size, axis=1)
         if seen_points is not None:
-            placed = usual.changed(change[ends:-1].reshape(-1, 3), calibrated.camera)
-            own = slice(markers * FEATURES, None)
+            rows, places = 2 * len(usual.names), 3 * len(usual.names)
+            placed = usual.changed(change[ends : ends + places].reshape(-1, 3), calibrated.camera)
+            own = slice(markers * FEATURES, markers * FEATURES + rows)
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     information = keyframe_information(posing, velocity, scale, timing)

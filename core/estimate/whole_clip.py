@@ -8,7 +8,7 @@ annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -25,9 +25,10 @@ from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
-from .contour_schedule import contour_schedule
+from .contour_keyframes import contour_rows
+from .contour_schedule import all_located, contour_schedule
 from .keyframe_evidence import KeyframeEvidence
-from .keyframe_trust import read_mixed_keyframes
+from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .match_error import depth_std_m
@@ -125,6 +126,12 @@ def estimate_whole_clip(
     matched = match_scale > 0.0
     keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
     points = ObservedKeypoints.of(keypoints)
+    posed = index[match_scale == 0.0]
+    contours = None
+    schedule = _schedule(body, camera, album, segments, prior)
+    if album is not None and schedule is not None and len(posed) >= FEWEST_POSED:
+        learning = learn_contours(body, camera, album, prior, posed, schedule)
+        contours = yield from scaled(learning, 0.0, 0.0)
     reading = read_mixed_keyframes(
         model,
         options.regions,
@@ -135,6 +142,7 @@ def estimate_whole_clip(
         match_scale,
         KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources),
         points[index],
+        None if contours is None else partial(contour_rows, contours),
     )
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = process_noise_factor(prior[index], tracks.time_s[index])
@@ -159,6 +167,12 @@ def estimate_whole_clip(
         np.zeros(points.seen.shape, dtype=bool),
     )
     return (yield from _solve(problem, options, album, earlier))
+
+
+def _schedule(body, camera, album, segments, prior):
+    if album is None or all_located(body, segments):
+        return None
+    return contour_schedule(body, camera, album.factor, segments, prior)
 
 
 def _solve(
@@ -203,13 +217,8 @@ def _solve_windows(
     if earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-        schedule = contour_schedule(
-            problem.body,
-            known,
-            album.factor,
-            tuple(one.segment for one in problem.evidence.model.placements),
-            problem.prior,
-        )
+        segments = tuple(one.segment for one in problem.evidence.model.placements)
+        schedule = contour_schedule(problem.body, known, album.factor, segments, problem.prior)
         learning = learn_contours(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )
