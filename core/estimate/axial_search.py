@@ -1,7 +1,7 @@
-"""Search for shifts of parts of the body along their own axes: cuffs, shoe lines, belts, the crown of the head.
+"""Search for shifts of parts of the body along their axes: cuffs, shoe lines, belts, the crown of the head.
 
-Contours along a limb say nothing of a motion along it. The colors from one of its ends to the other say it: of
-all shifts of the learned sequence along the axis those are likely whose colors are seen. As with contours,
+Contours along a limb say nothing of a motion along it. The colors from one of its ends to the other say it:
+of all shifts of the learned sequence along the axis those are likely whose colors are seen. As with contours,
 this gives a distribution whose mean and variance are the measurement: a limb of one color measures nothing.
 """
 
@@ -117,7 +117,9 @@ def find_shifts(
             continue
         run, row, column, inside = lines.pixels(use, part, search.reach, size)
         inside &= joined[part][shown[use[:, None, None], row, column]]  # the last, -1, is no part
-        logs = _logs(appearance, colors, part, beyond[part], row, column, pictures[use[:, None, None], row, column])
+        logs = _logs(
+            appearance, colors, part, beyond[part], row, column, pictures[use[:, None, None], row, column]
+        )
         logs = np.where(inside[..., None], logs, 0.0).mean(axis=2)
         share = run / lines.length[use, part, None]  # (U, Q)
         _measure(found, use, part, logs, share, offset, lines.length[use, part], search, factor)
@@ -136,7 +138,9 @@ def _measure(
     factor: int,
 ) -> None:
     """Fill in one part's shifts by the log likelihoods (U, Q, BANDS + 2) of pixels at shares (U, Q)."""
-    place = share[..., None] - offset / length[:, None, None]  # (U, Q, S): where a pixel lies on a shifted part
+    place = (
+        share[..., None] - offset / length[:, None, None]
+    )  # (U, Q, S): where a pixel lies on a shifted part
     label = np.clip(np.floor(place * BANDS) + 1.0, 0, BANDS + 1).astype(np.intp)
     picked = np.take_along_axis(logs, label, axis=-1)
     log = picked.sum(axis=1) - 0.5 * (offset / search.prior_std) ** 2
@@ -166,9 +170,9 @@ def _logs(
     column: IndexArray,
     seen: Image,
 ) -> Array:
-    """(..., BANDS + 2) log likelihoods of pixels under a part's bands, before its start first, after its end last.
+    """(..., BANDS + 2) log likelihoods of pixels under a part's bands, relative to the likeliest and bounded.
 
-    They are relative to the likeliest and bounded.
+    Those of what lies before its start come first, after its end last.
     """
     cell = band_cells(seen)
     logs = np.empty((*cell.shape, BANDS + 2))

@@ -38,9 +38,11 @@ SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 EDGE_STD_M = 0.012
 FEWEST_EDGES = 20
 AXIAL_STD_PX = 2.0
-AXIAL_STD_M = 0.06
-"""Standard deviation of a part's colors along its axis. Cuffs slip by 2 cm, for many frames alike; believed as if
-each frame erred anew, they would turn limbs toward or away from the camera."""
+AXIAL_STD_M = 0.03
+"""Standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm."""
+AXIAL_MEMORY_S = 0.3
+"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs toward
+or away from the camera."""
 LEAST_FRAME_SHARE = 0.1
 """Least share of frames with a picture."""
 DEGREES_OF_FREEDOM = 4.0
@@ -59,7 +61,7 @@ class ContourEvidence:
     schedule: Schedule = BY_MARKERS
     """How far from the contours edges are looked for."""
     along: BandColors | None = None
-    """The colors along each part, by which shifts along their axes are measured; None where markers tell these."""
+    """The colors along each part, for shifts along their axes; None where markers tell these."""
 
     def measure(
         self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
@@ -99,7 +101,7 @@ class ContourEvidence:
         return replace(self, model=replace(self.model, camera=camera))
 
     def measure_along(
-        self, posture: Posture, frame: IndexArray, search: SearchRange
+        self, posture: Posture, frame: IndexArray, search: SearchRange, step_s: Array
     ) -> Generator[float, None, AxialTerm]:
         """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
 
@@ -107,8 +109,10 @@ class ContourEvidence:
             posture: The F postures.
             frame: (F,) their indices in the clip.
             search: How far from the prediction.
+            step_s: Times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
+        kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
         axes = LimbAxes(model.parts, model.camera)
         assert self.along is not None
         shape = len(frame), len(model.parts.segments)
@@ -128,7 +132,7 @@ class ContourEvidence:
             spread = (AXIAL_STD_PX * album.factor) ** 2 + (AXIAL_STD_M * found.scale) ** 2
             variance[chunk] = np.where(usable, found.variance, 1.0) + spread
             yield (chunk[-1] + 1) / len(frame)
-        return AxialTerm(axes, share, place, direction, variance)
+        return AxialTerm(axes, share, place, direction, variance, kept)
 
 
 def learn_contours(
@@ -149,8 +153,8 @@ def learn_contours(
         album: Pictures of the clip's frames.
         posture: The postures of all F frames, by their markers.
         keyframes: Frames whose posture is known best.
-        schedule: How far from the contours edges are to be looked for; a wide one says that only the keyframes'
-            postures are known.
+        schedule: How far from the contours edges are to be looked for; a wide one says that only the
+            keyframes' postures are known.
 
     Returns:
         None where no background can be trusted: before a moving camera, or where most pictures are missing.

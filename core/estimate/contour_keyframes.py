@@ -11,11 +11,13 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..observation.contours import SHAPE, SHARES, SIDES, ContourModel
-from .contour_evidence import EDGE_STD_M, SHAPE_STD_M, ContourEvidence
+from .contour_evidence import SHAPE_STD_M, ContourEvidence
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.contours import PIXEL_STD
 
 LENS_DIFFERENCE = 1e-3
+EDGE_STD_M = 0.003
+"""Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors."""
 HALVES = 2
 ROWS = HALVES * len(SIDES)
 """Rows of a part."""
@@ -30,7 +32,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
         frame: (J,) their indices in the clip.
     """
     model, factor = contours.model, contours.album.factor
-    predicted, edges = contours.near(posture, frame, contours.schedule.looks[len(contours.schedule.looks) * 2 // 3])
+    predicted, edges = contours.near(posture, frame, contours.schedule.judging)
     average = replace(model, shape=np.zeros_like(model.shape))
     pose = model.body.pose(posture)
     flat = average.evaluate(pose, frame)

@@ -52,7 +52,9 @@ def read_mixed_keyframes(
         contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
     if not match_scale.any():
-        reading = read_keyframes(model, noise, observed, width_px, posture, frame, keypoints, points, contours)
+        reading = read_keyframes(
+            model, noise, observed, width_px, posture, frame, keypoints, points, contours
+        )
         return (yield from reading)
     posed = np.flatnonzero(match_scale == 0.0)
     information = np.linalg.inv(match_covariance(posture, model.camera, frame))

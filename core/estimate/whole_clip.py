@@ -127,9 +127,9 @@ def estimate_whole_clip(
     keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
     points = ObservedKeypoints.of(keypoints)
     posed = index[match_scale == 0.0]
-    contours = None
-    schedule = _schedule(body, camera, album, segments, prior)
-    if album is not None and schedule is not None and len(posed) >= FEWEST_POSED:
+    contours = None  # where markers judge keyframes, contours would add nothing
+    if album is not None and not all_located(body, segments) and len(posed) >= FEWEST_POSED:
+        schedule = contour_schedule(body, camera, album.factor, segments, prior)
         learning = learn_contours(body, camera, album, prior, posed, schedule)
         contours = yield from scaled(learning, 0.0, 0.0)
     reading = read_mixed_keyframes(
@@ -167,12 +167,6 @@ def estimate_whole_clip(
         np.zeros(points.seen.shape, dtype=bool),
     )
     return (yield from _solve(problem, options, album, earlier))
-
-
-def _schedule(body, camera, album, segments, prior):
-    if album is None or all_located(body, segments):
-        return None
-    return contour_schedule(body, camera, album.factor, segments, prior)
 
 
 def _solve(
@@ -218,7 +212,9 @@ def _solve_windows(
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
         segments = tuple(one.segment for one in problem.evidence.model.placements)
-        schedule = contour_schedule(problem.body, known, album.factor, segments, problem.prior)
+        schedule = contour_schedule(
+            problem.body, known, album.factor, segments, problem.prior, problem.keypoints
+        )
         learning = learn_contours(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )

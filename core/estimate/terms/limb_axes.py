@@ -7,9 +7,8 @@ import numpy as np
 from ...arrays import Array
 from ...observation.limb_axes import LimbAxes
 from ..clip_state import ClipState
-from .term import NormalEquations, student_weight
-
-DEGREES = 4.0
+from .drift import add_drift, drift
+from .term import NormalEquations
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,15 +24,15 @@ class AxialTerm:
     """(F, O, 2) unit direction of the axis."""
     variance: Array
     """(F, O) [px²]."""
+    kept: Array
+    """(F - 1, 1) share of an error that is left in the next frame."""
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add a row for each part."""
+        """Add a row for each part, with an error that lasts."""
         world, pixel = self.axes.points(state.pose, state.frame, self.share)
-        residual = np.sum(self.direction * pixel, axis=-1) - self.place
-        found = np.isfinite(residual)
-        residual = np.where(found, residual, 0.0)
-        variance = self.variance * temperature
-        information = np.where(found, student_weight(residual**2 / variance, DEGREES, 1) / variance, 0.0)
-        weight = np.sqrt(information)
+        std = np.sqrt(self.variance)
+        error = (np.sum(self.direction * pixel, axis=-1) - self.place) / std
+        found = np.isfinite(error)
         jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction) @ state.tangent_jacobian
-        equations.add_rows(residual * weight, np.where(found[..., None], jacobian, 0.0) * weight[..., None])
+        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)
+        add_drift(equations, jacobian[:, :, None], drift(error[..., None], found, self.kept, temperature))
