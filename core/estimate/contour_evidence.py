@@ -41,8 +41,8 @@ AXIAL_STD_PX = 2.0
 AXIAL_STD_M = 0.03
 """Standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm."""
 AXIAL_MEMORY_S = 0.3
-"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs toward
-or away from the camera."""
+"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
+toward or away from the camera."""
 LEAST_FRAME_SHARE = 0.1
 """Least share of frames with a picture."""
 DEGREES_OF_FREEDOM = 4.0

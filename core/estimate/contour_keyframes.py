@@ -1,7 +1,7 @@
 """Rows by which contours judge keyframes: edges found near them less what the posed body predicts.
 
-The eight samples of a part err together and are many; the mean of either side's half, four numbers a part, says
-as much of where it lies, how it is turned and how thick it is.
+The eight samples of a part err together and are many; the mean of either side's half, four numbers a part,
+says as much of where it lies, how it is turned and how thick it is.
 """
 
 from dataclasses import replace
@@ -40,7 +40,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     zoomed = replace(average, camera=camera).evaluate(pose, frame)
     by_lens = np.sum(predicted.normal * (zoomed.pixel - flat.pixel), axis=-1) / LENS_DIFFERENCE
     found = np.isfinite(edges.variance)
-    # The edges lie by `distance` out of the predicted contours; average ones are farther in by their shape's part.
+    # Average contours lie as far from the edges as the predicted ones and the fitted shape together.
     own_shape = np.sum(predicted.shape_rate * model.shape[model.part_of], axis=-1)
     residual = -edges.distance - own_shape
     scale = np.linalg.norm(predicted.shape_rate[..., :2], axis=-1)

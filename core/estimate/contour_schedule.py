@@ -24,7 +24,7 @@ LOOKS = 9
 LARGEST_REACH_PX = 36
 """Bound of the first look's reach, for the sake of time."""
 BY_KEYPOINTS = 0.5
-"""Width of the first look where keypoints locate the limbs: detectors err by 2 to 6 cm, and at times by far more."""
+"""Width of the first look where keypoints locate the limbs: these err by 2 to 6 cm, and at times by more."""
 ENDS = (
     ("wrist.L",),
     ("wrist.R",),

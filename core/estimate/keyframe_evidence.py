@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
 from .calibration import (
@@ -24,9 +25,10 @@ from .calibration import (
     placement_values,
     placements_from,
 )
+from .depth_evidence import read_depths
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std
-from .posing_error import posing_covariance, velocities
+from .posing_error import POINT_STD_M, posing_covariance, velocities
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import student_weight
@@ -103,7 +105,8 @@ def read_keyframes(
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
     keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
-    if not model.placements and (points is None or not points.seen.any()) and contours is None:
+    believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
+    if not model.placements and not believed and contours is None:
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
         found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
         return replace(found, keypoints=keypoints)
@@ -114,8 +117,9 @@ def read_keyframes(
     variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
     calibrated, groups = model, [FEATURES] * len(model.placements)
     seen_points = None
-    if points is not None and points.seen.any():
+    if points is not None and believed:
         seen_points = KnownKeypoints(pose, frame[judged], points[judged])
+        seen_points = replace(seen_points, observed=seen_points.observed.only(keypoints.trust > 0.0))
         groups += [2] * len(keypoints.model.names)
     outlines = None if contours is None else contours(posture[judged], frame[judged])
     if outlines is not None:
@@ -139,9 +143,10 @@ def read_keyframes(
         seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
-            scale, timing = yield from _most_likely_sizes(seen, weight)
-        change, left = _calibrate(seen, weight, scale, timing)
-        squared = _squared(seen, left, size, scale, timing)
+            judging, tied = _judging(markers, keypoints, seen_points is not None, outlines)
+            scale, timing = yield from _most_likely_sizes(seen.part(judging, tied), weight[:, judging])
+        change, left = seen.calibrated(weight, scale, timing)
+        squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
         ends = markers * PARAMETER_COUNT
         calibrated = _changed(model, np.append(change[:ends], change[-1]))
@@ -157,7 +162,12 @@ def read_keyframes(
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     information = keyframe_information(posing, velocity, scale, timing)
-    found_points = replace(keypoints, model=replace(placed, camera=calibrated.camera), std_m=std_m)
+    placed = replace(placed, camera=calibrated.camera)
+    found_points = replace(keypoints, model=placed, std_m=std_m)
+    if points is not None and believed and np.isfinite(points.depth_m).any():
+        every = model.body.pose(posture)
+        depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
+        found_points = replace(found_points, depths=depths)
     return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
 
 
@@ -242,6 +252,25 @@ def _area_ratios(ratio: Array) -> Array:
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
+def _judging(
+    markers: int, keypoints: KeypointEvidence, used: bool, outlines: EvidenceRows | None
+) -> tuple[BoolArray, BoolArray]:
+    """Which rows (R,) judge keyframes, with their parameters (X,): markers, contours, keypoints of the joints.
+
+    The others, of face, hands and feet, err along with these.
+    """
+    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * PARAMETER_COUNT, bool)
+    if used:
+        points = np.array([name in HUMAN.point_names for name in keypoints.model.names])
+        points |= not points.any()
+        rows = np.concatenate([rows, np.repeat(points, 2)])
+        parameters = np.concatenate([parameters, np.repeat(points, 3)])
+    if outlines is not None:
+        rows = np.append(rows, np.ones(outlines.residual.shape[1], bool))
+        parameters = np.append(parameters, np.ones(outlines.by_parameters.shape[2], bool))
+    return rows, np.append(parameters, True)
+
+
 def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, None, tuple[float, float]]:
     """Means over the posterior of the posing error's size and of the timing error."""
     logarithm = np.empty((len(SCALES), len(TIMINGS)))
@@ -260,7 +289,7 @@ def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
 
     Woodbury's identity spares the dense matrix of all rows, Sherman and Morrison's an inverse a timing.
     """
-    inverse, information, right = _gather(seen, noise)
+    inverse, information, right = seen.gathered(noise)
     _, determinants = np.linalg.slogdet(noise)
     misfit = np.einsum("jr,jrs,js->", seen.residual, inverse, seen.residual)
     weighted = (inverse @ seen.velocity[..., None])[..., 0]
@@ -276,35 +305,6 @@ def _log_likelihoods(seen: KeyframeRows, noise: Array) -> Array:
         spread = determinants.sum() + np.log1p(timing**2 * gain).sum() + np.linalg.slogdet(known)[1]
         result[i] = -0.5 * (rest + spread)
     return result
-
-
-def _gather(seen: KeyframeRows, noise: Array) -> tuple[Array, Array, Array]:
-    """Inverse noise, information (X, X) of the parameters with their prior, right-hand side (X,)."""
-    inverse = np.linalg.inv(noise)
-    weighted = np.swapaxes(seen.parameter_jacobian, -1, -2) @ inverse
-    information = (weighted @ seen.parameter_jacobian).sum(axis=0) + seen.prior
-    return inverse, information, (weighted @ seen.residual[..., None]).sum(axis=0)[:, 0]
-
-
-def _calibrate(seen: KeyframeRows, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
-    """Most probable change (X,) of the parameters, and the rows (J, R) that it leaves."""
-    _, information, right = _gather(seen, seen.noise(weight, scale, timing))
-    change = -np.linalg.solve(information, right)
-    return change, seen.residual + seen.parameter_jacobian @ change
-
-
-def _squared(seen: KeyframeRows, left: Array, size: IndexArray, scale: float, timing: float) -> Array:
-    """(J, G) squares of groups of rows in standard deviations, `size` (G,) rows each."""
-    expected = seen.noise(np.ones_like(left), scale, timing)
-    squared = np.empty((len(left), len(size)))
-    first = np.cumsum(size) - size
-    for count in np.unique(size):
-        index = first[size == count][:, None] + np.arange(count)
-        rows = left[:, index]  # (J, G', count)
-        own = expected[:, index[:, :, None], index[:, None, :]]
-        solved = np.linalg.solve(own, rows[..., None])
-        squared[:, size == count] = (rows[..., None, :] @ solved)[..., 0, 0]
-    return squared
 
 
 def _distrust(squared: Array, usable: BoolArray) -> Array:

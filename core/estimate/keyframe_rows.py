@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray, IndexArray
 
 UNUSED = 1e6
 """Variance of a row that does not count [px²]."""
@@ -80,6 +80,43 @@ class KeyframeRows:
             (jacobian @ velocity[..., None])[..., 0],
             block_diag(*(part.prior for part in parts), LENS_STD**-2),
         )
+
+    def part(self, rows: BoolArray, parameters: BoolArray) -> "KeyframeRows":
+        """Some of the rows (R,), with the parameters (X,) that they depend on."""
+        return KeyframeRows(
+            self.residual[:, rows],
+            self.parameter_jacobian[:, rows][:, :, parameters],
+            self.variance[:, rows],
+            self.posing[:, rows][:, :, rows],
+            self.velocity[:, rows],
+            self.prior[np.ix_(parameters, parameters)],
+        )
+
+    def gathered(self, noise: Array) -> tuple[Array, Array, Array]:
+        """Inverse noise, information (X, X) of the parameters with their prior, right-hand side (X,)."""
+        inverse = np.linalg.inv(noise)
+        weighted = np.swapaxes(self.parameter_jacobian, -1, -2) @ inverse
+        information = (weighted @ self.parameter_jacobian).sum(axis=0) + self.prior
+        return inverse, information, (weighted @ self.residual[..., None]).sum(axis=0)[:, 0]
+
+    def calibrated(self, weight: Array, scale: float, timing: float) -> tuple[Array, Array]:
+        """Most probable change (X,) of the parameters, and the rows (J, R) that it leaves; as `noise`."""
+        _, information, right = self.gathered(self.noise(weight, scale, timing))
+        change = -np.linalg.solve(information, right)
+        return change, self.residual + self.parameter_jacobian @ change
+
+    def squared(self, left: Array, size: IndexArray, scale: float, timing: float) -> Array:
+        """(J, G) squares, in standard deviations, of rows that are left: groups of `size` (G,) rows each."""
+        expected = self.noise(np.ones_like(left), scale, timing)
+        squared = np.empty((len(left), len(size)))
+        first = np.cumsum(size) - size
+        for count in np.unique(size):
+            index = first[size == count][:, None] + np.arange(count)
+            rows = left[:, index]
+            own = expected[:, index[:, :, None], index[:, None, :]]
+            solved = np.linalg.solve(own, rows[..., None])
+            squared[:, size == count] = (rows[..., None, :] @ solved)[..., 0, 0]
+        return squared
 
     def noise(self, weight: Array, scale: float, timing: float) -> Array:
         """(J, R, R) covariance of the rows without the parameters' own.

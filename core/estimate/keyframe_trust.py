@@ -32,8 +32,8 @@ def read_mixed_keyframes(
     posture: Posture,
     frame: IndexArray,
     match_scale: Array,
-    keypoints: KeypointEvidence,
-    points: ObservedKeypoints,
+    keypoints: KeypointEvidence | None = None,
+    points: ObservedKeypoints | None = None,
     contours: ContourReader | None = None,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
@@ -47,7 +47,7 @@ def read_mixed_keyframes(
         frame: (K,) their places in the clip.
         match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
             0 for posed ones.
-        keypoints: Usual evidence of the N keypoints.
+        keypoints: Usual evidence of the N keypoints; None for none.
         points: Those seen at the K keyframes.
         contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
@@ -68,7 +68,7 @@ def read_mixed_keyframes(
             posture[posed],
             frame[posed],
             keypoints,
-            points[posed],
+            None if points is None else points[posed],
             contours,
         )
         evidence = yield from reading
@@ -76,4 +76,5 @@ def read_mixed_keyframes(
         return replace(evidence, information=information)
     if len(posed):
         information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(posture[posed])))
-    return replace(uncalibrated(model), information=information, keypoints=keypoints)
+    evidence = replace(uncalibrated(model), information=information)
+    return evidence if keypoints is None else replace(evidence, keypoints=keypoints)

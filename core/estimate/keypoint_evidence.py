@@ -4,6 +4,7 @@ Both are shrunk toward usual values, since keyframes are few: places toward wher
 point and toward its mirror image's, errors toward the usual one and that of all points of the same name.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,9 @@ from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
 from ..footage.camera import Camera
 from ..footage.keypoints.body_points import mirrored_point
+from ..observation.depth_links import DepthLinks
 from ..observation.keypoints import USUAL_PLACES, KeypointModel
+from .depth_evidence import DepthEvidence
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 
@@ -23,7 +26,7 @@ NAME_COUNT, POINT_COUNT = 40.0, 12.0
 """Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
 MEMORY_S = 0.15
 """Time in which an error fades to a third."""
-CLIP_FACTOR = 2.5
+CLIP_FACTOR = 3.0
 """Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
 a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
 turns it a long way toward or away from the camera, of which a linearised row knows nothing."""
@@ -43,6 +46,10 @@ class KeypointEvidence:
     """(N,) error of a sure detection along each axis of the image [m]."""
     trust: Array
     """(N,) 1 for points that are believed, 0 for those left out."""
+    lag: Mapping[str, int]
+    """By source that is left out for it: frames by which it is late, or early where negative."""
+    depths: DepthEvidence
+    """What the hints of depth are worth."""
     memory_s: float = MEMORY_S
     """Time in which an error fades to a third [s]."""
 
@@ -51,12 +58,9 @@ class KeypointEvidence:
         cls, body: Body, camera: Camera, names: tuple[str, ...], sources: tuple[str, ...]
     ) -> "KeypointEvidence":
         """Keypoints before any keyframe is posed: usual places and errors."""
-        return cls(
-            KeypointModel.usual(body, camera, names),
-            sources,
-            usual_std_m(names, sources),
-            np.ones(len(names)),
-        )
+        model = KeypointModel.usual(body, camera, names)
+        depths = DepthEvidence.usual(DepthLinks.between(names, sources), model)
+        return cls(model, sources, usual_std_m(names, sources), np.ones(len(names)), {}, depths)
 
     @property
     def error_m(self) -> Array:
@@ -167,7 +171,7 @@ def learned_std(
     own = np.repeat((scale * std_m) ** 2, 2, axis=1)
     inverse = np.linalg.inv(noise)
     mean = own * (inverse @ left[..., None])[..., 0]
-    spread = own - own**2 * np.diagonal(inverse, axis1=1, axis2=2)
+    spread = own * np.clip(1.0 - own * np.diagonal(inverse, axis1=1, axis2=2), 0.0, 1.0)
     squared = (mean**2 + spread).reshape(judged, points, 2).sum(-1) / scale**2  # of both axes [m²]
     used = known.observed.seen
     bounded = np.minimum(squared, LARGEST_ERROR**2 * 2.0 * std_m**2)

@@ -7,8 +7,10 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..body.body_volume import TRUNK
 from ..body.posture import Posture
 from ..footage.keypoints.keypoints import Keypoints
+from ..observation.keypoints import USUAL_PLACES
 from .keypoint_evidence import KeypointEvidence
 from .terms.keypoints import KeypointTerm, ObservedKeypoints
 
@@ -38,6 +40,8 @@ class KeypointFit:
     """(N,) share of the usual trust in each point, 0 for one that is left out all along."""
     source_trust: Mapping[str, float]
     """By source: mean trust in its points, 0 for one that is left out."""
+    lag: Mapping[str, int]
+    """By source that is left out for it: frames by which it is late, or early where negative."""
 
 
 def keypoint_fit(
@@ -79,4 +83,17 @@ def keypoint_fit(
         swapped,
         evidence.trust,
         MappingProxyType(trust),
+        MappingProxyType(dict(evidence.lag)),
     )
+
+
+def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
+    """The joint whose place each of N keypoints shows, and where (F, N) it does.
+
+    A shoulder or a hip shows where the trunk is, and nothing of the limb.
+    """
+    names = fit.keypoints.names
+    joints = tuple(
+        TRUNK if name.startswith(("shoulder", "hip")) else USUAL_PLACES[name].joint for name in names
+    )
+    return joints, (fit.weight > 0.0) & ~fit.thrown_out

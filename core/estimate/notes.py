@@ -105,10 +105,14 @@ def match_notes(take: Take) -> tuple[str, ...]:
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:
-    """Note that the paper's filter takes matched keyframes for posed ones."""
+    """Notes on what the paper's filter does not know of: keypoints, and other people's keyframes."""
+    notes: tuple[str, ...] = ()
+    if take.keypoints:
+        notes = ("method ekf follows markers alone and leaves keypoints aside; method map follows both",)
     if all(keyframe.matched is None for keyframe in take.keyframes):
-        return ()
+        return notes
     return (
+        *notes,
         "method ekf takes matched keyframes for posed ones; method map allows for the larger errors of "
         "matched keyframes",
     )

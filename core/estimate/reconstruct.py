@@ -28,7 +28,8 @@ from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
-from .keypoint_fit import KeypointFit
+from .keypoint_fit import KeypointFit, observed_joints
+from .keypoint_notes import keypoint_notes
 from .match_error import undetermined_covariance
 from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .unobserved_variance import unobserved_variance
@@ -153,7 +154,7 @@ def _reconstruct(
         usable = _usable(earlier, reading)
         solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
         motion, model = _solved(take, tracks, solution, match_scale), solution.evidence.model
-        notes += evidence_notes(take, solution.evidence)
+        notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -216,8 +217,13 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         **_keypoint_diagnostics(result),
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
+    points, seen = observed_joints(result.keypoints)
     unseen = unobserved_variance(
-        take.body.skeleton, take.marker_segments, tracks.visible, index, tracks.time_s
+        take.body.skeleton,
+        (*take.marker_segments, *points),
+        np.concatenate([tracks.visible, seen], axis=1),
+        index,
+        tracks.time_s,
     )
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():

@@ -1,6 +1,6 @@
-"""Additional variance of limbs that neither markers nor keyframes have observed for some time.
+"""Additional variance of limbs that neither markers, keypoints nor keyframes have observed for some time.
 
-Between keyframes and visible markers the estimate's own covariance holds, since gaps are short. Where a
+Between keyframes and what is visible the estimate's own covariance holds, since gaps are short. Where a
 performer is out of the picture, or pictures are black, it would stay as if people moved little from the last
 known posture; they do not, and within half a second may be anywhere in their reach.
 
@@ -36,20 +36,22 @@ def unobserved_variance(
 
     Args:
         skeleton: The body's.
-        segments: (M,) the segment each marker is bound to; an unknown name counts for the trunk.
-        visible: (F, M) whether each marker is seen.
+        segments: (M,) the segment each marker is bound to, or the joint each keypoint moves with; an unknown
+            name counts for the trunk.
+        visible: (F, M) whether each marker or keypoint is seen.
         keyframes: (K,) frames whose posture is known.
         time_s: (F,) time stamps.
     """
     trunk, *limbs = skeleton.limbs
-    joint = {segment.name: segment.joint for segment in skeleton.segments}
+    joint = {one.name: index for index, one in enumerate(skeleton.joints)}
+    joint |= {segment.name: segment.joint for segment in skeleton.segments}
     first = {name: skeleton.dof_starts[index] for name, index in joint.items()}
     std = np.zeros((len(time_s), skeleton.dof_count))
     posed = np.zeros(len(time_s), dtype=bool)
     posed[keyframes] = True
     for part in (trunk, *limbs):
         own = [i for i, name in enumerate(segments) if first.get(name, int(trunk[0])) in part]
-        # Any visible marker also locates the trunk.
+        # Anything visible also locates the trunk.
         observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
         unknown = _unobserved_time_s(observed, time_s)
         std[:, part] = (

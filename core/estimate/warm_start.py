@@ -19,7 +19,9 @@ from ..footage.camera import Camera
 from .calibration import PRIOR_STD, placement_values
 from .clip_problem import ClipProblem
 from .keyframe_evidence import KeyframeEvidence, keyframe_information
+from .keypoint_evidence import KeypointEvidence
 from .posing_error import posing_covariance, velocities
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions
 from .windows import Window, windows
 
@@ -34,12 +36,16 @@ SAME_SIZE = 0.1
 frames."""
 SAME_ANKLE_HEIGHT_M = 2e-3
 """Difference of the lower ankle's usual height."""
+SAME_PLACE_M = 2e-3
+"""Difference of keypoints' places."""
+SAME_GAIN = 0.1
+"""Difference of the depth hints' gains, and of offsets in links' errors."""
 SAME_FACTOR = 0.15
 """Difference of the accelerations' log covariance, in the direction of the largest difference."""
 
 
 def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
-    """Whether body, camera, markers, noise and frames' times are the same."""
+    """Whether body, camera, markers, keypoints, noise and frames' times are the same."""
     cameras = [
         [getattr(problem.camera, field.name) for field in fields(Camera)] for problem in (earlier, now)
     ]
@@ -49,6 +55,8 @@ def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
         and dict(earlier.body.actor.segments_m) == dict(now.body.actor.segments_m)
         and all(map(np.array_equal, *cameras))
         and worn[0] == worn[1]
+        and earlier.keypoints.names == now.keypoints.names
+        and earlier.keypoints.sources == now.keypoints.sources
         and earlier.noise == now.noise
         and np.array_equal(earlier.step_s, now.step_s)
     )
@@ -56,7 +64,9 @@ def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
 
 def with_earlier_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
     """The problem with the earlier one's evidence, where they agree within the tolerances; else None."""
-    if not _same_evidence(earlier.evidence, now.evidence) or not _same_factor(earlier.factor, now.factor):
+    same = _same_evidence(earlier.evidence, now.evidence)
+    same = same and _same_keypoints(earlier.evidence.keypoints, now.evidence.keypoints)
+    if not same or not _same_factor(earlier.factor, now.factor):
         return None
     posed = now.prior[now.keyframes]
     information = keyframe_information(
@@ -76,10 +86,32 @@ def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
     sizes -= np.log([other.posing_scale, *other.distrust, *other.area_ratio])
     lens = np.log(one.model.camera.lens_mm / other.model.camera.lens_mm)
     return bool(
-        np.abs(placed / PRIOR_STD).max() < SAME_PLACEMENT
+        np.abs(placed / PRIOR_STD).max(initial=0.0) < SAME_PLACEMENT
         and abs(lens) < SAME_LENS
         and np.abs(sizes).max() < SAME_SIZE
         and abs(one.timing_frames - other.timing_frames) < SAME_SIZE
+    )
+
+
+def _same_keypoints(one: KeypointEvidence, other: KeypointEvidence) -> bool:
+    """Whether places, errors, trust and what hints of depth are worth are the same, within the tolerances."""
+    if not one.model.names:
+        return True
+    moved = np.abs(one.model.place - other.model.place).max()
+    sizes = np.abs(np.log(one.std_m / other.std_m)).max()
+    before, after = one.depths, other.depths
+    hints = np.abs(
+        [
+            before.gain - after.gain,
+            (before.offset_m - after.offset_m) / after.std_m,
+            np.log(before.std_m / after.std_m),
+        ]
+    )
+    return bool(
+        np.array_equal(one.trust, other.trust)
+        and moved < SAME_PLACE_M
+        and sizes < SAME_SIZE
+        and (hints < SAME_GAIN).all()
     )
 
 
@@ -92,6 +124,7 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) whether a frame's prior, keyframe or observations differ."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
     changed |= _observations_differ(earlier.observed, now.observed)
+    changed |= _observations_differ(earlier.points, now.points)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
     both, before, after = np.intersect1d(earlier.keyframes, now.keyframes, return_indices=True)
@@ -107,9 +140,11 @@ def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME_ANKLE_HEIGHT_M
 
 
-def _observations_differ(one: ObservedRegions, other: ObservedRegions) -> BoolArray:
-    changed = np.zeros(len(one.quality), dtype=bool)
-    for field in fields(ObservedRegions):
+def _observations_differ(
+    one: ObservedRegions | ObservedKeypoints, other: ObservedRegions | ObservedKeypoints
+) -> BoolArray:
+    changed = np.zeros(len(getattr(one, fields(one)[0].name)), dtype=bool)
+    for field in fields(one):
         a, b = getattr(one, field.name), getattr(other, field.name)
         same = (a == b) | (np.isnan(a) & np.isnan(b))
         changed |= ~same.reshape(len(a), -1).all(axis=1)

@@ -12,13 +12,14 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
+from ..observation.keypoints import KeypointModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
@@ -31,7 +32,9 @@ from .keyframe_evidence import KeyframeEvidence
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
+from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
+from .side_swaps import exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
@@ -125,8 +128,14 @@ def estimate_whole_clip(
     match_scale = np.zeros(len(index)) if match_scale is None else match_scale
     matched = match_scale > 0.0
     keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
+    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
+    swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
+    keypoints = exchanged_back(keypoints, swapped)
     points = ObservedKeypoints.of(keypoints)
-    posed = index[match_scale == 0.0]
+    posed = index[~matched]
+    if keypoints.names and len(posed):
+        said = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[posed]), posed)
+        usual = replace(usual, trust=said.trust, lag={name: lag for name, lag in said.lag.items() if lag})
     contours = None  # where markers judge keyframes, contours would add nothing
     if album is not None and not all_located(body, segments) and len(posed) >= FEWEST_POSED:
         schedule = contour_schedule(body, camera, album.factor, segments, prior)
@@ -140,7 +149,7 @@ def estimate_whole_clip(
         prior[index],
         index,
         match_scale,
-        KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources),
+        usual,
         points[index],
         None if contours is None else partial(contour_rows, contours),
     )
@@ -164,9 +173,22 @@ def estimate_whole_clip(
         lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
         keypoints,
         points,
-        np.zeros(points.seen.shape, dtype=bool),
+        swapped,
     )
     return (yield from _solve(problem, options, album, earlier))
+
+
+def _swaps(
+    model: KeypointModel, keypoints: Keypoints, prior: Posture, keyframes: IndexArray, time_s: Array
+) -> BoolArray:
+    """(F, N) keypoints whose sides are exchanged, by the interpolated keyframes."""
+    if not keypoints.names:
+        return np.zeros(keypoints.seen.shape, dtype=bool)
+    frame = np.arange(len(time_s))
+    depth = model.camera.depth(prior.translation, frame)
+    scale = model.camera.focal_px / np.maximum(depth, 0.1)
+    predicted = model.pixels(model.body.pose(prior), frame)
+    return find_swaps(keypoints, predicted, scale, keyframes, time_s)
 
 
 def _solve(

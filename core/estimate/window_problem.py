@@ -27,10 +27,11 @@ LARGEST_STEP = 0.5
 CONVERGED = 3e-3
 """Converged once no unknown of any posture changes by more in a step [m, rad]."""
 MOST_UNPACKED = 256 << 20
-"""Bytes of pictures that are unpacked once instead of at every look: those of half a minute at 320 x 240."""
+"""Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
 UNMARKED_DOUBT = 4.0
-"""Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so for
-many frames and in its neighbors too, and rows linearized at a limb's side toward the camera know of no other."""
+"""Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
+for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
+other side."""
 MEASURING_SHARE = 0.5
 """Share of following the contours that measuring their edges is."""
 

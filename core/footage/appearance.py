@@ -155,7 +155,7 @@ def _counts(seen: list[IndexArray], parts: int) -> IndexArray:
 
 
 def paired(names: tuple[str, ...], logs: Array) -> list[tuple[int, int]]:
-    """Indices of the left and right of those segments whose colors, by their log densities, are one garment's."""
+    """Indices of left and right of those segments whose colors, by log densities, are one garment's."""
     left = [index for index, name in enumerate(names) if name.endswith(".L")]
     pairs = [(index, names.index(names[index][:-2] + ".R")) for index in left]
     return [pair for pair in pairs if _overlap(logs[pair[0]], logs[pair[1]]) > ALIKE]

@@ -1,7 +1,7 @@
 """Colors along limbs: each part's length in bands, from one end to the other.
 
-Sleeves end, trousers meet shoes, a neck rises out of a collar: what a part shows changes along it, and what it
-shows where is learned from frames in which the body is known best.
+Sleeves end, trousers meet shoes, a neck rises out of a collar: what a part shows changes along it, and what
+it shows where is learned from frames in which the body is known best.
 """
 
 from dataclasses import dataclass

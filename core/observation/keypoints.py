@@ -16,6 +16,7 @@ from ..arrays import Array, IndexArray
 from ..body.body_volume import HEAD_OVERSHOOT
 from ..body.human import HUMAN, WAIST_HEIGHT
 from ..body.kinematics import Body, Pose
+from ..body.rotations import cross
 from ..body.skeleton import SIDES, Placement
 from ..body.soles import HEEL_BEHIND
 from ..footage.camera import Camera
@@ -147,10 +148,22 @@ class KeypointModel:
         """(F, N, 2) the points in the image [px], NaN behind the camera; `frame` (F,) as in the clip."""
         return self.camera.project(self.world(pose), frame[:, None])[0]
 
-    def pixels_jacobian(self, pose: Pose, frame: IndexArray) -> Array:
-        """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad]."""
+    def pixels_jacobian(self, pose: Pose, frame: IndexArray, factor: Array | None = None) -> Array:
+        """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad].
+
+        Args:
+            pose: Forward kinematics of F postures.
+            frame: (F,) their indices in the clip.
+            factor: (F, N) factor on each point's rows, zero for one that does not count; None for 1.
+        """
         rows, world = self._rows(pose, frame)
-        return np.asarray(rows @ pose.places_jacobian(self.joint.tolist(), world))
+        if factor is not None:
+            rows = np.where(factor[..., None, None] > 0.0, rows * factor[..., None, None], 0.0)
+        # Rows times v + ω × p are rows · v + (p × rows) · ω.
+        wrench = np.concatenate([rows, cross(world[:, :, None], rows)], axis=-1)
+        jacobian = (wrench.reshape(len(frame), -1, 6) @ pose.screws).reshape(*rows.shape[:3], -1)
+        jacobian *= pose.posture.skeleton.moved_by[self.joint][:, None]
+        return np.asarray(jacobian)
 
     def place_jacobian(self, pose: Pose, frame: IndexArray) -> Array:
         """(F, N, 2, 3) derivative of the pixels by each point's own place [px per m]."""

@@ -21,10 +21,11 @@ from ..keyframe_evidence import KeyframeEvidence
 from ..windows import Window
 from .belief import BeliefTerm
 from .contours import ContourTerm
+from .depth_hints import DepthHintTerm
 from .depths import DepthTerm
 from .ground import GroundTerm
 from .joint_limits import LimitTerm
-from .keypoints import KeypointTerm
+from .keypoints import LEAST_CONFIDENCE, KeypointTerm
 from .quadratic import QuadraticBuilder, QuadraticTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .smoothness import SmoothnessTerm
@@ -68,6 +69,8 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     ]
     if evidence.keypoints.model.names:
         terms.append(_keypoint_term(clip, window, step_s))
+    if np.isfinite(clip.points.depth_m).any():
+        terms.append(_hint_term(clip, window, step_s))
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
@@ -119,6 +122,16 @@ def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> Keypoint
     evidence = clip.evidence.keypoints
     kept = np.exp(-step_s / evidence.memory_s)[:, None]
     return KeypointTerm(evidence.model, clip.points[window.frames], evidence.error_m, kept)
+
+
+def _hint_term(clip: ClipProblem, window: Window, step_s: Array) -> DepthHintTerm:
+    evidence, points = clip.evidence.keypoints, clip.points[window.frames]
+    links = evidence.depths.links
+    sure = np.where(links.ends != 0.0, points.confidence[:, None], 1.0).min(axis=-1)
+    left_out = (links.ends != 0.0) @ (evidence.trust == 0.0) > 0.0
+    std_m = np.where(left_out, np.inf, evidence.depths.error_m) / np.maximum(sure, LEAST_CONFIDENCE)
+    kept = np.exp(-step_s / evidence.depths.memory_s)[:, None]
+    return DepthHintTerm(evidence.model, links, evidence.depths.expected(points.depth_m), std_m, kept)
 
 
 def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:

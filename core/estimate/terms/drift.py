@@ -64,17 +64,18 @@ def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) 
     return Drift(level, own, -kept * linked, pull)
 
 
-def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift) -> None:
+def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:
     """Add rows with lasting errors.
 
     Args:
         equations: The equations.
-        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the leading
-            unknowns.
+        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the
+            posture's tangent.
         rows: Their weights.
+        tangent_jacobian: (F, D, D) derivative of that by the leading unknowns.
     """
     frames, points, size, dofs = jacobian.shape
-    flat = jacobian.reshape(frames, points * size, dofs)
+    flat = jacobian.reshape(frames, points * size, dofs) @ tangent_jacobian
     own, across = (np.repeat(weight, size, axis=-1)[..., None] for weight in (rows.own, rows.across))
     turned = np.swapaxes(flat, -1, -2)
     equations.matrix.diagonal[:, :dofs, :dofs] += turned @ (own * flat)

@@ -28,6 +28,8 @@ class ObservedKeypoints:
     """(F, N, 2) [px], NaN where not seen."""
     confidence: Array
     """(F, N) 0.1 to 1; 0 where not seen."""
+    depth_m: Array
+    """(F, N) guessed distance behind the hips' middle [m]; NaN where there is none."""
 
     @classmethod
     def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
@@ -39,16 +41,28 @@ class ObservedKeypoints:
             if seen[:, own].any():
                 sure = max(float(np.quantile(scores[seen[:, own]], SURE_QUANTILE)), 1e-6)
                 confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
-        return cls(np.where(seen[..., None], keypoints.pixel, np.nan), np.where(seen, confidence, 0.0))
+        return cls(
+            np.where(seen[..., None], keypoints.pixel, np.nan),
+            np.where(seen, confidence, 0.0),
+            np.where(seen, keypoints.hint_m[..., 2], np.nan),
+        )
 
     @property
     def seen(self) -> BoolArray:
         """(F, N) whether each is seen."""
         return np.asarray(self.confidence > 0.0)
 
+    def only(self, kept: BoolArray) -> "ObservedKeypoints":
+        """The same without those points that are not among `kept` (N,)."""
+        return ObservedKeypoints(
+            np.where(kept[:, None], self.pixel, np.nan),
+            np.where(kept, self.confidence, 0.0),
+            np.where(kept, self.depth_m, np.nan),
+        )
+
     def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
         """Those of some frames."""
-        return ObservedKeypoints(self.pixel[index], self.confidence[index])
+        return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +80,9 @@ class KeypointTerm:
         """Add two rows for each keypoint."""
         error, std_px, used = self.errors(state.pose, state.frame)
         rows = drift(error, used, self.kept, temperature)
-        jacobian = self.model.pixels_jacobian(state.pose, state.frame) / std_px[..., None, None]
-        jacobian = np.where(used[..., None, None], jacobian, 0.0)
-        add_drift(equations, jacobian @ state.tangent_jacobian[:, None], rows)
+        factor = np.where(used, 1.0 / std_px, 0.0)
+        jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
+        add_drift(equations, jacobian, rows, state.tangent_jacobian)
 
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""

@@ -1,0 +1,131 @@
+"""Left and right exchanged by a detector: a hypothesis to test, not an outlier to average.
+
+A hidden Markov model for each source over four states: nothing exchanged, the arms, the legs, or both
+(Rabiner 1989, *A tutorial on hidden Markov models*). A state is held against where the keyframes have the
+limbs, which says much near them and little midway, and against how the points move on from frame to frame,
+which says whether they were exchanged just now. The most probable sequence is Viterbi's.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..footage.keypoints.body_points import mirrored_point
+from ..footage.keypoints.keypoints import Keypoints
+
+ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
+LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
+FACE = ("eye", "ear")
+"""Too near each other to tell: exchanged where arms and legs are."""
+STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
+"""Whether arms, and whether legs, are exchanged."""
+PLACE_STD_M = 0.04
+"""Error of a point where a keyframe is: the detector's, the posing error, and what places differ by."""
+PLACE_STD_M_PER_S = 1.0
+"""How fast it grows away from a keyframe: a limb swings past what is interpolated."""
+MOVE_STD_M_PER_S = 1.2
+"""Difference of a point's speed from that of the interpolated motion."""
+ALIKE = 0.5
+"""The points of a limb err alike: each counts as half."""
+CHANGE = 1.0 / 60.0
+"""Probability that limbs begin or cease to be exchanged, a frame."""
+DEGREES = 4.0
+
+
+def find_swaps(
+    keypoints: Keypoints, predicted: Array, scale: Array, keyframes: IndexArray, time_s: Array
+) -> BoolArray:
+    """(F, N) which keypoints are exchanged with their mirror image.
+
+    Args:
+        keypoints: The performer's.
+        predicted: (F, N, 2) where the interpolated keyframes have them [px].
+        scale: (F,) pixels of a meter on the performer.
+        keyframes: (K,) frames of the keyframes.
+        time_s: (F,) times of the frames [s].
+    """
+    swapped = np.zeros(keypoints.seen.shape, dtype=bool)
+    away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
+    place_std = PLACE_STD_M + PLACE_STD_M_PER_S * away_s
+    move_std = MOVE_STD_M_PER_S * np.diff(time_s)
+    for source in dict.fromkeys(keypoints.sources):
+        pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
+        if not any(len(own) for own in pairs):
+            continue
+        place, move = (
+            np.zeros((len(time_s), len(STATES))),
+            np.zeros((len(time_s) - 1, len(STATES), len(STATES))),
+        )
+        for own, exchanged in zip(pairs, STATES.T, strict=True):
+            if not len(own):
+                continue
+            seen, guessed = (
+                array[:, own] / scale[:, None, None, None] for array in (keypoints.pixel, predicted)
+            )
+            kept = _cost(seen - guessed, place_std)
+            other = _cost(seen[:, :, ::-1] - guessed, place_std)
+            place += np.where(exchanged, other[:, None], kept[:, None])
+            step = np.diff(guessed, axis=0)
+            stays = _cost(seen[1:] - seen[:-1] - step, move_std)
+            turns = _cost(seen[1:] - seen[:-1, :, ::-1] - step, move_std)
+            turns = 0.5 * (turns + _cost(seen[1:, :, ::-1] - seen[:-1] - step, move_std))
+            differs = exchanged[:, None] != exchanged
+            move += np.where(differs, (turns - np.log(CHANGE))[:, None, None], stays[:, None, None])
+        exchanged = STATES[_most_probable(place, move)]  # (F, 2)
+        pairs.append(_pairs(keypoints, source, FACE))
+        for own, state in zip(pairs, [*exchanged.T, exchanged.all(axis=1)], strict=True):
+            swapped[:, own.ravel()] |= state[:, None]
+    return swapped & keypoints.seen
+
+
+def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
+    """The keypoints with those of `swapped` (F, N) exchanged with their mirror image's."""
+    if not swapped.any():
+        return keypoints
+    index = {key: i for i, key in enumerate(zip(keypoints.names, keypoints.sources, strict=True))}
+    partner = [
+        index.get((mirrored_point(name), source), i)
+        for i, (name, source) in enumerate(zip(keypoints.names, keypoints.sources, strict=True))
+    ]
+    either = swapped | swapped[:, partner]
+    return replace(
+        keypoints,
+        pixel=np.where(either[..., None], keypoints.pixel[:, partner], keypoints.pixel),
+        score=np.where(either, keypoints.score[:, partner], keypoints.score),
+        hint_m=np.where(either[..., None], keypoints.hint_m[:, partner], keypoints.hint_m),
+    )
+
+
+def _pairs(keypoints: Keypoints, source: str, limbs: tuple[str, ...]) -> IndexArray:
+    """(P, 2) the left and the right point of each pair that a source has."""
+    index = {
+        n: i for i, (n, s) in enumerate(zip(keypoints.names, keypoints.sources, strict=True)) if s == source
+    }
+    found = [
+        (index[f"{limb}.L"], index[f"{limb}.R"])
+        for limb in limbs
+        if f"{limb}.L" in index and f"{limb}.R" in index
+    ]
+    return np.array(found, dtype=np.intp).reshape(-1, 2)
+
+
+def _cost(error: Array, std: Array) -> Array:
+    """(F,) negative logarithm of Student's t of errors (F, P, 2, 2) [m]; what is not seen costs nothing."""
+    squared = (error**2).sum(axis=-1) / (std**2)[:, None, None]
+    cost = 0.5 * (DEGREES + 2.0) * np.log1p(squared / DEGREES)
+    return np.asarray(ALIKE * np.nan_to_num(cost).sum(axis=(1, 2)))
+
+
+def _most_probable(place: Array, move: Array) -> IndexArray:
+    """(F,) the sequence of states of least cost; `place` (F, S), `move` (F - 1, S, S) from row to column."""
+    best, came = place[0], np.zeros(place.shape, dtype=np.intp)
+    for frame in range(1, len(place)):
+        total = best[:, None] + move[frame - 1]
+        came[frame] = total.argmin(axis=0)
+        best = total.min(axis=0) + place[frame]
+    state = np.empty(len(place), dtype=np.intp)
+    state[-1] = best.argmin()
+    for frame in range(len(place) - 1, 0, -1):
+        state[frame - 1] = came[frame, state[frame]]
+    return state

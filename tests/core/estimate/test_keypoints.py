@@ -1,0 +1,297 @@
+"""Keypoints in the whole-clip estimate: what they add, their calibration, and detectors that are wrong."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from _detector import LAYOUT, SOURCE, changed, detect, in_order, lasting, sides_exchanged
+from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from keymark.core.body.human import HUMAN
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.block_banded import BlockBanded
+from keymark.core.estimate.keypoint_fit import observed_joints
+from keymark.core.estimate.keypoint_notes import keypoint_notes
+from keymark.core.estimate.side_swaps import exchanged_back, find_swaps
+from keymark.core.estimate.terms.drift import add_drift, drift
+from keymark.core.estimate.terms.term import NormalEquations
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.observation.keypoints import KeypointModel
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import run
+
+FRAMES = 90
+TRUTH = exercise(FRAMES)
+POSED = (0, 15, 30, 45, 60, 75, 89)
+BETWEEN = np.setdiff1d(np.arange(FRAMES), POSED)
+PRIOR = interpolate(tuple(Keyframe(i, TRUTH[i]) for i in POSED), FRAMES)
+GOOD = detect(TRUTH)
+BARE = RegionTracks.unmarked(np.arange(FRAMES) / 30.0, CAMERA.resolution)
+
+
+def estimate(
+    keypoints: Keypoints | None,
+    tracks: RegionTracks = BARE,
+    prior: Posture = PRIOR,
+    camera: Camera = CAMERA,
+    **more: object,
+) -> WholeClipResult:
+    """The estimate of the exercise."""
+    worn = SEGMENTS if tracks.names else ()
+    job = estimate_whole_clip(BODY, camera, tracks, worn, prior, POSED, keypoints=keypoints, **more)
+    return run(job)
+
+
+def error_mm(result: WholeClipResult | Posture) -> float:
+    """Mean error of the points between the keyframes [mm]."""
+    posture = result if isinstance(result, Posture) else result.posture
+    return float(1e3 * point_error_m(posture, TRUTH)[BETWEEN].mean())
+
+
+@cache
+def with_good() -> WholeClipResult:
+    """By keypoints alone."""
+    return estimate(GOOD)
+
+
+@cache
+def marked() -> WholeClipResult:
+    """By markers alone."""
+    return estimate(None, film(TRUTH, 0.3))
+
+
+def test_keypoints_alone_beat_interpolation_by_far() -> None:
+    """And the fit tells of a detector that is believed throughout."""
+    assert error_mm(with_good()) < 0.4 * error_mm(PRIOR)
+    fit = with_good().keypoints
+    assert fit.trust.min() == 1.0
+    assert fit.source_trust == {SOURCE: 1.0}
+    assert fit.thrown_out.mean() < 0.01
+    assert not fit.swapped.any()
+    assert np.nanmedian(fit.residual_px) < 2.0
+    assert keypoint_notes(fit) == ()
+
+
+def test_places_and_errors_are_found_at_keyframes() -> None:
+    """A detector that has every point elsewhere and errs little is known as such."""
+    exact = detect(TRUTH, error_m=0.004, place_error_m=0.02, seed=3)
+    found = estimate(exact).evidence.keypoints
+    usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
+    true = 0.02 * np.random.default_rng(3).normal(size=usual.place.shape)
+    assert np.linalg.norm(found.model.place - usual.place - true) < 0.6 * np.linalg.norm(true)
+    careless = estimate(detect(TRUTH, error_m=0.03, seed=3)).evidence.keypoints
+    assert careless.std_m.mean() > 1.4 * found.std_m.mean()
+
+
+def test_keyframes_are_judged_without_any_marker() -> None:
+    """Exact keyframes are told from careless ones, and mistimed ones from right ones."""
+    rng = np.random.default_rng(4)
+    off = [Keyframe(i, TRUTH[i].plus(rng.normal(0.0, 0.12, HUMAN.dof_count))) for i in POSED]
+    precise = detect(TRUTH, error_m=0.008)
+    exact, careless = (estimate(precise, prior=p) for p in (PRIOR, interpolate(tuple(off), FRAMES)))
+    assert exact.evidence.posing_scale < 0.5
+    assert careless.evidence.posing_scale > 2.0 * exact.evidence.posing_scale
+
+
+def test_markers_gain_and_do_not_change_without_keypoints() -> None:
+    """Keypoints beside markers are better than markers; none at all is the same as not asking."""
+    tracks = film(TRUTH, 0.3)
+    assert error_mm(estimate(GOOD, tracks)) < error_mm(marked())
+    none = estimate(Keypoints.none(FRAMES), tracks)
+    np.testing.assert_array_equal(none.posture.translation, marked().posture.translation)
+    np.testing.assert_array_equal(none.covariance, marked().covariance)
+
+
+WRONG = {
+    "shuffled": in_order(GOOD, np.random.default_rng(5).permutation(FRAMES)),
+    "another person": changed(GOOD, GOOD.pixel[::-1] + [60.0, 0.0]),
+    "somewhere else": changed(GOOD, GOOD.pixel + [25.0, -15.0]),
+    "at random": changed(GOOD, np.random.default_rng(6).uniform(0.0, 240.0, GOOD.pixel.shape)),
+}
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
+    """It costs nothing, with markers and without, and a note says so."""
+    result = estimate(WRONG[kind], film(TRUTH, 0.3))
+    assert error_mm(result) < 1.15 * error_mm(marked())
+    assert result.keypoints.source_trust[SOURCE] == 0.0
+    assert error_mm(estimate(WRONG[kind])) < 1.15 * error_mm(estimate(None))
+    assert "left out" in keypoint_notes(result.keypoints)[0]
+
+
+def test_a_third_of_the_points_at_random_is_thrown_out() -> None:
+    """And the others go on telling what they tell."""
+    rng = np.random.default_rng(7)
+    wild = rng.random(GOOD.pixel.shape[:2]) < 0.3
+    elsewhere = rng.uniform(0.0, 240.0, GOOD.pixel.shape)
+    result = estimate(changed(GOOD, np.where(wild[..., None], elsewhere, GOOD.pixel)))
+    assert error_mm(result) < 1.5 * error_mm(with_good())
+    kept = result.keypoints.trust > 0.0
+    assert kept.mean() > 0.7
+    assert result.keypoints.thrown_out[:, kept][wild[:, kept]].mean() > 0.8
+    assert any("thrown out" in note for note in keypoint_notes(result.keypoints))
+
+
+def test_a_jump_to_another_thing_is_not_averaged() -> None:
+    """A hand that sticks to something for ten frames between keyframes."""
+    pixel = GOOD.pixel.copy()
+    wrist = LAYOUT.index("wrist.L")
+    pixel[33:43, wrist] = pixel[33, wrist] + [70.0, 40.0]
+    result = estimate(changed(GOOD, pixel))
+    assert result.keypoints.thrown_out[33:43, wrist].all()
+    assert error_mm(result) < 1.2 * error_mm(with_good())
+
+
+def test_a_late_detector_is_recognized_as_such() -> None:
+    """The lag is told, in the frames it is."""
+    late = in_order(GOOD, np.maximum(np.arange(FRAMES) - 6, 0))
+    moving = estimate(late)
+    assert moving.keypoints.source_trust[SOURCE] == 0.0
+    assert moving.keypoints.lag[SOURCE] in (5, 6, 7)
+    assert "late" in keypoint_notes(moving.keypoints)[0]
+
+
+def test_sides_that_are_exchanged_are_exchanged_back() -> None:
+    """Throughout, and in some frames only; the estimate is that without the mistake."""
+    everywhere = estimate(sides_exchanged(GOOD, np.ones(FRAMES, dtype=bool)))
+    assert error_mm(everywhere) == pytest.approx(error_mm(with_good()), rel=0.02)
+    assert "throughout" in keypoint_notes(everywhere.keypoints)[0]
+    some = np.zeros(FRAMES, dtype=bool)
+    some[20:26] = some[50:53] = True
+    result = estimate(sides_exchanged(GOOD, some))
+    paired = np.array(["." in name for name in LAYOUT])
+    np.testing.assert_array_equal(result.keypoints.swapped[:, paired].all(axis=1), some)
+    assert error_mm(result) == pytest.approx(error_mm(with_good()), rel=0.02)
+
+
+def test_legs_alone_may_be_exchanged() -> None:
+    """The arms are left as they are."""
+    legs = np.array([name.startswith(("hip", "knee", "ankle")) for name in LAYOUT])
+    some = np.zeros(FRAMES, dtype=bool)
+    some[47:56] = True
+    turned = sides_exchanged(GOOD, some)
+    mixed = changed(GOOD, np.where(legs[:, None], turned.pixel, GOOD.pixel))
+    model = KeypointModel.usual(BODY, CAMERA, LAYOUT)
+    predicted = model.pixels(BODY.pose(PRIOR), np.arange(FRAMES))
+    swapped = find_swaps(mixed, predicted, np.full(FRAMES, 85.0), np.array(POSED), np.arange(FRAMES) / 30.0)
+    np.testing.assert_array_equal(swapped, some[:, None] & legs)
+    np.testing.assert_array_equal(exchanged_back(mixed, swapped).pixel, GOOD.pixel)
+
+
+def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
+    """A fair guess brings the depths nearer; one that has nothing to do with them is not believed."""
+    hinted = detect(TRUTH, hint_error_m=0.03)
+    error = error_mm(estimate(hinted))
+    assert error < 0.9 * error_mm(with_good())
+    nonsense = replace(hinted, hint_m=0.2 * lasting(np.random.default_rng(8), hinted.hint_m.shape))
+    assert error_mm(estimate(nonsense)) < 1.15 * error_mm(with_good())
+
+
+def test_six_tracks_with_long_gaps_are_used() -> None:
+    """What an animator tracks: few points, missing for long."""
+    names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R", "head", "knee.L")
+    tracks = detect(TRUTH, names=names, error_m=0.004)
+    pixel = tracks.pixel.copy()
+    pixel[25:70, :2] = np.nan
+    result = estimate(changed(tracks, pixel))
+    assert error_mm(result) < 0.85 * error_mm(estimate(None))
+    assert np.isnan(result.keypoints.residual_px[25:70, 0]).all()
+    assert (result.keypoints.weight[25:70, 0] == 0.0).all()
+
+
+def test_several_sources_are_calibrated_apart() -> None:
+    """A wrong one beside a right one is left out alone."""
+    both = Keypoints.side_by_side(
+        [GOOD, replace(WRONG["another person"], sources=("tracks",) * len(LAYOUT))], FRAMES
+    )
+    fit = estimate(both).keypoints
+    assert fit.source_trust == {SOURCE: 1.0, "tracks": 0.0}
+
+
+def test_before_a_moving_camera() -> None:
+    """The same points, seen by a camera that travels."""
+    matrices = np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0)
+    matrices[:, 0, 3] += np.linspace(-0.5, 0.5, FRAMES)
+    moving = replace(CAMERA, matrix_world=matrices)
+    found = estimate(detect(TRUTH, camera=moving), camera=moving)
+    assert error_mm(found) == pytest.approx(error_mm(with_good()), rel=0.3)
+
+
+def test_matched_keyframes_calibrate_nothing() -> None:
+    """Points stay at their usual places; they are believed all the same."""
+    result = estimate(GOOD, match_scale=np.ones(len(POSED)))
+    usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
+    np.testing.assert_array_equal(result.evidence.keypoints.model.place, usual.place)
+    assert result.keypoints.trust.min() == 1.0
+    assert np.nanmedian(result.keypoints.residual_px) < 3.0
+
+
+def test_errors_are_within_their_interval() -> None:
+    """0.90 to 0.99 of them, over several detectors."""
+    inside = []
+    for seed in range(3):
+        result = estimate(detect(TRUTH, seed=seed))
+        jacobian = BODY.points_jacobian(BODY.pose(result.posture))
+        spread = jacobian @ result.covariance[:, None] @ np.swapaxes(jacobian, -1, -2)
+        sigma = np.sqrt(np.trace(spread, axis1=-2, axis2=-1))
+        inside.append((point_error_m(result.posture, TRUTH) < 1.96 * sigma)[BETWEEN].mean())
+    assert 0.90 <= np.mean(inside) <= 1.0
+
+
+def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() -> None:
+    """The same keypoints leave every frame as it is; others do not."""
+    again = estimate(GOOD, earlier=with_good())
+    np.testing.assert_array_equal(again.posture.translation, with_good().posture.translation)
+    other = estimate(detect(TRUTH, seed=9), earlier=with_good())
+    fresh = estimate(detect(TRUTH, seed=9))
+    assert np.abs(other.posture.minus(fresh.posture)).max() < 1e-6
+
+
+def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
+    """What limbs count as seen by."""
+    joints, seen = observed_joints(with_good().keypoints)
+    named = dict(zip(LAYOUT, joints, strict=True))
+    assert named["hip.L"] == named["shoulder.R"] == "trunk"
+    assert named["ankle.L"] == "shin.L"
+    assert seen.mean() > 0.95
+
+
+def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
+    """Its information and gradient are those of the dense covariance, as long as nothing is an outlier."""
+    frames, kept = 7, 0.8
+    rng = np.random.default_rng(1)
+    error = 1e-4 * rng.normal(size=(frames, 1, 1))
+    rows = drift(error, np.ones((frames, 1), dtype=bool), np.full((frames - 1, 1), kept))
+    equations = NormalEquations(frames, 1)
+    ones = np.ones((frames, 1, 1, 1))
+    add_drift(equations, ones, rows, np.ones((frames, 1, 1)))
+    apart = np.abs(np.subtract.outer(np.arange(frames), np.arange(frames)))
+    information = np.linalg.inv(kept**apart)
+    np.testing.assert_allclose(dense(equations.matrix), information, atol=1e-6)
+    np.testing.assert_allclose(equations.gradient[:, 0], information @ error[:, 0, 0], atol=1e-9)
+
+
+def test_drift_begins_anew_after_a_gap_or_an_outlier() -> None:
+    """Frames apart tell of each other no more, and an outlier has next to no pull."""
+    error = np.zeros((5, 1, 2))
+    used = np.ones((5, 1), dtype=bool)
+    used[2] = False
+    rows = drift(error, used, np.full((4, 1), 0.8))
+    assert rows.across[1, 0] == rows.across[2, 0] == 0.0
+    assert rows.own[3, 0] > 1.0
+    error[1] = 50.0
+    far = drift(error, used, np.full((4, 1), 0.8))
+    assert far.level[1, 0] < 0.01
+    assert np.abs(far.pull).max() < 0.5
+
+
+def dense(matrix: BlockBanded) -> np.ndarray:
+    """A banded matrix of one unknown a frame, in full."""
+    full = np.diag(matrix.diagonal[:, 0, 0])
+    full += np.diag(matrix.next[:, 0, 0], 1) + np.diag(matrix.next[:, 0, 0], -1)
+    return full
