@@ -238,7 +238,7 @@ def _draw_file(
         row = layout.row(align=True)
         text = count_label(len(here.pixel), "1 person here", "{count} people here")
         row.label(text=text, translate=False, icon="COMMUNITY")
-        row.operator("keymark.click_performer", text="Click on One", icon="RESTRICT_SELECT_OFF")
+        row.operator("keymark.click_performer", text="Click Performer")
     if reading.has_hints:
         layout.prop(take.follow, "use_depth_hints")
     if reading.has_changed:

@@ -17,6 +17,7 @@ class KEYMARK_PG_keypoint_file(bpy.types.PropertyGroup):
         name="File",
         description="The file of keypoints, or the folder with a file a frame",
         subtype="FILE_PATH",
+        options={"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     absolute_path: bpy.props.StringProperty(
         name="Absolute Path",
