@@ -255,7 +255,7 @@ def _area_ratios(ratio: Array) -> Array:
 def _judging(
     markers: int, keypoints: KeypointEvidence, used: bool, outlines: EvidenceRows | None
 ) -> tuple[BoolArray, BoolArray]:
-    """Which rows (R,) judge keyframes, with their parameters (X,): markers, contours, keypoints of the joints.
+    """Which rows (R,) judge keyframes, with their parameters (X,): markers, contours, joints' keypoints.
 
     The others, of face, hands and feet, err along with these.
     """

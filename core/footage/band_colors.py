@@ -44,8 +44,8 @@ def learn_band_colors(
     Args:
         images: Frames (rows, columns, 3).
         labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where the
-            part is seen end on.
+        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
+            the part is seen end on.
         names: The parts' segments, O of them.
     """
     count = len(names)
@@ -65,7 +65,7 @@ def learn_band_colors(
         whole[[left, right]] = _densities(own[[left]].sum(axis=1))
     bands = (1.0 - SHARED) * _densities(own) + SHARED * whole[:, None]
     anything = 0.5 * (whole.mean(axis=0) + _densities(background))
-    return BandColors(*(np.log(table).astype(np.float32) for table in (bands, whole, anything)))
+    return BandColors(np.log(bands), np.log(whole), np.log(anything))
 
 
 def band_cells(pixels: Image) -> IndexArray:

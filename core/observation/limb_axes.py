@@ -53,13 +53,20 @@ class LimbAxes:
         return np.array(rows, dtype=np.intp)
 
     def points(self, pose: Pose, frame: IndexArray, share: Array) -> tuple[Array, Array]:
-        """Points at shares (F, O) of the parts' lengths: (F, O, 3) in the world [m], (F, O, 2) in the image [px]."""
+        """Points at shares (F, O) of the parts' lengths: (F, O, 3) [m], and (F, O, 2) in the image [px]."""
         start, end = (self.parts.place(pose, at) for at in (self.parts.start, self.parts.end))
         world = start + share[..., None] * (end - start)
         return world, self.camera.project(world, frame[:, None])[0]
 
     def jacobian(self, pose: Pose, frame: IndexArray, world: Array, direction: Array) -> Array:
-        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) for directions (F, O, 2) [px per m or rad]."""
+        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad].
+
+        Args:
+            pose: Forward kinematics of F postures.
+            frame: (F,) their indices in the clip.
+            world: (F, O, 3) the points [m].
+            direction: (F, O, 2) unit directions in the image.
+        """
         slope = self.camera.project_jacobian(world, frame[:, None])
         force = (direction[..., None, :] @ slope)[..., 0, :]
         wrench = np.concatenate([force, cross(world, force)], axis=-1)

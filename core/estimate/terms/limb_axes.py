@@ -33,6 +33,7 @@ class AxialTerm:
         std = np.sqrt(self.variance)
         error = (np.sum(self.direction * pixel, axis=-1) - self.place) / std
         found = np.isfinite(error)
-        jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction) @ state.tangent_jacobian
+        jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction)
         jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)
-        add_drift(equations, jacobian[:, :, None], drift(error[..., None], found, self.kept, temperature))
+        rows = drift(error[..., None], found, self.kept, temperature)
+        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)
