@@ -4,8 +4,9 @@
 .DELETE_ON_ERROR:
 
 OUTPUT ?= out/demo
+TAKE ?= presets/demo/aerobic
 TESTS ?=
-BENCHMARKS ?= extraction accuracy keyframe_economy sensitivity matching posing suggestions finishing retargeting again speed batch check
+BENCHMARKS ?= extraction accuracy evidence keyframe_economy sensitivity matching posing suggestions finishing retargeting again speed batch check
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
@@ -13,7 +14,7 @@ test_parts := --editable '.[blender,dev]'
 # Whole files to a worker, so that what a file's tests share is made once.
 two_at_a_time := --numprocesses 2 --dist loadfile
 settings := pyproject.toml setup.py
-sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
+sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
 
 # make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL: a new virtual environment, complete once it has `ready`.
 define make_venv
@@ -50,6 +51,15 @@ help: ## list the targets
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
 	.venv-demo/bin/keymark demo --output $(OUTPUT)
+
+.venv-detect/ready: detectors/mediapipe_pose.txt
+	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt)
+
+# Its own environment, of about a gigabyte: MediaPipe brings another OpenCV, which must not come into ours.
+.PHONY: detect-demo
+detect-demo: .venv-demo/ready .venv-detect/ready ## run MediaPipe on TAKE, convert it without any marker, and score it
+	.venv-demo/bin/python tools/detect_demo.py $(TAKE) out/detect-demo \
+	    '$(CURDIR)/.venv-detect/bin/python {detectors}/mediapipe_pose.py {clip} --output {output}'
 
 .PHONY: test
 test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and, where there is a Python 3.13, in 5.2
@@ -114,5 +124,5 @@ bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libr
 
 .PHONY: clean
 clean: ## remove everything that make has made here
-	rm -rf .venv-demo .venv-dev .venv-test .venv-test-313 .cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv-demo .venv-detect .venv-dev .venv-test .venv-test-313 .cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf .hypothesis build dist out wheels keymark.egg-info

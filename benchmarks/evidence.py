@@ -48,8 +48,8 @@ COMBINATIONS: Mapping[str, tuple[str, ...]] = {
 }
 """Kinds of evidence by name in the table; all with contours, as a user has them."""
 INTERPOLATION, TRACKS, NETWORK = "interpolation", "six tracks", "the network's own"
-UNWORN = "without markers"
-"""What the takes of plain clothes cannot have."""
+UNWORN, NO_KEYPOINTS = "without markers", ", no keypoints"
+"""Parts of the names of rows with wrong keypoints."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def measure_wrong(trial: Trial) -> dict[str, Measured]:
     for worn, kinds in {"markers": (MARKERS, CONTOURS), UNWORN: (CONTOURS,)}.items():
         if MARKERS in kinds and not take.markers:
             continue
-        found[f"{worn}, no keypoints"] = estimated(trial, with_evidence(take, kinds))[1]
+        found[f"{worn}{NO_KEYPOINTS}"] = estimated(trial, with_evidence(take, kinds))[1]
         for name, mistake in WRONG.items():
             wrong = replace(take, keypoints=tuple(mistake(people) for people in take.keypoints))
             more = with_evidence(wrong, (*kinds, KEYPOINTS, DEPTH_HINTS))
@@ -131,25 +131,30 @@ Results = dict[str, dict[str, dict[str, Measured]]]
 def table(results: Results) -> str:
     """All results as one Markdown table, with the mean over the takes that have them at its end."""
     lines = [
-        "| take | keyframes | evidence | error | share of interpolation | depth | jitter | covered | ms |",
+        "| take | keyframes | evidence | error | share | depth | jitter | covered | ms |",
         "|---|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     names: dict[str, None] = {}
     for take, by_keyframes in results.items():
         for posed, found in by_keyframes.items():
-            base = next(iter(found.values())).score.mpjpe
             names |= dict.fromkeys(found)
             for name, one in found.items():
-                score, ms = one.score, one.ms
+                score, ms, base = one.score, one.ms, _base(found, name).score.mpjpe
                 values = [score.mpjpe, score.mpjpe / base, score.depth, score.jitter, score.coverage95, ms]
                 lines.append(_line(take, posed, name, values))
     for posed in KEYFRAMES:
         for name in names:
-            known = [(found[posed][name], next(iter(found[posed].values())))
+            known = [(found[posed][name], _base(found[posed], name))
                      for found in results.values() if name in found.get(posed, {})]  # fmt: skip
             if known:
                 lines.append(_line(f"**mean of {len(known)}**", posed, name, _means(known)))
     return "\n".join(lines)
+
+
+def _base(found: dict[str, Measured], name: str) -> Measured:
+    """What a row is divided by: interpolation, or the same evidence without the wrong keypoints."""
+    without = f"{name.partition(',')[0]}{NO_KEYPOINTS}"
+    return found.get(without, next(iter(found.values())))
 
 
 def _means(known: list[tuple[Measured, Measured]]) -> list[float | None]:

@@ -72,7 +72,10 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, markers: add the usual five and pick each color by one click on the footage."""
+    """Step 2, what to follow: add the usual five markers and pick each color by one click on the footage.
+
+    In plain clothes `bpy.ops.keymark.load_keypoints(filepath=...)` takes its place.
+    """
     bpy.ops.keymark.add_usual_markers()
     for number, marker in enumerate(take.markers):
         take.active_marker = number

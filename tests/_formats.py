@@ -181,7 +181,9 @@ def _record() -> dict[str, Any]:
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
     value["evidence"] = {
         "markers": ["trunk"],
-        "keypoints": [{"source": "a detector", "points": ["nose", "wrist.L"], "believed": 0.97}],
+        "keypoints": [
+            {"source": "a detector", "points": ["nose", "wrist.L"], "believed": 0.97, "swapped": 0.1}
+        ],
         "depth_hints": False,
         "contours": True,
     }

@@ -13,6 +13,8 @@ from .confidence import misfits
 
 PREFIX = "keypoint_"
 """Of the names of the arrays in a cache."""
+USUALLY = 0.5
+"""Share of the frames in which a part is seen that is missed in the others."""
 PARTS = {
     **{name.partition(".")[0]: "head" for name in (*FACE, "crown")},
     **dict.fromkeys(("index", "thumb", "pinky"), "wrist"),
@@ -82,14 +84,22 @@ class ComparedKeypoints:
         return result
 
     def quality(self) -> Array:
-        """(F, K) confidence of the best keypoint of each part, 0 where none is seen."""
+        """(F, K) confidence of the best keypoint of each part, 0 where none is seen.
+
+        A part that is seen in few frames, as clicked points are, has 1 in the others: nobody misses it.
+        """
         best = [self.confidence[:, own].max(axis=1) for own in self._columns().values()]
-        return np.stack(best, axis=1) if best else np.zeros((len(self.confidence), 0))
+        if not best:
+            return np.zeros((len(self.confidence), 0))
+        quality = np.stack(best, axis=1)
+        seldom = (quality > 0.0).mean(axis=0) < USUALLY
+        return np.where(seldom & (quality == 0.0), 1.0, quality)
 
     def _columns(self) -> dict[str, list[int]]:
-        """The keypoints of each part, without those that are left out all along, which nobody misses."""
+        """The keypoints of each part, without those that are never seen or left out all along."""
         columns: dict[str, list[int]] = {}
-        for index in np.flatnonzero(np.isfinite(self.expected_px).any(axis=0)).tolist():
+        followed = np.isfinite(self.expected_px) & (self.confidence > 0.0)
+        for index in np.flatnonzero(followed.any(axis=0)).tolist():
             columns.setdefault(part_of(self.names[index]), []).append(index)
         return columns
 

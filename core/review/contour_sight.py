@@ -12,6 +12,7 @@ from ..arrays import Array
 from ..body.extremities import extremity_names
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.contours import SURFACE_SHARE
+from ..observation.contours import SHARES, SIDES
 
 SELDOM = 0.25
 """Share of a part's contour below which it seldom shows: the trunk's behind the arms."""
@@ -27,11 +28,13 @@ class ContourSight:
     """(F, O) share of a part's contour near which an edge was found, of what usually is."""
     misfit: Array
     """(F, O) reduced squared distance from these edges; NaN where none was found."""
+    lines: Array
+    """(F, L, S, 2) contour lines of all parts, hands and feet included, as the motion predicts them [px]."""
 
     @classmethod
     def none(cls, frames: int) -> "ContourSight":
         """No contour at all, O = 0."""
-        return cls((), np.zeros((frames, 0)), np.zeros((frames, 0)))
+        return cls((), np.zeros((frames, 0)), np.zeros((frames, 0)), np.zeros((frames, 0, len(SHARES), 2)))
 
 
 def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, ContourSight]:
@@ -60,7 +63,9 @@ def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, Cont
     number = seen @ own
     misfit = np.where(seen, squared, 0.0) @ own / np.maximum(number, 1.0)
     quality = _relative(number / own.sum(axis=0))
-    return ContourSight(tuple(parts), quality, np.where(number > 0.0, misfit, np.nan))
+    along = predicted.pixel.reshape(len(frame), -1, len(SHARES), len(SIDES), 2)
+    lines = np.swapaxes(along, 2, 3).reshape(len(frame), -1, len(SHARES), 2)
+    return ContourSight(tuple(parts), quality, np.where(number > 0.0, misfit, np.nan), lines)
 
 
 def _relative(share: Array) -> Array:

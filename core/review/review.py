@@ -19,7 +19,7 @@ from ..take.take import Take
 from .compare_keypoints import compare_keypoints
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .contour_sight import contour_sight
+from .contour_sight import ContourSight, contour_sight
 from .frame_evidence import MarkerSight, believed_misfits, frame_evidence
 from .weak_frames import Reason, WeakFrame, find_weak_frames
 
@@ -32,7 +32,7 @@ WRONG_SHARE = 0.1
 """Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong."""
 NAMES = ("marker_names", "point_names")
 KINDS: Mapping[str, type] = MappingProxyType(
-    {**dict.fromkeys(NAMES, np.str_), **dict.fromkeys(("observed", "predicted"), np.float32)}
+    {**dict.fromkeys(NAMES, np.str_), **dict.fromkeys(("observed", "predicted", "contours"), np.float32)}
 )
 """Kinds of arrays in a cache that numpy would not choose: large ones are only drawn, in single precision."""
 
@@ -69,6 +69,8 @@ class Review:
     """(K,) frame indices of the keyframes."""
     weak_frames: tuple[WeakFrame, ...]
     """Frames worth another keyframe, the worst first."""
+    contours: Array
+    """(F, L, S, 2) predicted contour lines of the body [px], where no marker shows how the motion fits."""
     keypoints: ComparedKeypoints
     """Of the performer, N of them; none in a review that was kept before there were any."""
 
@@ -97,7 +99,7 @@ class Review:
             KeyError: An array is missing.
             ValueError: A reason is unknown.
         """
-        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints")
+        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints", "contours")
         plain = {
             field.name: np.asarray(arrays[field.name], dtype=np.float64)
             for field in fields(cls)
@@ -110,9 +112,16 @@ class Review:
             point_names=tuple(arrays["point_names"].tolist()),
             keyframe_indices=np.asarray(arrays["keyframe_indices"], dtype=np.intp),
             weak_frames=_weak_frames(arrays),
+            contours=_contours(arrays, len(plain["frames"])),
             keypoints=ComparedKeypoints.from_arrays(arrays, len(plain["frames"])),
             **plain,
         )
+
+
+def _contours(arrays: Mapping[str, NDArray[Any]], frames: int) -> Array:
+    if "contours" not in arrays:
+        return ContourSight.none(frames).lines
+    return np.asarray(arrays["contours"], dtype=np.float64)
 
 
 def _weak_frames(arrays: Mapping[str, NDArray[Any]]) -> tuple[WeakFrame, ...]:
@@ -179,6 +188,7 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         confidence=believed,
         keyframe_indices=index,
         weak_frames=find_weak_frames(evidence, index),
+        contours=contours.lines,
         keypoints=keypoints,
     )
 

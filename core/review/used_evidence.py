@@ -1,6 +1,9 @@
 """Evidence that a reconstruction rests on beside its keyframes."""
 
+import numpy as np
+
 from ..estimate.reconstruct import Reconstruction
+from ..estimate.whole_clip import WholeClipResult
 from ..take.used_evidence import UsedEvidence, UsedKeypoints
 from .compare_keypoints import compare_keypoints
 
@@ -14,20 +17,29 @@ def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
     return UsedEvidence(
         markers,
         _used_keypoints(reconstruction),
-        reconstruction.keypoints.has_hints,
+        _uses_hints(solution),
         solution.contours is not None,
     )
+
+
+def _uses_hints(solution: WholeClipResult) -> bool:
+    """Whether any believed point has a guessed depth."""
+    trusted = solution.evidence.keypoints.trust > 0.0
+    return bool(np.isfinite(solution.problem.points.depth_m[:, trusted]).any())
 
 
 def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]:
     """The sources of keypoints, in their order."""
     compared = compare_keypoints(reconstruction)
-    seen = reconstruction.keypoints.seen
+    seen = np.isfinite(compared.seen).all(axis=-1)
     used = []
     for source in dict.fromkeys(compared.sources):
         own = [index for index, other in enumerate(compared.sources) if other == source]
         count = int(seen[:, own].sum())
-        believed = 1.0 - float((seen & compared.thrown_out)[:, own].sum()) / max(count, 1)
+        doubted, swapped = (
+            float((seen & flags)[:, own].sum()) / max(count, 1)
+            for flags in (compared.thrown_out, compared.swapped)
+        )
         names = tuple(dict.fromkeys(compared.names[index] for index in own))
-        used.append(UsedKeypoints(source, names, believed if count else 0.0))
+        used.append(UsedKeypoints(source, names, 1.0 - doubted if count else 0.0, swapped))
     return tuple(used)

@@ -29,7 +29,10 @@ POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
 """Of the frames in which a person has said where the performer is; all others count once."""
 FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
 """Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
-ELSEWHERE = "nobody in it is where most posed keyframes have the performer, so it is left out; it must be of this clip"
+ELSEWHERE = (
+    "nobody in it is where most of the posed keyframes have the performer, so it is left out; it must be of "
+    "this clip"
+)
 TRUNK_ENDS = ("shoulder.L", "shoulder.R", "hip.L", "hip.R")
 ENDS = {
     "upper_arm": ("shoulder", "elbow"),

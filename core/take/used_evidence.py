@@ -25,6 +25,8 @@ class UsedKeypoints:
     """The body points it shows."""
     believed: float
     """Share of all keypoints it saw that were followed, 0 to 1; 0 too where it saw nobody."""
+    swapped: float = 0.0
+    """Share of them that it saw on the other side of the body."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,12 @@ class UsedEvidence:
         return {
             "markers": list(self.markers),
             "keypoints": [
-                {"source": said.source, "points": list(said.points), "believed": round(said.believed, 4)}
+                {
+                    "source": said.source,
+                    "points": list(said.points),
+                    "believed": round(said.believed, 4),
+                    "swapped": round(said.swapped, 4),
+                }
                 for said in self.keypoints
             ],
             "depth_hints": self.depth_hints,
@@ -92,7 +99,8 @@ def _used_keypoints(value: Mapping[str, Any], where: str) -> UsedKeypoints:
     points = record_list(fields, "points", str, len(BODY_POINTS), valid)
     if not set(points) <= set(BODY_POINTS):
         raise InputError(f"{where}: points is {shown(points)}; it must be {valid}")
-    return UsedKeypoints(record_line(fields, "source"), tuple(points), fields.number("believed", 0.0, 1.0))
+    believed, swapped = (fields.number(name, 0.0, 1.0) for name in ("believed", "swapped"))
+    return UsedKeypoints(record_line(fields, "source"), tuple(points), believed, swapped)
 
 
 def _flag(fields: Fields, name: str) -> bool:

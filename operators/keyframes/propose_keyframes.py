@@ -11,13 +11,14 @@ from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import all_colors, footage, idle
-from ..shell.results import keep_reading, reading_of
+from ..shell.results import keep_reading, keep_speed, reading_of
 from ..shell.takes import active_take, footage_of, take_by_identifier
 
 READ = 0.9
 """Share of the job at which the clip is read."""
 
 if TYPE_CHECKING:
+    from ...core.arrays import Array
     from ...core.footage.reading import Reading
     from ...core.progress import Job
 
@@ -31,6 +32,10 @@ class Outcome:
     reading: "Reading"
     frames: tuple[int, ...]
     """Proposed scene frames."""
+    speed: "Array"
+    """(F,) the speed in the footage that they were chosen by [px per frame], ..."""
+    scene_frames: "Array"
+    """... at scene frames (F,)."""
     note: str
     """What the speed was made from where neither markers nor keypoints tell it, for people; else empty."""
 
@@ -65,13 +70,15 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
         speed = yield from within("Measuring the speed", moved, READ, 1.0)
         chosen = propose_keyframes(speed.values, count)
-        frames = scene_frames(reading.tracks.time_s, first, rate)[chosen]
-        return Outcome(identifier, reading, tuple(round(float(frame)) for frame in frames), speed.note)
+        frames = scene_frames(reading.tracks.time_s, first, rate)
+        proposed = tuple(round(float(frame)) for frame in frames[chosen])
+        return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
         """Store the proposals with the take, and cache the reading for the reconstruction."""
         take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
+        keep_speed(take, result.scene_frames, result.speed)
         take.proposals.clear()
         for frame in result.frames:
             take.proposals.add().frame = frame

@@ -47,14 +47,14 @@ class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
     )
 
     _before: Any = None
-    """The clicks when the operator began; not named as type, since Blender evaluates annotations."""
+    """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for clicks on the footage, beginning with the point that is chosen in the panel."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
-        self._before = _all_clicks(take)
+        self._before = take.follow.clicked_point, _all_clicks(take)
         context.window.cursor_modal_set("CROSSHAIR")
         _ask(context, take)
         context.window_manager.modal_handler_add(self)
@@ -85,7 +85,7 @@ class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
     def _finish(self, context: bpy.types.Context) -> set[str]:
         """Keep the clicks, as one step of undo; without any nothing has happened."""
         take = active_take(context.scene)
-        changed = _all_clicks(take) != self._before
+        changed = _all_clicks(take) != self._before[1]
         self._before = None
         self.cancel(context)
         if not changed:
@@ -96,10 +96,11 @@ class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Restore cursor and clicks; Blender calls this as well."""
         if self._before is not None:
-            clicks = active_take(context.scene).follow.clicks
-            clicks.clear()
-            for point, frame, pixel in self._before:
-                click = clicks.add()
+            follow = active_take(context.scene).follow
+            follow.clicked_point, clicks = self._before
+            follow.clicks.clear()
+            for point, frame, pixel in clicks:
+                click = follow.clicks.add()
                 click.point, click.frame, click.pixel = point, frame, pixel
             self._before = None
         if context.window is not None:  # None while Blender closes it or opens another file

@@ -1,10 +1,32 @@
-"""Where a take's keypoint files are on disk."""
+"""Where a take's keypoint files are on disk, and whether they are as they were."""
 
 from pathlib import Path
+from time import monotonic
 
 import bpy
 
 from ..bridge.keypoint_files import file_state
+
+LOOKED_S = 2.0
+"""Time for which a file's state on disk is taken to be what it was: drawing reads no folder each time."""
+
+_states: dict[Path, tuple[float, str | None]] = {}
+"""Time at which a path was looked at [s], and the state it had."""
+
+
+def recent_state(path: Path) -> str | None:
+    """A file's state as of a moment ago (see `file_state`); None where it is missing."""
+    now = monotonic()
+    looked, state = _states.get(path, (-LOOKED_S, None))
+    if now - looked >= LOOKED_S:
+        state = file_state(path)
+        _states[path] = now, state
+    return state
+
+
+def forget_states() -> None:
+    """Look at every file anew."""
+    _states.clear()
 
 
 def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
@@ -16,9 +38,9 @@ def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
     relative, absolute = Path(bpy.path.abspath(entry.filepath)), Path(entry.absolute_path)
     if not entry.absolute_path or relative == absolute:
         return relative
-    state = file_state(relative)
-    if state is None or (state != entry.contents and file_state(absolute) == entry.contents):
-        return absolute if file_state(absolute) is not None else relative
+    state = recent_state(relative)
+    if state is None or (state != entry.contents and recent_state(absolute) == entry.contents):
+        return absolute if recent_state(absolute) is not None else relative
     return relative
 
 

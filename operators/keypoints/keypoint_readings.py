@@ -4,21 +4,17 @@ A file that cannot be read is remembered with its sentence, so that drawing does
 """
 
 from dataclasses import dataclass
-from pathlib import Path
-from time import monotonic
 
 import bpy
 import numpy as np
 
 from ...core.errors import InputError
 from ...core.footage.keypoints.people import People
-from ..bridge.keypoint_files import file_state, read_keypoint_file
+from ..bridge.keypoint_files import read_keypoint_file
 from ..shell.lru_cache import LruCache
 from ..shell.takes import footage_of
-from .keypoint_paths import keypoint_path
+from .keypoint_paths import forget_states, keypoint_path, recent_state
 
-LOOKED_S = 2.0
-"""Time for which a file's state on disk is taken to be what it was, so that drawing reads no folder."""
 MOST_FILES = 12
 
 
@@ -38,14 +34,12 @@ class KeypointReading:
 
 
 _readings: LruCache[KeypointReading] = LruCache(MOST_FILES)
-_states: dict[Path, tuple[float, str | None]] = {}
-"""Time at which a path was looked at [s], and the state it had."""
 
 
 def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGroup) -> KeypointReading:
     """What a file of a take's keypoints says, or why it says nothing."""
     path = keypoint_path(entry)
-    state = _state(path)
+    state = recent_state(path)
     footage = footage_of(take.id_data, take)
     size = (take.clip.size[0], take.clip.size[1]) if take.clip is not None else (0, 0)
     key = f"{path} {state} {size} {entry.contents}"
@@ -54,7 +48,8 @@ def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGro
         try:
             people = read_keypoint_file(path, None, size, footage.rate, footage.first_frame)
         except InputError as error:
-            return KeypointReading(None, str(error), is_missing=state is None)
+            sentence = str(error).replace(str(path), path.name)
+            return KeypointReading(None, sentence, is_missing=state is None)
         hints = any(bool(np.isfinite(frame.hint_m).any()) for frame in people.frames)
         return KeypointReading(people, has_changed=state != entry.contents, has_hints=hints)
 
@@ -64,13 +59,4 @@ def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGro
 def clear_readings() -> None:
     """Look at every file anew."""
     _readings.clear()
-    _states.clear()
-
-
-def _state(path: Path) -> str | None:
-    now = monotonic()
-    looked, state = _states.get(path, (-LOOKED_S, None))
-    if now - looked >= LOOKED_S:
-        state = file_state(path)
-        _states[path] = now, state
-    return state
+    forget_states()

@@ -96,14 +96,14 @@ def _whole(path: Path) -> Path:
         InputError: It is no file that can be read.
     """
     from ...core.files.json_file import read_json_value
+    from ...core.footage.keypoints.frame_folder import is_one_frame
     from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
-    from ...core.footage.keypoints.openpose_folder import is_openpose_frame
 
     if path.is_dir():
         return path
     if not path.name:
         raise InputError("filepath is empty; name the file of keypoints, or the folder with a file a frame")
-    return path.parent if is_openpose_frame(read_json_value(path, LARGEST_BYTES)) else path
+    return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_keypoints,))

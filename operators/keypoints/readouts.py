@@ -59,6 +59,5 @@ def contours_label(take: bpy.types.PropertyGroup) -> str:
 
 
 def clicked_label(take: bpy.types.PropertyGroup) -> str:
-    """How many points were clicked on in the current frame, and in how many frames any was."""
-    frames = len({click.frame for click in take.follow.clicks})
-    return label("{here} here, in {frames} frames", here=len(clicked_here(take)), frames=frames)
+    """How many points were clicked on in the current frame, and in all."""
+    return label("{here} here, {count} in all", here=len(clicked_here(take)), count=len(take.follow.clicks))

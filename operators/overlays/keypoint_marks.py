@@ -15,15 +15,16 @@ from ..keypoints.frame_keypoints import FrameKeypoints
 from .figures import circles, segments
 from .picture import Item, Stroke
 from .style import SOURCES, THROWN_OUT, Style
+from .timeline_figures import squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
 
 ToRegion = Callable[[Array], Array]
-ARM, RING = 4.5, 3.0
+ARM, RING = 5.5, 3.5
 """Half-length of a cross's arms, and radius of a ring [px]."""
-THIN = 0.8
-"""Thickness of marks relative to outlines."""
+SQUARE = 1.1
+"""Half of a square's side around a cross, in half-lengths of its arms."""
 SAME_PX = 0.5
 """Distance within which two keypoints of a body point are one [px of the footage]."""
 UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
@@ -64,13 +65,13 @@ def compared_marks(
     shown = np.isfinite(seen).all(axis=-1)
     rims = circles(predicted, style.size(RING), 12)
     ringed = np.isfinite(predicted).all(axis=-1)
-    squares = circles(seen, style.size(1.4 * ARM), 4)
+    frames = squares(seen, style.size(SQUARE * ARM))
     return [
-        Stroke(links[linked], colors[linked], THIN * style.width),
+        Stroke(links[linked], colors[linked], style.width),
         _outlines(rims, ringed, colors, style),
         _crosses(seen, shown & ~thrown_out, colors, UPRIGHT, style),
         _crosses(seen, shown & thrown_out, red, SLANTING, style),
-        _outlines(squares, shown & swapped, colors, style),
+        _outlines(frames, shown & swapped, colors, style),
     ]
 
 
@@ -113,12 +114,10 @@ def not_yet_compared(
 def _crosses(places: Array, shown: BoolArray, colors: Array, directions: Array, style: Style) -> Stroke:
     arms = style.size(ARM) * directions
     lines = places[shown][:, None, None] + np.stack([-arms, arms], axis=1)  # (N, 2, 2, 2)
-    return Stroke(
-        lines.reshape(-1, 2, 2), np.repeat(colors[shown], 2, axis=0), THIN * style.width, style.halo
-    )
+    return Stroke(lines.reshape(-1, 2, 2), np.repeat(colors[shown], 2, axis=0), style.width, style.halo)
 
 
 def _outlines(corners: Array, shown: BoolArray, colors: Array, style: Style) -> Stroke:
     count = corners.shape[1]
     lines = segments(corners[shown], closed=True)
-    return Stroke(lines, np.repeat(colors[shown], count, axis=0), THIN * style.width, style.halo)
+    return Stroke(lines, np.repeat(colors[shown], count, axis=0), style.width, style.halo)

@@ -9,7 +9,7 @@ import numpy as np
 from ...core.arrays import Array
 from .drawing import text_size
 from .figures import circles, dashes, diamonds, segments
-from .keypoint_marks import SLANTING, UPRIGHT
+from .keypoint_marks import SLANTING, SQUARE, UPRIGHT
 from .picture import Fill, Item, Label, Stroke
 from .style import (
     CORE,
@@ -26,6 +26,7 @@ from .style import (
     THROWN_OUT,
     Style,
 )
+from .timeline_figures import squares
 
 GROUND = (0.0, 0.0, 0.0, 0.35)
 DOTS = 3
@@ -132,7 +133,7 @@ def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
     arms = JOINT * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
     items: list[Item] = [Stroke(middle + np.stack([-arms, arms], axis=1), color, THIN, style.halo)]
     if sample is Sample.SWAPPED:
-        square = circles(middle[None], 1.4 * JOINT * style.scale, 4)
+        square = squares(middle[None], SQUARE * JOINT * style.scale)
         items.append(Stroke(segments(square, closed=True), color, THIN, style.halo))
     return items
 

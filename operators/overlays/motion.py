@@ -16,7 +16,7 @@ from . import drawing
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from .keypoint_rows import keypoint_rows
 from .legend import Row, Sample, corner, legend
-from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_outlines
+from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_contours, predicted_outlines
 from .paths import paths, window
 from .picture import Item
 from .skeleton import skeleton
@@ -103,6 +103,7 @@ def _outlines(
         items += observed_outlines(what.review, what.index, footage.to_region, colors, style)
     if settings.show_predicted:
         items += predicted_outlines(what.review, what.index, footage.to_region, colors, style)
+        items += predicted_contours(what.review, what.index, footage.to_region, style)
     return items
 
 
@@ -137,6 +138,8 @@ def _rows(
             rows.append((Sample.SOLID, label("Marker as seen")))
         if settings.show_predicted:
             rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
+    if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
+        rows.append((Sample.DASHED, label("Contour as the motion predicts it")))
     if settings.show_skeleton:
         rows.append((Sample.LEFT, label("Performer's left")))
         rows.append((Sample.RIGHT, label("Performer's right")))

@@ -1,4 +1,4 @@
-"""Outlines of marker regions: observed ones solid, predicted ones dashed."""
+"""Outlines of marker regions: observed ones solid, predicted ones dashed, as are contours of the body."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from ..shell.messages import label
 from .drawing import INK
 from .figures import dashes, segments
 from .picture import Item, Label, Stroke
-from .style import DASH, GAP, Style, paler
+from .style import DASH, GAP, MIDDLE, Style, paler
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
@@ -68,3 +68,12 @@ def predicted_outlines(
             words = label("{marker} hidden", marker=review.marker_names[marker])
             items.append(Label(words, float(x), float(y), style.color(INK)))
     return items
+
+
+def predicted_contours(
+    review: "Review", index: int, to_region: Callable[[Array], Array], style: Style
+) -> list[Item]:
+    """The contour lines of the body that the motion predicts, dashed."""
+    lines = to_region(review.contours[index])
+    parts = [dashes(line, DASH * style.scale, GAP * style.scale) for line in lines]
+    return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []

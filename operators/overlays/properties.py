@@ -23,7 +23,8 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_predicted: bpy.props.BoolProperty(
         name="Predicted Markers",
-        description="Outline each marker where the reconstructed motion puts it: a dashed line",
+        description="Outline each marker where the reconstructed motion puts it: a dashed line; without "
+        "markers, the limbs and the trunk",
         default=True,
         update=_changed,
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -11,13 +12,16 @@ from ..bridge.scene_frames import scene_frames
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
 from ..shell.lru_cache import LruCache
 from ..shell.messages import label
-from ..shell.results import reading_of, review_of
+from ..shell.results import FootageSpeed, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color, faded
 from .figures import diamonds, segments
 from .picture import Fill, Item, Label, Stroke, paint
 from .timeline_figures import graph, in_view, joined, pointers, squares, strip
+
+if TYPE_CHECKING:
+    from ...core.footage.reading import Reading
 
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 
@@ -154,7 +158,7 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     return items
 
 
-def _level(frames: Array, speed: "Speed | None") -> Array:
+def _level(frames: Array, speed: "FootageSpeed | None") -> Array:
     """Heights of marks at frames (K,) on the graph, 0 to 1; 0 without a graph."""
     if speed is None:
         return np.zeros(len(frames))
@@ -236,39 +240,39 @@ def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) ->
     ]
 
 
-@dataclass(frozen=True, eq=False)
-class Speed:
-    """V_sum over scene frames."""
-
-    key: str
-    """Cache key."""
-    frames: Array
-    """(F,) scene frames."""
-    values: Array
-    """(F,) [px per frame]."""
-
-
-_speeds: LruCache[Speed] = LruCache()
+_speeds: LruCache[FootageSpeed] = LruCache()
 _views: LruCache[list[Item]] = LruCache(16)
 """Cache of drawn items: a redraw without a change of view only draws."""
 
 
-def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Speed | None:
-    """The markers' speed from the last reading; where that was lost, from the motion's review."""
+def _speed(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> FootageSpeed | None:
+    """The speed in the footage that keyframes were proposed by; else of the motion's review or the reading.
+
+    The reading tells of markers alone.
+    """
+    reading, review, proposed = reading_of(take), review_of(take), speed_of(take)
+    if proposed is not None:
+        return proposed
+    marked = reading is not None and reading.tracks.visible.any() and take.clip is not None
+    if review is not None and (not marked or review.keypoints.names):
+        return FootageSpeed(take.review_key, review.frames, review.speed)
+    return _marker_speed(scene, take, reading) if reading is not None and marked else None
+
+
+def _marker_speed(
+    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, reading: "Reading"
+) -> FootageSpeed | None:
     # Imported late: Keymark registers without SciPy.
     from ...core.prior.marker_speed import marker_speed
 
-    reading, review = reading_of(take), review_of(take)
-    if reading is not None and reading.tracks.visible.any() and take.clip is not None:
-        footage = footage_of(scene, take)
-        key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
+    footage = footage_of(scene, take)
+    key = f"{take.reading_key} {footage.first_frame} {footage.rate}"
 
-        def read() -> Speed:
-            frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
-            return Speed(key, frames, marker_speed(reading.tracks))
+    def read() -> FootageSpeed:
+        frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
+        return FootageSpeed(key, frames, marker_speed(reading.tracks))
 
-        return _speeds.get(key, read)
-    return None if review is None else Speed(take.review_key, review.frames, review.speed)
+    return _speeds.get(key, read)
 
 
 def _drawn(key: str, make: Callable[[], list[Item]]) -> list[Item]:

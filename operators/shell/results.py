@@ -7,6 +7,7 @@ neither is remembered as absent, so that drawing reads the disk at most once.
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,9 +19,23 @@ from ...core.files.digest import digest
 from .lru_cache import LruCache, Result
 
 if TYPE_CHECKING:
+    from ...core.arrays import Array
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.footage.reading import Reading
     from ...core.review.review import Review
+
+
+@dataclass(frozen=True, eq=False)
+class FootageSpeed:
+    """V_sum of a take's footage over scene frames."""
+
+    key: str
+    """Digest of it."""
+    frames: "Array"
+    """(F,) scene frames."""
+    values: "Array"
+    """(F,) [px per frame]."""
+
 
 FOLDER = "results"
 EXTENSION = (__package__ or "").partition(".operators")[0]
@@ -28,6 +43,8 @@ EXTENSION = (__package__ or "").partition(".operators")[0]
 
 _readings: "LruCache[Reading]" = LruCache()
 _reviews: "LruCache[Review]" = LruCache()
+_speeds: "LruCache[FootageSpeed]" = LruCache()
+"""By the take's identifier and the key of its reading."""
 _reconstructions: "LruCache[Reconstruction]" = LruCache(2)
 """The last one of each take, by the take's identifier."""
 
@@ -85,9 +102,20 @@ def keep_reconstruction(take: bpy.types.PropertyGroup, reconstruction: "Reconstr
     _reconstructions.put(take.identifier, reconstruction)
 
 
+def speed_of(take: bpy.types.PropertyGroup) -> "FootageSpeed | None":
+    """Return the speed by which keyframes were last proposed in this session, of the take's reading."""
+    return _speeds.get(f"{take.identifier} {take.reading_key}", lambda: None)
+
+
+def keep_speed(take: bpy.types.PropertyGroup, frames: "Array", values: "Array") -> None:
+    """Keep in memory the speed in a take's footage, (F,) [px per frame] at scene frames (F,)."""
+    speed = FootageSpeed(f"speed-{digest(frames, values)}", frames, values)
+    _speeds.put(f"{take.identifier} {take.reading_key}", speed)
+
+
 def clear_cache() -> None:
     """Drop all results from memory; those on disk stay."""
-    for cache in (_readings, _reviews, _reconstructions):
+    for cache in (_readings, _reviews, _reconstructions, _speeds):
         cache.clear()
 
 

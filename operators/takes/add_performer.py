@@ -9,7 +9,7 @@ from ..shell.takes import active_take, add_take
 
 
 class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
-    """Add a take for another performer in the active take's clip, who gets an actor and markers of their own"""
+    """Add a take for another performer in the active take's clip, with an actor and markers of their own"""
 
     bl_idname = "keymark.add_performer"
     bl_label = "Add Performer"

@@ -1,4 +1,4 @@
-"""Handlers of files dropped onto an editor: footage, takes and keyframe libraries."""
+"""Handlers of files dropped onto an editor: footage, takes, keyframe libraries and keypoints."""
 
 import bpy
 
@@ -26,10 +26,10 @@ class KEYMARK_FH_footage(bpy.types.FileHandler):
 
 
 class KEYMARK_FH_take(bpy.types.FileHandler):
-    """A dropped take.json is opened, the .json of a keyframe library is imported."""
+    """A dropped take.json is opened, a keyframe library imported, and keypoints are loaded."""
 
     bl_idname = "KEYMARK_FH_take"
-    bl_label = "Take or Library for Keymark"
+    bl_label = "Take, Library or Keypoints for Keymark"
     bl_import_operator = "keymark.open_dropped"
     bl_file_extensions = ".json"
 

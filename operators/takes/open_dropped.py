@@ -1,24 +1,24 @@
-"""Open a dropped .json: a take, or a keyframe library."""
+"""Open a dropped .json: a take, a keyframe library, or keypoints of the active take's clip."""
 
 from pathlib import Path
 
 import bpy
 
 from ...core.errors import InputError
-from ...core.files.json_file import read_json
+from ...core.files.json_file import read_json_value
 from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
-from ..shell.requirements import idle
+from ..shell.requirements import footage, idle
 
 TAKE_FILE = "take.json"
 """Or NAME.take.json beside the clip NAME; opening a take reads no file of another name."""
 
 
 class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
-    """Open a take or import a keyframe library, depending on what the file holds"""
+    """Open a take, import a keyframe library or load keypoints, depending on what the file holds"""
 
     bl_idname = "keymark.open_dropped"
-    bl_label = "Open Take or Library"
+    bl_label = "Open Take, Library or Keypoints"
     bl_options = {"REGISTER", "INTERNAL"}
     requirements = (idle,)
 
@@ -38,20 +38,26 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
         """Call the operator for the file's content, and return its result.
 
         Raises:
-            InputError: The file is neither a take nor a library, or the operator failed.
+            InputError: The file is none of these, or the operator failed.
         """
-        from ...core.library.library_file import LARGEST_BYTES
+        from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
 
         path = Path(bpy.path.abspath(self.filepath))
-        value = read_json(path, LARGEST_BYTES)
-        if "schema" in value:
+        value = read_json_value(path, LARGEST_BYTES)
+        fields = value if isinstance(value, dict) else {}
+        if "schema" in fields:
             operator = bpy.ops.keymark.import_library
         elif path.name == TAKE_FILE or path.name.endswith(f".{TAKE_FILE}"):
             operator = bpy.ops.keymark.open_take
-        elif "clip" in value:
+        elif "clip" in fields:
             raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")
+        elif footage(bpy.context) is None:
+            operator = bpy.ops.keymark.load_keypoints
         else:
-            raise InputError(f"{path}: is neither a take's take.json nor a keyframe library")
+            raise InputError(
+                f"{path}: is neither a take's take.json nor a keyframe library; keypoints need the footage "
+                "that they are of, so load that first"
+            )
         try:
             return set(operator(execution_context, filepath=str(path)))
         except RuntimeError as error:  # the operator's own error report

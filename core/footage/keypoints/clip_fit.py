@@ -1,5 +1,7 @@
 """What a detector saw, held against the clip: frames, picture size, scores, and what was seen at all."""
 
+from pathlib import Path
+
 import numpy as np
 
 from ...arrays import Array, BoolArray
@@ -47,29 +49,15 @@ def held_against_clip(
             "it must show a person"
         )
     aligned = _aligned(detected, frame_count, fps, frame_start)
-    persons = [person for people in detected.people.values() for person in people]
-    check_points(len(persons) * detected.layout.count, detected.where)
-    place = np.stack([person.place for person in persons])[:, detected.layout.numbers]
-    scale, size_notes = _scale(detected, place, size)
-    place *= scale
-    scores = np.stack([person.score for person in persons])[:, detected.layout.numbers]
-    placed = np.isfinite(place).all(axis=-1) & place.any(axis=-1)
-    score = np.zeros(placed.shape)
-    score[placed], score_notes = confidences(scores[placed], detected.where)
-    seen = placed & (np.nan_to_num(score) > 0.0)
-    inside = ((place >= 0.0) & (place <= np.array(size))).all(axis=-1)
-    _check_places(detected, place, seen, inside, size)
-    seen &= inside
-    place[~seen], score[~seen] = np.nan, 0.0
-    hint = _hints(persons, detected.layout.numbers, seen)
-    frames, row = [_nobody(len(detected.layout.numbers))] * aligned.frame_count, 0
+    everyone, notes = _everyone(detected, size)
+    frames, first = [_nobody(len(detected.layout.numbers))] * aligned.frame_count, 0
     for number, people in detected.people.items():
-        rows = np.arange(row, row + len(people))
-        row += len(people)
-        rows = rows[seen[rows].any(axis=-1)] if len(people) else rows
+        rows = np.arange(first, first + len(people))
+        first += len(people)
+        rows = rows[(everyone.score[rows] > 0.0).any(axis=-1)]
         index = number - aligned.first
         if len(rows) and 0 <= index < aligned.frame_count:
-            frames[index] = SeenPeople(place[rows], score[rows], hint[rows])
+            frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
     return People(
@@ -79,8 +67,33 @@ def held_against_clip(
         tuple(frames),
         file=detected.where,
         by_hand=detected.by_hand,
-        notes=aligned.notes + size_notes + score_notes,
+        notes=tuple(_with_name(note, detected.where) for note in aligned.notes + notes),
     )
+
+
+def _with_name(note: str, where: str) -> str:
+    """A sentence that names the file alone: notes go into results, which are the same in any folder."""
+    return note.replace(where, Path(where).name or where, 1)
+
+
+def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
+    """The people of all frames one after the other, and sentences on what was changed."""
+    numbers, where = detected.layout.numbers, detected.where
+    persons = [person for people in detected.people.values() for person in people]
+    check_points(len(persons) * detected.layout.count, where)
+    place = np.stack([person.place[numbers] for person in persons])
+    scale, notes = _scale(detected, place, size)
+    place *= scale
+    scores = np.stack([person.score[numbers] for person in persons])
+    placed = np.isfinite(place).all(axis=-1) & place.any(axis=-1)
+    score = np.zeros(placed.shape)
+    score[placed], score_notes = confidences(scores[placed], where)
+    seen = placed & (np.nan_to_num(score) > 0.0)
+    inside = ((place >= 0.0) & (place <= np.array(size))).all(axis=-1)
+    _check_places(detected, place, seen, inside, size)
+    seen &= inside
+    place[~seen], score[~seen] = np.nan, 0.0
+    return SeenPeople(place, score, _hints(persons, numbers, seen)), notes + score_notes
 
 
 def _nobody(points: int) -> SeenPeople:

@@ -121,8 +121,11 @@ def _hole_notes(
 
 def _rate_words(count: int, frame_count: int) -> str:
     """The rest of the sentence where one is a whole multiple of the other: the detector saw another rate."""
-    for many, few, what in ((frame_count, count, "a share"), (count, frame_count, "a multiple")):
+    for many, few, what in (
+        (frame_count, count, "one for every {}"),
+        (count, frame_count, "{} for every one"),
+    ):
         times = round(many / max(few, 1))
         if 2 <= times <= 10 and abs(many - times * few) <= times:
-            return f"; it is about {what} of {times} of them, so the detector saw another frame rate"
+            return f"; it has about {what.format(times)} of the clip, as if made at another frame rate"
     return ""

@@ -10,9 +10,10 @@ from ...files.json_file import read_json_value, shown
 from .clip_fit import held_against_clip
 from .coco_results import is_coco, read_coco
 from .detected_frames import DetectedFrames
+from .frame_folder import read_frame_folder
 from .mediapipe_landmarks import is_mediapipe, read_mediapipe
-from .mmpose_results import is_mmpose, read_mmpose
-from .openpose_folder import is_openpose_frame, read_openpose_folder
+from .mmpose_results import is_instances, is_mmpose, read_mmpose
+from .openpose_frame import is_openpose_frame
 from .own_file import read_own, write_keypoints
 from .people import People
 
@@ -52,7 +53,7 @@ def read_keypoints(
 def _read(path: Path) -> DetectedFrames:
     source = "".join("?" if is_control_character(char) else char for char in path.name)[:LONGEST_SOURCE]
     if path.is_dir():
-        return read_openpose_folder(path)
+        return read_frame_folder(path)
     value = read_json_value(path, LARGEST_BYTES)
     where = str(path)
     if isinstance(value, dict) and "layout" in value:
@@ -68,10 +69,12 @@ def _read(path: Path) -> DetectedFrames:
 
 def _seen(value: Any) -> str:
     """What a file of no known format holds."""
+    if value in ([], {}):
+        return "is empty"
     if is_openpose_frame(value):
         return "holds one frame of OpenPose, whose folder must be given"
-    if isinstance(value, list) and value and isinstance(value[0], dict) and "keypoint_scores" in value[0]:
-        return "holds one picture of MMPose, not a clip"
+    if is_instances(value):
+        return "holds one picture of MMPose, whose folder must be given"
     if isinstance(value, dict):
         return f"holds an object with the fields {shown(list(value)[:8])}, which no known format has"
     return f"holds {shown(value)}"

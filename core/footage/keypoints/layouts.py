@@ -15,8 +15,9 @@ from ...body.skeleton import SIDES
 
 OWN = "own"
 """Name of a layout whose file lists the names itself."""
+HAND_POINTS = 21
 INDEX_KNUCKLE, THUMB_KNUCKLE, PINKY_KNUCKLE = 5, 2, 17
-"""In the 21 points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
+"""In the points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,13 @@ def layout_of(count: int) -> Layout | None:
 def own_layout(names: Sequence[str]) -> Layout:
     """A layout of these body points."""
     return _layout(OWN, len(names), names)
+
+
+def with_hands(layout: Layout) -> Layout:
+    """A layout followed by the points of the left hand and of the right, unless it has hands itself."""
+    count = layout.count + 2 * HAND_POINTS
+    hands = {} if "index.L" in layout.names else _hands(layout.count, layout.count + HAND_POINTS)
+    return Layout(layout.name, count, MappingProxyType({**layout.points, **hands}))
 
 
 def layout_words() -> str:

@@ -26,6 +26,22 @@ def is_mmpose(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and isinstance(value[0], dict) and "instances" in value[0]
 
 
+def is_instances(value: Any) -> bool:
+    """Whether a JSON value is a list of people, as one frame has them; nobody is one too."""
+    return isinstance(value, list) and all(
+        isinstance(one, dict) and {"keypoints", "keypoint_scores"} <= set(one) for one in value
+    )
+
+
+def instance_people(instances: list[Any], where: str) -> list[DetectedPerson]:
+    """The people of one frame.
+
+    Raises:
+        InputError: An entry has no points in the picture.
+    """
+    return [_person(instance, f"{where}[{index}]") for index, instance in enumerate(instances)]
+
+
 def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
     """Read MMPose's results of a video.
 
@@ -53,11 +69,9 @@ def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
         if number in people:
             raise InputError(f"{spot}.frame_id is {number}, which stands twice; each frame must stand once")
         check_people(len(instances), f"{spot}.instances")
-        seen = []
-        for one, instance in enumerate(instances):
-            person = _person(instance, f"{spot}.instances[{one}]")
+        seen = instance_people(instances, f"{spot}.instances")
+        for one, person in enumerate(seen):
             layout = same_layout(layout, len(person.place), f"{spot}.instances[{one}].keypoints")
-            seen.append(person)
         people[number] = tuple(seen)
     if layout is None:
         raise InputError(

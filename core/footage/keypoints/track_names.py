@@ -1,6 +1,7 @@
 """Which body point a track is meant to follow, by the name that a person gave it."""
 
 import re
+from functools import lru_cache
 
 from .body_points import BODY_POINTS
 
@@ -27,7 +28,11 @@ SYNONYMS = {
 WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 """Words of a name, whatever separates them, as in `LeftWrist`, `left_wrist` and `wrist.L`; no numbers."""
 
+MOST_NAMES = 4096
+"""Names that are remembered: panels ask for those of all tracks of a clip whenever they are drawn."""
 
+
+@lru_cache(maxsize=MOST_NAMES)
 def named_point(name: str) -> str | None:
     """Body point that a track is named after, as `wrist.L`, `Left Wrist` or `l_wrist.001`; None if none."""
     words = [word.lower() for word in WORDS.findall(name)]

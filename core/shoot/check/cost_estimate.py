@@ -11,12 +11,12 @@ from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 
 SECONDS_A_TAKE = 0.9
 """Writing Blender's files and drawing pictures."""
-SECONDS_A_FRAME = {"map": 0.010, "ekf": 0.004, "interpolation": 0.002}
-"""By method, without reading the frame."""
+SECONDS_A_FRAME = {"map": 0.004, "ekf": 0.004, "interpolation": 0.002}
+"""By method, without reading the frame and without what follows."""
 SECONDS_FOR_KEYPOINTS = 0.001
 """A frame."""
-SECONDS_FOR_WIDE_CONTOURS = 0.025
-"""A frame whose contours are searched far and wide, for there is no marker to begin from."""
+SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
+"""A frame, with markers and without, where contours are searched far and wide."""
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_MATCH = 0.02
@@ -42,7 +42,7 @@ def estimate_cost(
     size: tuple[int, int],
     method: str,
     library: str | None,
-    evidence: Collection[str] = (MARKERS,),
+    evidence: Collection[str] = (MARKERS, CONTOURS),
 ) -> CostEstimate:
     """Estimate the cost of converting a take.
 
@@ -56,7 +56,8 @@ def estimate_cost(
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
     if method == "map":
         a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
-        a_frame += SECONDS_FOR_WIDE_CONTOURS * (CONTOURS in evidence and MARKERS not in evidence)
+    if method == "map" and CONTOURS in evidence:
+        a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
     if library is not None:
         a_frame += SECONDS_TO_CHOOSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)

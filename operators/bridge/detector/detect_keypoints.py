@@ -201,7 +201,7 @@ class _Beside:
 
     def _listed(self) -> set[str]:
         try:
-            return set(os.listdir(self._clip.parent))
+            return {name for name in os.listdir(self._clip.parent) if not name.startswith(".")}
         except OSError:
             return set()
 

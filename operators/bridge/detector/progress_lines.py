@@ -4,6 +4,7 @@ import re
 
 _PERCENT = re.compile(r"(?<![\d.])(\d{1,3}(?:\.\d+)?)\s?%")
 _OF_ALL = re.compile(r"(?<![\d.:/])(\d{1,9})\s*(?:/|\bof\b|\bout of\b)\s*(\d{1,9})(?![\d.:/])")
+_FRAME = re.compile(r"\bframe\s+#?(\d{1,9})\b(?!\s*(?:/|of\b))", re.IGNORECASE)
 
 
 class ProgressLines:
@@ -28,6 +29,10 @@ class ProgressLines:
                 self._counts_frames = True
                 self.fraction = done / of_all
                 return
+        alone = _FRAME.search(line)
+        if alone and int(alone[1]) <= self._frame_count:
+            self._counts_frames = True
+            self.fraction = int(alone[1]) / self._frame_count
         if self._counts_frames:
             return
         percent = _PERCENT.search(line)

@@ -1,4 +1,4 @@
-"""`keymark demo`: convert the demonstration take, put it on a character, and score it against the truth."""
+"""`keymark demo`: convert the demonstration take with and without its markers, and score both motions."""
 
 import argparse
 import tempfile
@@ -12,6 +12,7 @@ from ....core.review.score import Score, read_truth, score_points
 from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
+from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
@@ -26,12 +27,17 @@ from .demo_character import write_demo_character
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 KEYFRAMES = DEMO / "keyframes_noisy.json"
 """Keyframes with the errors that a person makes when posing."""
+MARKED = (MARKERS, CONTOURS)
+"""Evidence of the paper's example."""
+UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
+"""Evidence of the same performance in any clothes."""
+UNMARKED_FOLDER = "without_markers"
 CHARACTER_FILE = "human.blend"
 COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
 def demo_command(arguments: argparse.Namespace) -> None:
-    """Convert the demonstration take, give it to a character, and print the error of each method."""
+    """Convert the demonstration take, once more without its markers, and print the error of each method."""
     if not DEMO.is_dir():
         raise InputError(
             f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
@@ -40,26 +46,34 @@ def demo_command(arguments: argparse.Namespace) -> None:
     with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
         console.stage("Generating a character")
         character, missing = _character(Path(folder))
-        settings = ConversionSettings(KEYFRAMES, character=character)
+        settings = ConversionSettings(KEYFRAMES, evidence=MARKED, character=character)
         done = convert_take(describe(DEMO), arguments.output, console, settings, arguments.debug)
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
+        console.stage("Converting it without its markers")
+        output: Path = arguments.output
+        unmarked_settings = ConversionSettings(KEYFRAMES, evidence=UNMARKED)
+        unmarked = convert_take(
+            describe(DEMO), output / UNMARKED_FOLDER, console, unmarked_settings, arguments.debug
+        )
         scores = {
             "interpolation": _score(done.take, done.reconstruction.interpolation),
             "ekf": _score(done.take, filtered.motion),
             "map": _score(done.take, done.reconstruction.motion),
+            UNMARKED_FOLDER: _score(done.take, unmarked.reconstruction.motion),
         }
         result = {
             **conversion_summary(done),
             "scores_mm": {name: score.to_dict() for name, score in scores.items()},
         }
-        output = arguments.output
         lines = [
             f"Error against the true motion of {scores['map'].frames} frames, posed in "
             f"{scores['map'].keyframes} of them, in millimeters:",
             *_table(scores),
+            f"({UNMARKED_FOLDER.replace('_', ' ')}: by contours, and keypoints as detectors see them)",
             f"Open in Blender: {output / BLEND}",
             missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
+            f"Without markers: {output / UNMARKED_FOLDER / BLEND}",
             f"Pictures:        {output / REPORT}",
         ]
         console.finish(result, "\n".join(lines))
@@ -82,8 +96,10 @@ def _score(take: Take, motion: Motion) -> Score:
 
 
 def _table(scores: Mapping[str, Score]) -> list[str]:
-    lines = [" " * 16 + "".join(f"{title:>12}" for title in COLUMNS.values())]
+    lines = [" " * 17 + "".join(f"{title:>12}" for title in COLUMNS.values())]
     for name, score in scores.items():
         values = score.to_dict()
-        lines.append(f"  {name:14}" + "".join(f"{values[column]:12.1f}" for column in COLUMNS))
+        lines.append(
+            f"  {name.replace('_', ' '):15}" + "".join(f"{values[column]:12.1f}" for column in COLUMNS)
+        )
     return lines

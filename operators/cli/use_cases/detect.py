@@ -14,7 +14,7 @@ from ....core.footage.keypoints.keypoint_file import write_keypoints
 from ....core.progress import run, stretch
 from ....core.shoot.discovery.find_takes import VIDEOS, find_takes, open_shoot
 from ....core.shoot.shoot import ShootTake
-from ....core.take.description import TAKE_FILE, Description, sidecar_file
+from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, sidecar_file
 from ....core.take.shoot_file import find_shoot_files
 from ....core.text import pluralize
 from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
@@ -24,7 +24,6 @@ from ..detector_choice import chosen_detector
 from ..refuse_existing import refuse_existing
 from ..usage import UsageError
 
-KEYPOINT_FILE = "keypoints.json"
 MOST_NAMED = 5
 
 
@@ -205,7 +204,6 @@ def _footage(take: ShootTake) -> Footage:
 
 
 def _keypoint_file(description: Description) -> Path:
-    """The file that a take's keypoints go into."""
-    if description.clip == description.path:
-        return sidecar_file(description.path, KEYPOINT_FILE)
-    return description.folder / KEYPOINT_FILE
+    """The file that a take's keypoints go into: the one that it names, or that of the usual name."""
+    named = description.settings.keypoints or ()
+    return named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE))

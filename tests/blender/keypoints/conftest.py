@@ -1,5 +1,6 @@
 """What the tests of keypoints share: a plain take, and keypoints of it as a detector would write them."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,7 +48,7 @@ def plain_take(tiny_take: Take, tmp_path: Path) -> Take:
 def keypoint_file(plain_take: Take, wave_motion: Motion) -> Path:
     """A file of what a detector sees in it, beside the clip; under another name than takes give it."""
     path = plain_take.folder / "seen.json"
-    write_keypoints(path, seen_people(plain_take, wave_motion), fps=plain_take.fps, frame_start=1)
+    write_keypoints(path, seen_people(plain_take, wave_motion), 1, plain_take.fps)
     return path
 
 
@@ -56,3 +57,9 @@ def plain(registered: None, plain_take: Take) -> bpy.types.Scene:
     """The scene with the plain take opened."""
     assert bpy.ops.keymark.open_take(filepath=str(plain_take.folder)) == {"FINISHED"}
     return bpy.context.scene
+
+
+@pytest.fixture
+def seen_by() -> Callable[..., People]:
+    """`seen_people`, for tests that need more than one person."""
+    return seen_people

@@ -1,5 +1,6 @@
 """Keypoints over the footage, with a motion and before there is one, without a screen."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
@@ -17,6 +18,7 @@ from keymark.operators.overlays.keypoint_marks import (
     not_yet_compared,
     seen_marks,
 )
+from keymark.operators.overlays.outlines import predicted_contours
 from keymark.operators.overlays.picture import Label, Stroke
 from keymark.operators.overlays.style import SOURCES, THROWN_OUT, Style
 from keymark.operators.shell import takes
@@ -124,6 +126,20 @@ def test_without_markers_the_legend_says_nothing_of_them(
     bare = Review.from_arrays({**full, **none, **weak, "marker_names": full["marker_names"][:0]})
     monkeypatch.setattr(motion, "review_of", lambda _take: bare)
     assert not any("arker" in words for words in rows(scene, 1))
+    assert "Contour as the motion predicts it" in rows(scene, 1)
+    scene.keymark.overlays.show_predicted = False
+    assert not any("ontour" in words for words in rows(scene, 1))
+
+
+def test_contours_are_dashed_where_the_motion_puts_them() -> None:
+    """Each line from its first to its last point; a review with markers has none."""
+    review = made_up_review()
+    (stroke,) = predicted_contours(review, 0, FOOTAGE.to_region, STYLE)
+    whole = np.linalg.norm(np.diff(FOOTAGE.to_region(review.contours[0]), axis=1), axis=-1).sum()
+    inked = np.linalg.norm(np.diff(stroke.segments, axis=1), axis=-1).sum()
+    assert inked == pytest.approx(0.6 * whole, rel=0.05)
+    marked = replace(review, contours=review.contours[:, :0])
+    assert predicted_contours(marked, 0, FOOTAGE.to_region, STYLE) == []
 
 
 def test_keypoints_are_drawn_before_there_is_a_motion(registered: None) -> None:

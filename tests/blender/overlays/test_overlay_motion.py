@@ -55,6 +55,7 @@ def review() -> Review:
         confidence=np.ones(FRAMES),
         keyframe_indices=np.array([0, 12, 39]),
         weak_frames=(),
+        contours=np.zeros((FRAMES, 0, 4, 2)),
         keypoints=made_up_keypoints(FRAMES),
     )
 

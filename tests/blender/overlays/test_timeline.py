@@ -13,7 +13,7 @@ from keymark.operators.overlays.picture import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
 from keymark.operators.overlays.timeline_figures import confidence_color, graph, in_view, joined, strip
 from keymark.operators.shell.keyed_frames import is_posed
-from keymark.operators.shell.results import keep_reading, keep_review
+from keymark.operators.shell.results import keep_reading, keep_review, keep_speed
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -76,6 +76,23 @@ def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -
     bpy.context.scene.keymark.timeline.show_speed = False
     *_, diamond = items_of(take, Fill)
     assert diamond.corners[0, :, 1].mean() == pytest.approx(VIEW.floor)
+
+
+def test_without_markers_the_graph_is_the_speed_that_keyframes_were_proposed_by(
+    take: bpy.types.PropertyGroup,
+) -> None:
+    """Else that of the motion's review; a reading of nothing draws nothing."""
+    bare = reading()
+    tracks = RegionTracks.unmarked(bare.tracks.time_s, (160, 120))
+    keep_reading(take, Reading(tracks, key="reading-of-no-marker"))
+    assert items_of(take, Fill) == []
+    bpy.context.scene.keymark.timeline.show_confidence = False
+    keep_review(take, made_up_review())
+    reviewed = items_of(take, Fill)[0].corners[:, 3, 1]
+    assert len(reviewed) == 12 and reviewed.argmax() in (5, 6)
+    rising = np.arange(13.0)
+    keep_speed(take, rising + 1.0, rising)
+    assert np.all(np.diff(items_of(take, Fill)[0].corners[:, 3, 1]) > 0.0)
 
 
 def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -> None:

@@ -12,6 +12,9 @@ from keymark.operators.bridge.detector.progress_lines import ProgressLines
         (" 25%|###       | 30/120 [00:01<00:03, 30.1it/s]", 0.25),
         ("loading 100%\rframe 12/120", 0.1),
         ("frame 12/120\nwriting part 3/4\n99 %", 0.1),  # frames outweigh all else
+        ("Frame 30", 0.25),
+        ("frame 30 of 200 was bad", 0.15),  # of another count: a part like any other
+        ("frame 999", 0.0),
         ("epoch 1/2", 0.5),
         ("40.5 % done", 0.405),
         ("saved /data/12/240/out.png", 0.0),

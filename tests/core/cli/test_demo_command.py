@@ -4,8 +4,11 @@ import json
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
+from keymark.core.footage.keypoints.keypoint_file import write_keypoints
+from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take.motion_file import read_motion
 from keymark.core.take.take_file import read_take
@@ -20,6 +23,16 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
     """A small take instead of the demonstration's, and two empty files instead of Blender's."""
     folder = write_synthetic_take(tmp_path / "demo", FRAMES)
     shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
+    take = read_take(folder)
+    truth = read_truth(folder / "truth.json", take.frame_start, FRAMES)
+    pixel, _ = take.camera.project(truth)
+    hint = truth[..., [0, 2, 1]] * [1.0, -1.0, 1.0]  # the camera looks along +Y
+    seen = [
+        SeenPeople(place[None], np.ones((1, len(place))), space[None])
+        for place, space in zip(pixel, hint, strict=True)
+    ]
+    people = People(take.body.skeleton.point_names, "truth", take.camera.resolution, tuple(seen))
+    write_keypoints(folder / "keypoints.json", people, take.frame_start)
 
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
@@ -40,7 +53,12 @@ def test_it_scores_every_method_by_the_motion_it_wrote(
     assert {name: said["scores_mm"]["map"][name] for name in known} == pytest.approx(
         known, rel=1e-3, abs=1e-3
     )
-    assert set(said["scores_mm"]) == {"interpolation", "ekf", "map"}
+    assert set(said["scores_mm"]) == {"interpolation", "ekf", "map", "without_markers"}
+    unmarked = read_motion(tmp_path / "out" / "without_markers" / "motion.json")
+    mpjpe = score_points(unmarked.points, truth, unmarked.keyframe_indices, camera).mpjpe
+    assert said["scores_mm"]["without_markers"]["mpjpe"] == pytest.approx(mpjpe, rel=1e-3)
+    record = json.loads((tmp_path / "out" / "without_markers" / "conversion.json").read_text())
+    assert record["evidence"]["markers"] == [] and len(record["evidence"]["keypoints"]) == 1
     assert said["scores_mm"]["interpolation"]["coverage95"] is None
     assert all(scores["mpjpe"] > 0.0 for scores in said["scores_mm"].values())
 
@@ -54,9 +72,10 @@ def test_it_says_where_to_look(take: Path, tmp_path: Path, capsys: pytest.Captur
         for line in said.splitlines()
         if line.startswith("  ") and line.split()
     }
-    for method in ("interpolation", "ekf", "map"):
-        assert len([float(value) for value in rows[method]]) == len(demo.COLUMNS)
-    for path in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report"):
+    for method in ("interpolation", "ekf", "map", "without"):
+        assert len([float(value) for value in rows[method] if value != "markers"]) == len(demo.COLUMNS)
+    unmarked = tmp_path / "out" / "without_markers" / "motion.blend"
+    for path in (tmp_path / "out" / "motion.blend", tmp_path / "out" / "report", unmarked):
         assert str(path) in said and path.exists()
 
 

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from _command_line import one_line, tree
 from _shoot import write_shoot, write_video
 from _synthetic_take import SIZE, true_postures, write_synthetic_take
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
+from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
 
 FRAMES = 8
@@ -131,6 +133,25 @@ def test_a_shoot_goes_on_after_failures_and_leaves_what_is_there(
     assert main(["detect", str(shoot), "--detector", command("work"), "--output", "x.json"]) == 2
     assert "--output is one file" in one_line(capsys.readouterr().err)
     assert main(["detect", str(tmp_path / "nowhere"), "--detector", command("work")]) == 2
+
+
+def test_clips_need_no_description(clip: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A folder of bare clips, before there is any shoot.json."""
+    shutil.copyfile(clip, clip.with_name("run.mp4"))
+    assert main(["detect", str(clip.parent), "--detector", command("work")]) == 0
+    assert "2 takes: 2 detected, 0 there already, 0 failed" in capsys.readouterr().out
+    names = {"run.keypoints.json", "run.mp4", "walk.keypoints.json", "walk.mp4"}
+    assert set(tree(clip.parent)) == names
+
+
+def test_a_take_that_names_its_keypoints_gets_them_there(tmp_path: Path) -> None:
+    """So that the conversion reads what was detected."""
+    take = write_synthetic_take(tmp_path / "take", FRAMES)
+    fields = json.loads((take / "take.json").read_text())
+    (take / "take.json").write_text(json.dumps({**fields, "keypoints": "found.json"}))
+    assert main(["detect", str(take), "--detector", command("work"), "--quiet"]) == 0
+    assert (take / "found.json").is_file() and not (take / "keypoints.json").exists()
+    assert len(read_take(take, whole=True).keypoints) == 1
 
 
 def test_ctrl_c_ends_the_program_too(clip: Path) -> None:

@@ -10,7 +10,7 @@ from keymark.core.body import posture_fields
 from keymark.core.files import json_file, safe_path
 from keymark.core.footage import camera_fields
 from keymark.core.footage.clips import image_sequence
-from keymark.core.footage.keypoints import keypoint_file, openpose_folder
+from keymark.core.footage.keypoints import frame_folder, keypoint_file
 from keymark.core.library import library_file
 from keymark.core.retarget import retarget_record
 from keymark.core.retarget.maps import character_map_file
@@ -34,7 +34,7 @@ LIMITS = {
     f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{retarget_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{keypoint_file.LARGEST_BYTES // MIB} MiB; "
-    f"{openpose_folder.LARGEST_FILE_BYTES // MIB} MiB": "a file of keypoints; a file of a detector's folder",
+    f"{frame_folder.LARGEST_FILE_BYTES // MIB} MiB": "a file of keypoints; a file of a detector's folder",
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from keymark.core.footage.keypoints import detected_frames, frame_numbers, keypoint_file, openpose_folder
+from keymark.core.footage.keypoints import detected_frames, frame_folder, frame_numbers, keypoint_file
 from keymark.core.footage.keypoints.body_points import BODY_POINTS
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
 from keymark.core.footage.keypoints.layouts import LAYOUTS
@@ -14,7 +14,7 @@ from keymark.core.footage.keypoints.layouts import LAYOUTS
 MIB = 2**20
 LIMITS = {
     "a file": f"{keypoint_file.LARGEST_BYTES // MIB} MiB",
-    "a file of a detector's folder": f"{openpose_folder.LARGEST_FILE_BYTES // MIB} MiB",
+    "a file of a detector's folder": f"{frame_folder.LARGEST_FILE_BYTES // MIB} MiB",
     "frames; numbered files of a folder": f"{frame_numbers.MOST_FRAMES}",
     "people in a frame": f"{detected_frames.MOST_PEOPLE}",
     "points of all people in all frames": f"{detected_frames.MOST_POINTS}",

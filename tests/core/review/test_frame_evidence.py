@@ -60,6 +60,16 @@ def test_points_that_are_left_out_all_along_are_missed_by_nobody() -> None:
     assert np.isnan(keypoints.misfit[:, 0]).all() and np.isfinite(keypoints.misfit[:, 1]).all()
 
 
+def test_points_that_are_seen_in_few_frames_are_not_missed_in_the_others() -> None:
+    """Clicks in single frames; one that is seen in most is hidden in the rest."""
+    keypoints = of_names(("wrist.L", "knee.R", "head"))
+    keypoints.confidence[1:, 0] = keypoints.confidence[4:, 1] = 0.0
+    keypoints.confidence[:, 2] = 0.0
+    assert keypoints.parts() == ("wrist.L", "knee.R")
+    assert keypoints.quality()[:, 0].tolist() == [0.9, *[1.0] * 5]
+    assert keypoints.quality()[:, 1].tolist() == [*[0.9] * 4, 0.0, 0.0]
+
+
 def test_what_is_thrown_out_has_no_say_in_the_confidence() -> None:
     """Yet it is told where the motion and the keypoint differ."""
     keypoints = made_up_keypoints(FRAMES)
@@ -93,7 +103,8 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
 
 def test_contours_are_evidence_as_markers_are() -> None:
     """Their segments come after the markers, before the body points; keypoints may show what they miss."""
-    contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), np.full((FRAMES, 2), 7.0))
+    far, nothing = np.full((FRAMES, 2), 7.0), ContourSight.none(FRAMES)
+    contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), far, nothing.lines)
     keypoints = of_names(("elbow.L", "wrist.L"))
     none = MarkerSight((), np.zeros((FRAMES, 0)), np.zeros((FRAMES, 0)))
     alike = np.ones(FRAMES)

@@ -63,9 +63,11 @@ def test_a_review_without_weak_frames_comes_back() -> None:
 def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
     """The rest is as it was; one that lost a part of its keypoints is no review."""
     arrays = made_up_review().to_arrays()
-    old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name != "weak_point"}
+    new = ("weak_point", "contours")
+    old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name not in new}
     again = Review.from_arrays(old)
     assert again.keypoints.names == () and again.keypoints.seen.shape == (13, 0, 2)
+    assert again.contours.shape == (13, 0, 4, 2)
     assert again.weak_frames == made_up_review().weak_frames
     with pytest.raises(KeyError):
         Review.from_arrays({name: value for name, value in arrays.items() if name != "keypoint_swapped"})
@@ -131,6 +133,7 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
     found = run(review(partly, result, np.arange(frames) + 1.0))
     assert len(found.marker_names) == (5 if "markers" in kinds else 0)
     assert found.observed.shape == found.predicted.shape
+    assert (found.contours.shape[1] > 0) == (kinds == ("contours",))
     assert found.keypoints.names == (names if "keypoints" in kinds else ())
     if "keypoints" in kinds:
         assert np.nanmedian(found.keypoints.distance_px) < 3.0
@@ -143,8 +146,11 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
     for said in used.keypoints:
         assert said.points == names and 0.5 < said.believed <= 1.0
     if used.markers:
-        filtered = used_evidence(run(reconstruct(partly, "ekf", result.reading)))
+        by_filter = run(reconstruct(partly, "ekf", result.reading))
+        filtered = used_evidence(by_filter)
         assert (filtered.markers, filtered.keypoints, filtered.contours) == (used.markers, (), False)
+        beside = run(review(partly, by_filter, np.arange(frames) + 1.0)).keypoints
+        assert beside.names == names and np.nanmedian(beside.distance_px) < 6.0 and not beside.swapped.any()
     assert same(Review.from_arrays(found.to_arrays()), found)
 
 

@@ -33,7 +33,9 @@ RECORD = ConversionRecord(
     weak_frames=(3,),
     notes=("A note.", "\u00c4rger \U0001f3ac"),
     files={"motion.json": "ab" * 32, "report/overlay.png": "cd" * 32},
-    evidence=UsedEvidence(("trunk",), (UsedKeypoints("a detector", ("nose", "wrist.L"), 0.97),), False, True),
+    evidence=UsedEvidence(
+        ("trunk",), (UsedKeypoints("a detector", ("nose", "wrist.L"), 0.97, 0.1),), False, True
+    ),
 )
 
 
@@ -102,6 +104,7 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
         r"keypoints\[0\]: points is \['tail'\]",
     ),
     (lambda v: v["evidence"]["keypoints"][0].update(believed=2), r"keypoints\[0\]: believed is 2"),
+    (lambda v: v["evidence"]["keypoints"][0].pop("swapped"), r"keypoints\[0\]: swapped is missing"),
 ]
 
 

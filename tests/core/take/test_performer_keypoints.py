@@ -157,7 +157,7 @@ def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:
     found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
     assert not found.seen.any()
     (note,) = found.notes
-    assert "most posed keyframes" in note and "left out" in note
+    assert "most of the posed keyframes" in note and "left out" in note
 
 
 def test_what_a_person_placed_is_taken_as_it_is(take: Take) -> None:

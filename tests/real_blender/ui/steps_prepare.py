@@ -1,5 +1,7 @@
 """The session's first three steps: footage, markers, actor."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 from driver import Steps, expect, turns, until
@@ -43,8 +45,9 @@ def opened(person: Person, reconstructed: bool) -> Steps[None]:
 
 def footage(person: Person) -> Steps[None]:
     """Load the clip by the file browser, cancelled once, and set the camera up as it stood."""
-    yield from person.changes_nothing("cancelling the file browser", lambda: _browse(person, "ESC"))
-    yield from person.undoable("loading the footage", lambda: _browse(person, "RET"))
+    clip = "keymark.load_footage", person.known.clip
+    yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *clip, "ESC"))
+    yield from person.undoable("loading the footage", lambda: browse(person, *clip, "RET"))
     take, known = person.take, person.known
     expect(take.clip is not None and take.clip.frame_duration > 1, "the footage was not loaded")
     expect(person.scene.frame_end == known.frame_start + take.clip.frame_duration - 1, "the range is another")
@@ -114,16 +117,16 @@ def actor(person: Person) -> Steps[None]:
     yield from person.undoable("applying lengths", lambda: person.hands.invoke("keymark.apply_lengths"))
 
 
-def _browse(person: Person, key: str) -> Steps[None]:
-    """Open the file browser by its button, go to the clip, and press a key there."""
+def browse(person: Person, command: str, file: Path, key: str) -> Steps[None]:
+    """Open the file browser by its button, go to a file, and press a key there."""
     bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
-    yield from person.hands.click_button("keymark.load_footage")
+    yield from person.hands.click_button(command)
     kinds = {"FILE_BROWSER"}
     yield from until(lambda: kinds & {a.type for a in person.hands.window.screen.areas}, "the file browser")
     browser = person.hands.area("FILE_BROWSER").spaces.active
     yield from until(lambda: browser.params is not None, "the file browser's folder")
-    browser.params.directory = str(person.known.clip.parent).encode()
-    browser.params.filename = person.known.clip.name
+    browser.params.directory = str(file.parent).encode()
+    browser.params.filename = file.name
     yield from turns(5)
     yield from person.hands.move_over("FILE_BROWSER")
     if key == "RET":
@@ -136,12 +139,17 @@ def _browse(person: Person, key: str) -> Steps[None]:
 def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     """The eyedropper's button, then a click on a pixel of the footage."""
     yield from person.hands.click_button("keymark.pick_marker_color")
+    yield from click_pixel(person, pixel)
+    yield from person.wait_for_job()
+
+
+def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
+    """Click on a pixel of the footage in the viewport."""
     area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
     view = keymark("operators.shell.footage_view").footage_view(person.scene, person.take, area, region)
     expect(view is not None, "the viewport does not show the footage")
     x, y = view.to_region(pixel)
     yield from person.hands.click(region.x + x, region.y + y)
-    yield from person.wait_for_job()
 
 
 def _cancel_eyedropper(person: Person) -> Steps[None]:

@@ -26,7 +26,7 @@ from _keypoints import (
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
-from keymark.core.footage.keypoints import detected_frames, openpose_folder
+from keymark.core.footage.keypoints import detected_frames, frame_folder
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
 
 VALUES: dict[str, Callable[[], Any]] = {
@@ -120,7 +120,7 @@ def test_all_points_together_are_bounded(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_numbered_files_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A folder of other data is not read to its end."""
-    monkeypatch.setattr(openpose_folder, "MOST_FRAMES", 5)
+    monkeypatch.setattr(frame_folder, "MOST_FRAMES", 5)
     with pytest.raises(InputError, match="more than 5 numbered files"):
         read_keypoints(write_openpose(tmp_path / "json", moving_person(BODY25)), FRAMES, SIZE)
 

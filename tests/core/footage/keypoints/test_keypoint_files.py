@@ -62,7 +62,7 @@ def test_openpose_folder_with_holes(tmp_path: Path) -> None:
     people = read(write_openpose(tmp_path / "json", person, 0, holes=(3, 4, 11)))
     assert_shows(people, person, BODY25, [0, 1, 2, 5, 6, 7, 8, 9, 10])
     (note,) = people.notes
-    assert "lacks 3 of 12 frames" in note
+    assert note.startswith("json: lacks 3 of 12 frames")  # the same wherever the folder lies
 
 
 def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
@@ -73,7 +73,7 @@ def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
         read(folder, 13)
     with pytest.raises(InputError, match="ends with frame 18"):
         read(folder, 30)
-    with pytest.raises(InputError, match=r"before the clip's last.*a share of 2"):
+    with pytest.raises(InputError, match=r"before the clip's last.*one for every 2"):
         read(write_openpose(tmp_path / "half", person), 24)
     with pytest.raises(InputError, match="must begin with 0, 1 or"):
         read(folder, None)
@@ -89,6 +89,33 @@ def test_a_few_frames_more_or_less_are_noted(tmp_path: Path) -> None:
     assert "goes on to frame 11" in longer.notes[0]
     assert_shows(shorter, person, BODY25, list(range(FRAMES)))
     assert len(shorter.frames) == FRAMES + 2 and "lacks 2" in shorter.notes[0]
+
+
+def test_hands_of_openpose_follow_the_body(tmp_path: Path) -> None:
+    """Where one was found in some frame; in the others, and on the other side, it is not seen."""
+    person, hand = moving_person(BODY25), np.round(moving_person(BODY25, seed=1)[:, :21], 3)
+    folder = write_openpose(tmp_path / "json", person)
+    for index in (4, 5):
+        value = openpose_frame([person[index]])
+        value["people"][0]["hand_right_keypoints_2d"] = hand[index].ravel().tolist()
+        value["people"][0]["hand_left_keypoints_2d"] = []
+        write(folder / f"clip_{index:012d}_keypoints.json", value)
+    people = read(folder)
+    assert people.names[:25] == BODY25.names
+    assert people.names[25:] == tuple(
+        f"{name}.{side}" for side in "LR" for name in ("thumb", "index", "pinky")
+    )
+    np.testing.assert_array_equal(people.frames[4].pixel[0, 28:], hand[4, [2, 5, 17], :2])
+    assert np.isnan(people.frames[4].pixel[0, 25:28]).all() and np.isnan(people.frames[3].pixel[0, 25:]).all()
+    np.testing.assert_array_equal(people.frames[3].pixel[0, :25], person[3, :, :2])
+
+
+def test_mmpose_of_an_image_sequence(tmp_path: Path) -> None:
+    """One file an image, which holds its people."""
+    person = moving_person(COCO17)
+    for index, entry in enumerate(mmpose_value(person)["instance_info"]):
+        write(tmp_path / f"img_{index + 1:04d}.json", [] if index == 2 else entry["instances"])
+    assert_shows(read(tmp_path), person, COCO17, [0, 1, *range(3, FRAMES)])
 
 
 @pytest.mark.parametrize("as_list", [False, True])
@@ -295,6 +322,7 @@ def broken(tmp_path: Path, kind: str) -> Path:
         "one picture of MMPose": mmpose_value(person)["instance_info"][0]["instances"],
         "of no kind": {"poses": []},
         "a text": "keypoints",
+        "an empty list": [],
         "nobody": value | {"frames": [None] * FRAMES},
         "nobody scored": value | {"frames": (person * 0.0).tolist()},
         "empty": value | {"frames": []},
@@ -321,6 +349,7 @@ def broken(tmp_path: Path, kind: str) -> Path:
         ("one picture", "one frame of OpenPose, whose folder"),
         ("one picture of MMPose", "one picture of MMPose"),
         ("of no kind", "the fields .'poses'., which no known format has"),
+        ("an empty list", "is empty; it must be"),
         ("a text", "it must be Keymark's own file"),
         ("nobody", "nobody is seen in any of its 12 frames"),
         ("nobody scored", "no point has a score above 0|nobody"),
@@ -328,7 +357,7 @@ def broken(tmp_path: Path, kind: str) -> Path:
         ("shares", "must be pixels of the clip"),
         ("larger picture", "outside the clip's picture"),
         ("in space", "points in space"),
-        ("half the frames", "has 6 frames, the clip 12.*a share of 2"),
+        ("half the frames", "has 6 frames, the clip 12.*one for every 2"),
         ("far", "a number beyond 1e"),
     ],
 )
