@@ -70,6 +70,8 @@ class WholeClipResult:
     """The problem it solves."""
     contours: ContourEvidence | None
     """The look of performer and background; None where no background can be trusted."""
+    outlined: BoolArray | None = None
+    """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -243,6 +245,9 @@ def _solve_windows(
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
+    outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
+    if earlier is None and contours is not None and contours.along is not None:
+        outlined = np.zeros((problem.frames, len(contours.model.parts.segments)), dtype=bool)
     residual_px = np.empty(problem.observed.quality.shape) if earlier is None else earlier.residual_px.copy()
     postures: list[Posture] = []
     for window, begun, ended in stretches:
@@ -252,10 +257,12 @@ def _solve_windows(
             yield from scaled(part.follow_contours(contours), first, last)
         inner = slice(window.keep_first, window.keep_last)
         posture, covariance[inner], residual_px[inner] = yield from scaled(part.solution(), last, last)
+        if outlined is not None:
+            outlined[inner] = part.outlined()
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

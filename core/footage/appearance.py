@@ -44,7 +44,7 @@ STEADY_SHARE = 0.9
 """Share of static pixels in a static background."""
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
-LEAST_KNOWN_SHARE = 0.2
+LEAST_KNOWN_SHARE = 0.5
 """Least share of static pixels among all, where each is judged by itself."""
 ALIKE = 0.5
 """Least overlap (Bhattacharyya's coefficient) of colors that are taken for one garment's on both sides."""
