@@ -70,8 +70,8 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     if followed or not take.contours or take.markers or take.keypoints:
         return ()
     return (
-        "contours were not followed: too little of the background stands still; between keyframes the motion is "
-        "their interpolation alone; hold the camera still, or add keypoints or markers",
+        "contours were not followed: too little of the background stands still; between keyframes the motion "
+        "is their interpolation alone; hold the camera still, or add keypoints or markers",
     )
 
 

@@ -68,7 +68,7 @@ def test_five_markers_are_looked_around_narrowly_and_fewer_are_not() -> None:
 
 
 def test_looks_narrow_down_to_the_markers_own() -> None:
-    """Each look is no wider than the one before, the last as with markers; nearer performers take wider ones."""
+    """Each look is no wider than the one before, the last as with markers; near performers take wide ones."""
     looks = contour_schedule(BODY, CAMERA, 1, (), TRUTH).looks
     assert looks[-1] == NARROW
     assert [look.reach for look in looks] == sorted((look.reach for look in looks), reverse=True)
