@@ -1,11 +1,11 @@
 """An actor's lengths from one frame in which the performer stands, the body height and two clicks.
 
-The height between crown and ground fixes distance and place. What the markers show beyond that is weighed
-against average proportions, which vary by four to five percent between people: maximum a posteriori over
-posture, lengths and the markers' placements on their segments at once, with the height held. A sleeve may
-begin anywhere on its segment, so a region's own extent says little of the segment's length; where the regions
-lie to each other says more. Arms that point anywhere say nothing of their lengths; stretched sideways, they
-do.
+The height between crown and ground fixes distance and place. What markers and keypoints show beyond that is
+weighed against average proportions, which vary by four to five percent between people: maximum a posteriori
+over posture, lengths and the markers' placements on their segments at once, with the height held. A sleeve
+may begin anywhere on its segment, so a region's own extent says little of the segment's length; where the
+regions lie to each other says more. Arms that point anywhere say nothing of their lengths; stretched
+sideways, they do.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,9 @@ from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..body.standing_posture import ARMS_LOWERED_RAD, standing_height_m, standing_posture
 from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
+from ..observation.keypoints import USUAL_PLACES, KeypointModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from .calibration import (
     LARGEST,
@@ -34,7 +36,9 @@ from .calibration import (
     placements_from,
 )
 from .performer_placement import ground_place
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, limb_widths
+from .single_frame import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
+from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
+from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import student_weight
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
@@ -64,8 +68,6 @@ STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
 MOST_DEVIATIONS = 3.0
 """Largest deviation of trunk or legs, in standard deviations, of someone who stands."""
-MISPLACED_WIDTHS, MISPLACED_PX = 1.5, 4.0
-"""Largest distance of a standing person's marker from its prediction, in limb half-widths or pixels."""
 ARMS_RAISED_RAD = (0.0, 0.65, 1.3)
 """Starts of the descent: arms hanging, half raised and stretched out."""
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
@@ -82,7 +84,7 @@ class MeasuredActor:
     spread: dict[str, float]
     """Standard deviation of each of the lengths `MEASURED`, as a share of it."""
     stands: bool
-    """Whether the markers fit someone who stands."""
+    """Whether markers and keypoints fit someone who stands."""
     distance_m: float
     """From the camera to the ground between the feet [m]."""
 
@@ -96,6 +98,7 @@ def measure_standing(
     regions: RegionTracks | None = None,
     segments: tuple[str, ...] = (),
     arms_stretched: bool = False,
+    keypoints: Keypoints | None = None,
 ) -> MeasuredActor:
     """Measure the lengths and the place of a performer who stands.
 
@@ -105,10 +108,10 @@ def measure_standing(
         stature_m: Body height [m].
         crown_px: (2,) top of the head in the picture [px].
         ground_px: (2,) the ground between the feet [px].
-        regions: The markers' regions in this frame, as tracks of one frame; without them the lengths are
-            average ones.
+        regions: The markers' regions in this frame, as tracks of one frame; None for none.
         segments: The segment each marker is bound to.
         arms_stretched: Whether the performer holds the arms out sideways, across the view.
+        keypoints: Those of this frame alone; without them and regions the lengths are average ones.
 
     Raises:
         InputError: The height is out of range, or the two points cannot be a person's.
@@ -117,7 +120,10 @@ def measure_standing(
     place = ground_place(camera, frame, stature_m, crown_px, ground_px)
     heading = facing_rad(camera.pose(frame)[0][:, 2])
     distance_m = float(np.linalg.norm(place - camera.pose(frame)[1]))
-    if regions is None or not regions.visible.any():
+    keypoints = Keypoints.none(1) if keypoints is None else keypoints
+    regions = RegionTracks.unmarked(np.zeros(1), camera.resolution) if regions is None else regions
+    segments = segments if regions.names else ()
+    if not (regions.visible.any() or keypoints.seen.any()):
         body = Body(average)
         unknown = dict.fromkeys(MEASURED, PROPORTION_STD)
         return MeasuredActor(body, standing_posture(body, place, heading), unknown, True, distance_m)
@@ -130,6 +136,8 @@ def measure_standing(
         heading,
         ObservedRegions.from_tracks(regions),
         segments,
+        ObservedKeypoints.of(keypoints),
+        keypoints.names,
         arms_stretched,
     )
     found = [problem.descend(raised) for raised in ((0.0,) if arms_stretched else ARMS_RAISED_RAD)]
@@ -152,6 +160,9 @@ class _Problem:
     heading: float
     observed: ObservedRegions
     segments: tuple[str, ...]
+    points: ObservedKeypoints
+    point_names: tuple[str, ...]
+    """(N,) the body points that the keypoints show."""
     arms_stretched: bool
 
     @property
@@ -188,9 +199,15 @@ class _Problem:
     def model(self, x: Array) -> RegionModel:
         """The markers on that body."""
         average = tuple(MarkerPlacement.usual(segment) for segment in self.segments)
+        if not average:
+            return RegionModel(self.body(x), self.camera, ())
         change = x[HUMAN.dof_count + len(MEASURED) :].reshape(len(average), -1)
         values = np.clip(placement_values(average) + change, SMALLEST, LARGEST)
         return RegionModel(self.body(x), self.camera, placements_from(average, values))
+
+    def keypoint_model(self, x: Array) -> KeypointModel:
+        """The keypoints on that body, at their usual places."""
+        return KeypointModel.usual(self.body(x), self.camera, self.point_names)
 
     def descend(self, raised_rad: float) -> Array:
         """Gauss-Newton with annealed image noise from arms raised by so much."""
@@ -206,11 +223,12 @@ class _Problem:
 
     def cost(self, x: Array) -> float:
         """Negative logarithm of the probability of x, up to a constant."""
-        residual, information, height = self._residual(x)
-        degrees = RegionNoise().degrees
-        squared = (residual**2 * information).sum(-1) / (degrees * FEATURES)
-        image = 0.5 * degrees * FEATURES * np.log1p(squared).sum()
-        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * height**2)
+        rows = self._rows(x)
+        degrees, image = RegionNoise().degrees, 0.0
+        for residual, information in rows.groups:
+            size = degrees * residual.shape[-1]
+            image += 0.5 * size * np.log1p((residual**2 * information).sum(-1) / size).sum()
+        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * rows.height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
         """The result at the best x."""
@@ -230,15 +248,35 @@ class _Problem:
         apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
         width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
         explained = np.nan_to_num(apart) <= np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX)
+        misfits = np.nan_to_num(np.linalg.norm(self._off_px(x)[0], axis=-1))
+        near = misfits <= np.maximum(MISPLACED_M * self._scale, MISPLACED_PX)
+        sure = self.points.confidence[0] >= SURE
         upright = [name.split(".")[0] in UPRIGHT_PARTS for name in HUMAN.dof_names]
         deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
-        return bool(explained.all() and deviations.max() <= MOST_DEVIATIONS)
+        return bool(explained.all() and near[sure].all() and deviations.max() <= MOST_DEVIATIONS)
 
     def _pose(self, x: Array, model: RegionModel) -> Pose:
-        return model.body.pose(self.posture(x, model.body))
+        return self._pose_of(x, model.body)
 
-    def _residual(self, x: Array) -> tuple[Array, Array, float]:
-        """Rows (M, 5) [px], their information (M, 5), and the height's residual in standard deviations."""
+    def _off_px(self, x: Array) -> tuple[Array, Array]:
+        """Differences (N, 2) of predicted and seen keypoints [px], and their variances (N,) [px²]."""
+        model = self.keypoint_model(x)
+        off = (model.pixels(self._pose_of(x, model.body), self.frame) - self.points.pixel)[0]
+        places = [USUAL_PLACES[name] for name in self.point_names]
+        std_m = np.array([np.hypot(place.place_std_m, place.error_std_m) for place in places])
+        sure = np.maximum(self.points.confidence[0], LEAST_CONFIDENCE)
+        return off, (self._scale * std_m / sure) ** 2 + PIXEL_STD**2
+
+    @property
+    def _scale(self) -> float:
+        """Pixels of a meter at the performer."""
+        depth = float(self.camera.depth(self.place, int(self.frame[0])))
+        return self.camera.focal_px / max(depth, 0.1)
+
+    def _pose_of(self, x: Array, body: Body) -> Pose:
+        return body.pose(self.posture(x, body))
+
+    def _rows(self, x: Array) -> "_Rows":
         model = self.model(x)
         pose = self._pose(x, model)
         predicted = model.evaluate(pose, self.frame)
@@ -249,39 +287,78 @@ class _Problem:
         usable = np.isfinite(residual).all(-1) & (predicted.visible > noise.least_visible)
         trust = np.where(usable, np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0), 0.0)
         height = np.log(standing_height_m(model.body) / self.height_m) / HEIGHT_STD
-        return np.nan_to_num(residual[0]), (trust[..., None] / variance)[0], float(height)
+        off, spread = self._off_px(x)
+        seen = np.isfinite(off).all(axis=-1)
+        return _Rows(
+            np.nan_to_num(residual[0]),
+            (trust[..., None] / variance)[0],
+            np.nan_to_num(off),
+            np.where(seen, 1.0 / spread, 0.0)[:, None],
+            float(height),
+        )
 
     def _equations(self, x: Array, temperature: float) -> tuple[Array, Array]:
         """Normal matrix (N, N) and gradient (N,)."""
-        residual, information, height = self._residual(x)
-        squared = (residual**2 * information / temperature).sum(-1)
-        weight = information / temperature * student_weight(squared, RegionNoise().degrees, FEATURES)[:, None]
-        by_x, height_by_x = self._jacobians(x, residual, height)
-        rows = by_x.reshape(-1, len(x))
-        normal = (rows.T * weight.ravel()) @ rows + np.diag(self.std**-2.0)
+        rows = self._rows(x)
+        *by_x, height_by_x = self._jacobians(x, rows)
+        normal, gradient = np.zeros((len(x), len(x))), np.zeros(len(x))
+        for (residual, information), jacobian in zip(rows.groups, by_x, strict=True):
+            squared = (residual**2 * information / temperature).sum(-1)
+            trust = student_weight(squared, RegionNoise().degrees, residual.shape[-1])[:, None]
+            weight = np.broadcast_to(information / temperature * trust, residual.shape)
+            flat = jacobian.reshape(-1, len(x))
+            normal += (flat.T * weight.ravel()) @ flat
+            gradient += flat.T @ (weight * residual).ravel()
+        normal += np.diag(self.std**-2.0)
         normal += np.outer(height_by_x, height_by_x)
-        gradient = rows.T @ (weight * residual).ravel() + x / self.std**2 + height_by_x * height
-        return normal, gradient
+        return normal, gradient + x / self.std**2 + height_by_x * rows.height
 
-    def _jacobians(self, x: Array, residual: Array, height: float) -> tuple[Array, Array]:
-        """Jacobians of the rows (M, 5, N) and of the height (N,)."""
-        model = self.model(x)
+    def _jacobians(self, x: Array, rows: "_Rows") -> tuple[Array, Array, Array]:
+        """Jacobians of the regions' rows (M, 5, X), the keypoints' (N, 2, X) and the height (X,)."""
+        model, points = self.model(x), self.keypoint_model(x)
         pose = self._pose(x, model)
         predicted = model.evaluate(pose, self.frame, jacobian=True)
         _, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
-        by_x, by_height = np.zeros((*residual.shape, len(x))), np.zeros(len(x))
+        by_region, by_point = (np.zeros((*residual.shape, len(x))) for residual, _ in rows.groups)
+        by_height = np.zeros(len(x))
         dofs = HUMAN.dof_count
-        by_x[..., :dofs] = jacobian[0] @ self.standing(model.body).plus_jacobian(x[:dofs])
+        turned = self.standing(model.body).plus_jacobian(x[:dofs])
+        by_region[..., :dofs] = jacobian[0] @ turned
+        if self.point_names:
+            by_point[..., :dofs] = points.pixels_jacobian(pose, self.frame)[0] @ turned
         for column in range(dofs, dofs + len(MEASURED)):
             nudged = x.copy()
             nudged[column] += LENGTH_DIFFERENCE
-            other, _, taller = self._residual(nudged)
-            by_x[..., column] = (other - residual) / LENGTH_DIFFERENCE
-            by_height[column] = (taller - height) / LENGTH_DIFFERENCE
-        known = KnownFrames(pose, self.frame, self.observed)
-        by_place = placement_jacobian(model.body, self.camera, known, model)[0]  # (M, 5, P)
-        for marker in range(len(by_place)):
-            first = dofs + len(MEASURED) + marker * by_place.shape[-1]
-            by_x[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
-        return np.nan_to_num(by_x), by_height
+            other = self._rows(nudged)
+            by_region[..., column] = (other.region - rows.region) / LENGTH_DIFFERENCE
+            by_point[..., column] = (other.point - rows.point) / LENGTH_DIFFERENCE
+            by_height[column] = (other.height - rows.height) / LENGTH_DIFFERENCE
+        if self.segments:
+            known = KnownFrames(pose, self.frame, self.observed)
+            by_place = placement_jacobian(model.body, self.camera, known, model)[0]  # (M, 5, P)
+            for marker in range(len(by_place)):
+                first = dofs + len(MEASURED) + marker * by_place.shape[-1]
+                by_region[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
+        return np.nan_to_num(by_region), np.nan_to_num(by_point), by_height
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Residuals, and the information of each."""
+
+    region: Array
+    """(M, 5) of the markers' regions [px]."""
+    region_information: Array
+    """(M, 5) [1/px²]."""
+    point: Array
+    """(N, 2) of the keypoints [px]."""
+    point_information: Array
+    """(N, 1) [1/px²]."""
+    height: float
+    """Of the body height, in standard deviations."""
+
+    @property
+    def groups(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Residuals and information of regions and keypoints."""
+        return (self.region, self.region_information), (self.point, self.point_information)

@@ -1,8 +1,9 @@
 """Placement of a standing performer before the camera, before any keyframe is posed.
 
-One region fixes a line of sight and, by its size, a distance good to about a tenth; a camera whose pose is
-known in a room with a floor at z = 0 says more, where it looks down on the performer. Both are weighed
-against each other. Without any region the body is placed so that the picture holds it well.
+One region fixes a line of sight and, by its size, a distance good to about a tenth, as keypoints of trunk and
+legs do; a camera whose pose is known in a room with a floor at z = 0 says more, where it looks down on the
+performer. Both are weighed against each other. Where nothing is seen the body is placed so that the picture
+holds it well.
 """
 
 import numpy as np
@@ -10,11 +11,15 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, BoolArray
 from ..body.heading import facing_rad
+from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.skeleton import SIDES
 from ..body.standing_posture import hip_height_m, standing_posture
 from ..errors import InputError
 from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.principal_keypoints import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import MarkerPlacement, RegionModel
 
@@ -28,6 +33,17 @@ bend)."""
 AGREEING = 1.5
 """Largest difference, in standard deviations, of sizes that agree on a distance."""
 TRUNK = ("trunk", "chest", "pelvis")
+PAIR_SPANS = {("shoulder", "hip"): 0.12, ("hip", "ankle"): 0.1, ("shoulder", "ankle"): 0.08}
+"""Standard deviation of a distance by that of two pairs of keypoints in the picture, as a share: trunks lean,
+knees bend, and detectors have hips and shoulders elsewhere."""
+LIMB_SPANS = {
+    ("hip", "knee"): 0.12,
+    ("knee", "ankle"): 0.1,
+    ("shoulder", "elbow"): 0.15,
+    ("elbow", "wrist"): 0.15,
+}
+"""The same by single limbs, of which one lies across the view even in someone who bends or sits."""
+_TRUNK_POINTS = np.array([name.split(".")[0] in ("hip", "shoulder") for name in HUMAN.point_names])
 FLOOR_STD_M = 0.05
 """Standard deviation of the soles' height above the floor [m]."""
 FLOOR_DOUBTED = 3.0
@@ -43,6 +59,7 @@ def place_standing(
     frame: int = 0,
     regions: RegionTracks | None = None,
     segments: tuple[str, ...] = (),
+    keypoints: Keypoints | None = None,
 ) -> Posture:
     """A body that stands upright where the performer is, facing the camera.
 
@@ -53,6 +70,7 @@ def place_standing(
         regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
             goes to the picture's middle.
         segments: The segment each marker is bound to.
+        keypoints: Those of this frame alone; markers are not asked where its hips or shoulders are seen.
 
     Returns:
         A single posture.
@@ -60,6 +78,9 @@ def place_standing(
     rotation, location = camera.pose(frame)
     heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
     standing = standing_posture(body, heading_rad=heading)
+    seen = None if keypoints is None else principal_keypoints(keypoints).pixel[0]
+    if seen is not None and np.isfinite(seen[_TRUNK_POINTS]).any():
+        return _on_floor(*_by_keypoints(body, camera, frame, standing, seen), standing, body)
     known = _usable(regions, segments)
     if regions is None or not known.any():
         return _in_the_middle(body, camera, frame, standing)
@@ -78,7 +99,52 @@ def place_standing(
             segments, known, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
         )
         distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
-    by_size = location + distance * direction - offset
+    return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
+
+
+def _by_keypoints(
+    body: Body, camera: Camera, frame: int, standing: Posture, seen: Array
+) -> tuple[Array, Array, float]:
+    """Hips by the size of the principal points `seen` (P, 2) [px], line of sight and distance."""
+    known = _TRUNK_POINTS & np.isfinite(seen).all(axis=-1)
+    _, location = camera.pose(frame)
+    _, direction = camera.rays(_center(seen, known), frame)
+    distance, offset = _usual_distance(body, camera), np.zeros(3)
+    for _ in range(ROUNDS):
+        there = _at(standing, location + distance * direction)
+        shown, _ = camera.project(body.points(body.pose(there)), frame)
+        _, ray = camera.rays(_center(shown, known), frame)
+        offset = (ray - direction) * distance
+        ratio = _relative_span(shown, seen)
+        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
+    return location + distance * direction - offset, direction, distance
+
+
+def _relative_span(shown: Array, seen: Array) -> float:
+    """Ratio of the predicted size to the observed one, by trunk, legs and limbs; 1 without any."""
+    spans = [(_points(first), _points(second), error) for (first, second), error in PAIR_SPANS.items()]
+    for (first, second), error in LIMB_SPANS.items():
+        sides = zip(_points(first), _points(second), strict=True)
+        spans += [([near], [far], error) for near, far in sides]
+    logarithms, errors = [], []
+    for near, far, error in spans:
+        of_shown, of_seen = (
+            float(np.linalg.norm(pixel[near].mean(axis=0) - pixel[far].mean(axis=0)))
+            for pixel in (shown, seen)
+        )
+        if np.isfinite([of_shown, of_seen]).all():
+            logarithms.append(np.log(max(of_shown, 1.0) / max(of_seen, 1.0)))
+            errors.append(error)
+    return _largest_size(np.array(logarithms), np.array(errors)) if logarithms else 1.0
+
+
+def _points(part: str) -> list[int]:
+    """Indices of both sides' points, left first."""
+    return [HUMAN.point_names.index(f"{part}.{side}") for side in SIDES]
+
+
+def _on_floor(by_size: Array, direction: Array, distance: float, standing: Posture, body: Body) -> Posture:
+    """The standing body with hips where sizes have them, moved along the line of sight toward the floor."""
     along = _floor_step(float(by_size[2]) - hip_height_m(body), float(direction[2]), distance)
     return _at(standing, by_size + along * direction)
 
@@ -158,6 +224,11 @@ def _relative_size(
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
         logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
         errors = np.append(errors, LEGS_STD)
+    return _largest_size(logarithms, errors)
+
+
+def _largest_size(logarithms: Array, errors: Array) -> float:
+    """Ratio by all sizes that agree with the largest, given the logarithms of each one's ratio."""
     nearest = int(np.argmin(logarithms))
     fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
     return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))

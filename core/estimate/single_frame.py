@@ -1,17 +1,19 @@
-"""One frame's posture from that frame's marker regions: assisted posing.
+"""One frame's posture from that frame's marker regions and keypoints: assisted posing.
 
 Maximum a posteriori about a belief in the posture, by the same terms and steps as the whole clip's estimate.
-Five regions do not determine 34 degrees of freedom, and the image is ambiguous in depth; so several starts
-descend side by side, each as if it were a frame of its own, and the most probable result is taken. The
-believed posture is among the candidates, so the result is never less probable than it.
+Five regions or a dozen keypoints do not determine 34 degrees of freedom, and the image is ambiguous in depth;
+so several starts descend side by side, each as if it were a frame of its own, and the most probable result is
+taken. The believed posture is among the candidates, so the result is never less probable than it. Keypoints
+are tried with left and right exchanged as well.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
+from ..footage.keypoints.body_points import mirrored_point
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
@@ -19,7 +21,9 @@ from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
+from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
+from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from .terms.term import NormalEquations, total_cost
 
@@ -35,6 +39,12 @@ MISPLACED_WIDTHS = 1.5
 """A marker farther off than this many of its limb's half-widths is misplaced ..."""
 MISPLACED_PX = 4.0
 """... unless it is nearer than this [px]."""
+MISPLACED_M = 0.12
+"""A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
+SURE = 0.5
+"""Least confidence of a keypoint that is called misplaced."""
+EXCHANGED_COST = 3.0
+"""Cost of taking a detector's left for right: it is wrong in one frame of twenty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +59,14 @@ class FrameFit:
     """(M,) the same for the believed posture."""
     misplaced: tuple[int, ...]
     """Indices of the markers that the posture does not explain."""
+    keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
+    """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
+    keypoint_before_px: Array = field(default_factory=lambda: np.zeros(0))
+    """(N,) the same for the believed posture."""
+    misplaced_points: tuple[str, ...] = ()
+    """Body points of the keypoints that the posture does not explain."""
+    cost: float = 0.0
+    """Negative logarithm of its probability, up to a constant of the frame."""
 
 
 def fit_frame(
@@ -57,23 +75,47 @@ def fit_frame(
     belief: FramePrior,
     frame: int,
     noise: RegionNoise | None = None,
+    points: ObservedKeypoints | None = None,
 ) -> FrameFit:
     """The most probable posture of one frame.
 
     Args:
-        evidence: The markers' model, as calibrated on keyframes or of average proportions
+        evidence: The models of markers and keypoints, as calibrated on keyframes or of average proportions
             (`uncalibrated`).
         observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
         belief: Prior belief in the posture.
         frame: The frame's index in the clip, which a moving camera's pose depends on.
         noise: Noise of the regions' features.
+        points: The keypoints of this one frame, (1, N); None for none.
     """
-    descent = _Descent(evidence, observed, belief, frame, noise or RegionNoise())
-    return descent.fit()
+    noise = noise or RegionNoise()
+    fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
+    if points is None or not points.seen.any():
+        return fit
+    mirrored = _exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
+    other = _Descent(evidence, observed, belief, frame, noise, mirrored).fit()
+    return other if other.cost + EXCHANGED_COST < fit.cost else fit
+
+
+def _exchanged(
+    points: ObservedKeypoints, names: tuple[str, ...], sources: tuple[str, ...]
+) -> ObservedKeypoints:
+    """The keypoints with left and right exchanged; a point without a mirror image stays."""
+    known = list(zip(names, sources, strict=True))
+    other = [(mirrored_point(name), source) for name, source in known]
+    partner = [known.index(pair) if pair in known else own for own, pair in enumerate(other)]
+    return ObservedKeypoints(
+        points.pixel[:, partner], points.confidence[:, partner], points.depth_m[:, partner]
+    )
 
 
 def calibrated(
-    model: RegionModel, observed: ObservedRegions, keyframes: Posture, frame: IndexArray
+    model: RegionModel,
+    observed: ObservedRegions,
+    keyframes: Posture,
+    frame: IndexArray,
+    keypoints: KeypointEvidence | None = None,
+    points: ObservedKeypoints | None = None,
 ) -> KeyframeEvidence:
     """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
@@ -82,11 +124,15 @@ def calibrated(
         observed: Regions observed at the K keyframes.
         keyframes: The K postures.
         frame: (K,) their indices in the clip.
+        keypoints: Usual evidence of the N keypoints; None for none.
+        points: Those seen at the keyframes, (K, N).
     """
     if len(frame) < CALIBRATED_FROM:
-        return uncalibrated(model)
+        found = uncalibrated(model)
+        return found if keypoints is None else replace(found, keypoints=keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)
-    return run(read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame))
+    reading = read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame, keypoints, points)
+    return run(reading)
 
 
 def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:
@@ -107,7 +153,9 @@ class _Descent:
         belief: FramePrior,
         frame: int,
         noise: RegionNoise,
+        points: ObservedKeypoints | None,
     ) -> None:
+        self.keypoints, self.points = evidence.keypoints, points
         count = belief.starts.batch[0]
         self.model, self.observed = evidence.model, observed
         body = evidence.model.body
@@ -123,7 +171,7 @@ class _Descent:
             np.linalg.solve(factor, deviation.T).T,
             np.zeros((count, len(self.model.placements) * FEATURES)),
         )
-        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px)
+        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px, points)
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
@@ -155,9 +203,35 @@ class _Descent:
         residual = self._distances(posture)
         allowed = np.maximum(MISPLACED_WIDTHS * self.width_px[0], MISPLACED_PX)
         misplaced = np.flatnonzero(np.nan_to_num(residual) > allowed)
+        off_px, far_px = self._point_distances(posture)
         return FrameFit(
-            posture, residual, self._distances(self.believed[0]), tuple(int(m) for m in misplaced)
+            posture,
+            residual,
+            self._distances(self.believed[0]),
+            tuple(int(m) for m in misplaced),
+            off_px,
+            self._point_distances(self.believed[0])[0],
+            self._misplaced_points(off_px, far_px),
+            float(least[chosen]),
         )
+
+    def _point_distances(self, posture: Posture) -> tuple[Array, Array]:
+        """(N,) distances of the keypoints [px], and what `MISPLACED_M` is in the picture [px]."""
+        if self.points is None:
+            return np.zeros(0), np.zeros(0)
+        model, frame = self.keypoints.model, self.state.frame[:1]
+        pose = model.body.pose(Posture.stack([posture]))
+        depth = model.camera.depth(model.world(pose), frame[:, None])[0]
+        off = np.linalg.norm(model.pixels(pose, frame) - self.points.pixel, axis=-1)[0]
+        return off, MISPLACED_M * model.camera.focal_px / np.maximum(depth, 0.1)
+
+    def _misplaced_points(self, off_px: Array, far_px: Array) -> tuple[str, ...]:
+        if self.points is None:
+            return ()
+        sure = self.points.confidence[0] >= SURE
+        far = np.nan_to_num(off_px) > np.maximum(far_px, MISPLACED_PX)
+        names = (self.keypoints.model.names[index] for index in np.flatnonzero(far & sure))
+        return tuple(dict.fromkeys(names))
 
     def _distances(self, posture: Posture) -> Array:
         """(M,) of the centroids [px]."""

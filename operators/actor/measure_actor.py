@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..overlays.measuring import Clicks, show
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
@@ -107,7 +107,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         from .take_actor import has_keyframes, size_actor
 
         take = active_take(context.scene)
-        frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+        frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
         measured = measured_in_frame(
             frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
         )
@@ -119,7 +119,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "WARNING",
-                "The markers do not fit a performer who stands upright, so the lengths are little better "
+                "The footage does not fit a performer who stands upright, so the lengths are little better "
                 "than average; go to a frame in which the performer stands, and check the height",
             )
         else:

@@ -8,7 +8,7 @@ from ...core.body.kinematics import Body
 from ...core.errors import InputError
 from ..bridge.armature import build_armature
 from ..bridge.resize import set_lengths
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
 from ..shell.results import reading_of
 from ..shell.takes import footage_of
 from .properties import length_names, length_property
@@ -71,7 +71,7 @@ def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
 def performers_stance(
     scene: bpy.types.Scene, take: bpy.types.PropertyGroup, body: Body
 ) -> "tuple[Posture, bool] | None":
-    """Return the posture of a performer who stands in the current frame, and whether markers located them.
+    """Return the posture of a performer who stands in the current frame, and whether evidence located them.
 
     None without footage and camera, or if the current frame is not one of the footage's.
     """
@@ -81,7 +81,8 @@ def performers_stance(
         return None
     regions: RegionTracks | None = None
     try:
-        frame = frame_in_footage(footage_of(scene, take), marker_styles(take), reading_of(take))
+        frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
+        keypoints = frame.keypoints(body)
     except InputError:
         return None
     if frame.styles:
@@ -90,7 +91,8 @@ def performers_stance(
         except InputError:  # a color that is not found yet must not prevent building the actor
             regions = None
     seen = regions is not None and bool(regions.visible.any())
-    return posed_standing(frame, body, regions), seen
+    seen |= bool(keypoints.frame(frame.index).seen.any())
+    return posed_standing(frame, body, regions, keypoints), seen
 
 
 def has_keyframes(take: bpy.types.PropertyGroup) -> bool:

@@ -1,27 +1,32 @@
 """Fit an actor to one frame of the footage: from a scene to core's single-frame fit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
 from ...core.estimate.keyframe_evidence import uncalibrated
+from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
 from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame
+from ...core.estimate.terms.keypoints import ObservedKeypoints
 from ...core.estimate.terms.regions import ObservedRegions
+from ...core.footage.keypoints.keypoints import Keypoints
 from ...core.footage.marker_style import MarkerStyle
 from ...core.footage.reading import Reading
 from ...core.footage.reading_key import of_same_footage, reading_key
 from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
 from ...core.footage.single_frame_regions import regions_of_frame
 from ...core.observation.depths import DEPTH_STD_M
+from ...core.observation.keypoints import KeypointModel
 from ...core.observation.regions import MarkerPlacement, RegionModel
 from ...core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose, prior_from_standing
 from ...core.prior.keyframes import Keyframe
@@ -30,7 +35,9 @@ from .camera_from_scene import read_camera
 from .footage import Footage
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
+from .scene_performer import performers_keypoints
 
 STANDS_HERE = 1.5
 """Ratio of marker distances, shown body to one placed anew, above which the shown body is elsewhere."""
@@ -41,13 +48,19 @@ class FrameInFootage:
     """The scene's current frame as a frame of the footage."""
 
     footage: Footage
-    styles: tuple[MarkerStyle, ...]
+    evidence: SceneEvidence
+    """What is followed."""
     reading: Reading | None
     """An earlier reading of the clip, if it is of this footage and these markers."""
     clip_frames: Array
     """(F,) scene frame of every frame of the clip; estimated from its header where it was not read."""
     index: int
     """Index of the current frame in the clip."""
+
+    @property
+    def styles(self) -> tuple[MarkerStyle, ...]:
+        """The markers."""
+        return self.evidence.markers
 
     @property
     def segments(self) -> tuple[str, ...]:
@@ -66,23 +79,47 @@ class FrameInFootage:
         if self.reading is not None:
             return self.reading.tracks.frame(self.index)
         time_s = (float(self.clip_frames[self.index]) - self.footage.first_frame) / self.footage.rate
+        if not self.styles:
+            return self.tracks.frame(self.index)
         return regions_of_frame(self.footage.open(), time_s, self.styles, expected)
+
+    def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
+        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed.
+
+        Args:
+            body: The actor's.
+            keyframes: Those known, which tell the performer from other people.
+
+        Raises:
+            InputError: A file of keypoints cannot be used.
+        """
+        return performers_keypoints(
+            self.footage, self.evidence, self.clip_frames, body, keyframes, self.tracks
+        )
+
+    @property
+    def tracks(self) -> RegionTracks:
+        """The markers' regions in all frames where the clip was read, else those of no marker."""
+        if self.reading is not None:
+            return self.reading.tracks
+        time_s = (self.clip_frames - self.footage.first_frame) / self.footage.rate
+        return RegionTracks.unmarked(time_s, tuple(self.footage.clip.size))
 
 
 def frame_in_footage(
-    footage: Footage, styles: Sequence[MarkerStyle], reading: Reading | None = None
+    footage: Footage, evidence: SceneEvidence, reading: Reading | None = None
 ) -> FrameInFootage:
     """The scene's current frame in the footage.
 
     Args:
         footage: Clip and camera in their scene.
-        styles: The markers.
+        evidence: What is followed.
         reading: An earlier reading of the clip; used if it is of this footage and these markers.
 
     Raises:
         InputError: The clip is missing, or the current frame lies outside it.
     """
-    key = reading_key(footage.path, footage.rate, styles, None)
+    key = reading_key(footage.path, footage.rate, evidence.markers, None)
     if reading is not None and of_same_footage(reading.key, key):
         frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
     else:
@@ -99,13 +136,15 @@ def frame_in_footage(
         raise InputError(
             f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
         )
-    return FrameInFootage(footage, tuple(styles), reading, frames, index)
+    return FrameInFootage(footage, evidence, reading, frames, index)
 
 
-def posed_standing(frame: FrameInFootage, body: Body, regions: RegionTracks | None) -> Posture:
-    """A standing body at the performer's location in the frame."""
+def posed_standing(
+    frame: FrameInFootage, body: Body, regions: RegionTracks | None, keypoints: Keypoints
+) -> Posture:
+    """A standing body at the performer's location in the frame; `keypoints` (F, N) are of all frames."""
     camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
-    return place_standing(body, camera, 0, regions, frame.segments)
+    return place_standing(body, camera, 0, regions, frame.segments, keypoints.frame(frame.index))
 
 
 def fit_to_frame(
@@ -126,12 +165,14 @@ def fit_to_frame(
         matches: The matched keyframes; marker placements are not calibrated on these.
 
     Raises:
-        InputError: No marker is visible in the frame, or clip, camera or a bone is missing.
+        InputError: Neither a marker nor a keypoint is seen in the frame, or clip, camera or a bone is
+            missing.
     """
     body = read_body(armature_object, HUMAN)
     keyframes = _keyframes(frame, armature_object, action, body, matches)
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
+    keypoints = frame.keypoints(body, keyframes)
     camera = read_camera(frame.footage, frame.clip_frames[np.append(indices, frame.index)])
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in frame.segments))
     if start == "POSE":
@@ -139,29 +180,49 @@ def fit_to_frame(
     elif start == "KEYFRAMES" and keyframes:
         belief = prior_from_keyframes(keyframes, frame.index, frame.footage.rate)
     else:
-        belief = _standing_belief(frame, model, read_posture(armature_object, body).posture)
+        belief = _standing_belief(frame, model, read_posture(armature_object, body).posture, keypoints)
     regions = frame.regions(expected_in_frame(model, belief, len(posed)))
-    if not regions.visible.any():
-        raise InputError(
-            f"none of the markers is seen in frame {frame.clip_frames[frame.index]:g}; pose the actor by hand"
-        )
-    evidence = uncalibrated(model)
-    if frame.reading is not None and posed:
-        seen = ObservedRegions.from_tracks(frame.reading.tracks)[indices]
-        evidence = calibrated(
-            model, seen, Posture.stack([keyframe.posture for keyframe in posed]), np.arange(len(posed))
-        )
-    return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed))
+    points = ObservedKeypoints.of(keypoints)
+    here = points[np.array([frame.index])]
+    if not (regions.visible.any() or here.seen.any()):
+        raise InputError(_nothing_seen(frame, keypoints))
+    usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
+    evidence = replace(uncalibrated(model), keypoints=usual)
+    if posed and (frame.reading is not None or not frame.styles):
+        seen, frames = ObservedRegions.from_tracks(frame.tracks)[indices], np.arange(len(posed))
+        postures = Posture.stack([keyframe.posture for keyframe in posed])
+        evidence = calibrated(model, seen, postures, frames, usual, points[indices])
+    return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed), points=here)
 
 
-def _standing_belief(frame: FrameInFootage, model: RegionModel, shown: Posture) -> FramePrior:
+def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:
+    shown = f"{frame.clip_frames[frame.index]:g}"
+    if not (frame.styles or keypoints.names):
+        return "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
+    wanted = " and ".join(
+        name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
+    )
+    return f"none of the {wanted} is seen in frame {shown}; pose the actor by hand"
+
+
+def _standing_belief(
+    frame: FrameInFootage, model: RegionModel, shown: Posture, keypoints: Keypoints
+) -> FramePrior:
     """Prior about the shown posture if it is at the performer's location, else about one placed there."""
     regions = frame.regions()
-    placed = posed_standing(frame, model.body, regions)
+    placed = posed_standing(frame, model.body, regions, keypoints)
     both = Posture.stack([shown, placed])
     last = model.camera.matrix_world.shape[0] - 1 if model.camera.is_moving else 0
-    predicted = model.evaluate(model.body.pose(both), np.array([last, last]))
-    apart = np.linalg.norm(predicted.centroid - regions.centroid, axis=-1)
+    index = np.array([last, last])
+    pose = model.body.pose(both)
+    points = KeypointModel.usual(model.body, model.camera, keypoints.names).pixels(pose, index)
+    apart = np.concatenate(
+        [
+            np.linalg.norm(model.evaluate(pose, index).centroid - regions.centroid, axis=-1),
+            np.linalg.norm(points - keypoints.pixel[frame.index], axis=-1),
+        ],
+        axis=1,
+    )
     if not np.isfinite(apart).any():
         return prior_from_standing(placed)
     of_shown, of_placed = np.nanmean(apart, axis=1)
@@ -198,6 +259,7 @@ def measured_in_frame(
     """
     camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
     regions = frame.regions() if frame.styles else None
+    keypoints = frame.keypoints(Body(Actor.from_stature(stature_m))).frame(frame.index)
     return measure_standing(
-        camera, 0, stature_m, crown_px, ground_px, regions, frame.segments, arms_stretched
+        camera, 0, stature_m, crown_px, ground_px, regions, frame.segments, arms_stretched, keypoints
     )

@@ -1,29 +1,30 @@
-"""Fit the actor's pose to the markers of the current frame."""
+"""Fit the actor's pose to the markers and keypoints of the current frame."""
 
 import bpy
 import numpy as np
 
-from ..markers.marker_styles import marker_styles
+from ..keypoints.evidence import scene_evidence
+from ..keypoints.requirements import points_to_follow
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
-from ..shell.requirements import actor, camera, footage, idle, markers
+from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
-    """Pose the actor so that its markers lie where this frame shows them; nothing is keyed before you do"""
+    """Pose the actor so that markers and keypoints lie where this frame has them; you decide what is keyed"""
 
     bl_idname = "keymark.fit_pose"
-    bl_label = "Fit Pose to Markers"
+    bl_label = "Fit Pose to Footage"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, camera, actor, markers, idle)
+    requirements = (footage, camera, actor, points_to_follow, idle)
 
     start: bpy.props.EnumProperty(
         name="Start From",
-        description="The pose that is changed as little as the markers allow",
+        description="The pose that is changed as little as the footage allows",
         items=[
             (
                 "KEYFRAMES",
@@ -52,11 +53,15 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
 
         take = active_take(context.scene)
-        frame = frame_in_footage(footage_of(context.scene, take), marker_styles(take), reading_of(take))
+        frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
         matches = known_matches(take)
         fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
         show_keyframes(take)
         write_posture(take.armature, fit.posture)
+        before, after = (
+            np.concatenate(each)
+            for each in ((fit.before_px, fit.keypoint_before_px), (fit.residual_px, fit.keypoint_residual_px))
+        )
         if fit.misplaced:
             names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
             say(
@@ -65,7 +70,14 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
                 "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
                 names=names,
             )
-        elif not (np.isfinite(fit.before_px).any() and np.isfinite(fit.residual_px).any()):
+        elif fit.misplaced_points:
+            say(
+                self,
+                "WARNING",
+                "No pose near the start explains the keypoint(s) {names}; correct the pose there by hand",
+                names=", ".join(fit.misplaced_points),
+            )
+        elif not (np.isfinite(before).any() and np.isfinite(after).any()):
             say(
                 self,
                 "WARNING",
@@ -75,10 +87,10 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "INFO",
-                "Markers off by {before:.1f} pixels before, {after:.1f} now; "
-                "look at it from the side too, where no marker tells the depth, then store it",
-                before=float(np.nanmean(fit.before_px)),
-                after=float(np.nanmean(fit.residual_px)),
+                "Off by {before:.1f} pixels before, {after:.1f} now; "
+                "look at it from the side too, as little tells the depth, then store it",
+                before=float(np.nanmean(before)),
+                after=float(np.nanmean(after)),
             )
 
 

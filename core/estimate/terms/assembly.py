@@ -18,14 +18,16 @@ from ..ankle_height import ANKLE_HEIGHT_STD_M
 from ..clip_problem import ClipProblem
 from ..clip_state import ClipState
 from ..keyframe_evidence import KeyframeEvidence
+from ..keypoint_evidence import KeypointEvidence
 from ..windows import Window
 from .belief import BeliefTerm
 from .contours import ContourTerm
 from .depth_hints import DepthHintTerm
 from .depths import DepthTerm
+from .frame_keypoints import FrameDepthTerm, FrameKeypointTerm
 from .ground import GroundTerm
 from .joint_limits import LimitTerm
-from .keypoints import LEAST_CONFIDENCE, KeypointTerm
+from .keypoints import LEAST_CONFIDENCE, KeypointTerm, ObservedKeypoints
 from .quadratic import QuadraticBuilder, QuadraticTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .smoothness import SmoothnessTerm
@@ -87,6 +89,7 @@ def frame_terms(
     belief: FramePrior,
     noise: RegionNoise,
     width_px: Array,
+    points: ObservedKeypoints | None = None,
 ) -> list[CostTerm]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
@@ -96,6 +99,7 @@ def frame_terms(
         belief: Prior belief in the posture.
         noise: Noise of the regions' features.
         width_px: (1, M) half-width of each marker's limb [px].
+        points: The keypoints of this one frame, (1, N); None without any.
     """
     model, starts = evidence.model, belief.starts.batch[0]
     bias_std = noise.bias_std(width_px).reshape(1, -1)
@@ -108,8 +112,24 @@ def frame_terms(
     ]
     if belief.grounded is not None:
         ankles = _ankles(model.body)
-        points = model.body.points(model.body.pose(belief.grounded))
-        terms.append(GroundTerm(ankles, float(points[:, list(ankles), 2].min())))
+        standing = model.body.points(model.body.pose(belief.grounded))
+        terms.append(GroundTerm(ankles, float(standing[:, list(ankles), 2].min())))
+    if points is not None and evidence.keypoints.model.names:
+        terms += _frame_point_terms(evidence.keypoints, points, starts)
+    return terms
+
+
+def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[CostTerm]:
+    """The keypoints of one frame, and the depths guessed with them, in as many states."""
+    std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
+    repeated = points[np.zeros(starts, dtype=np.intp)]
+    term = KeypointTerm(evidence.model, repeated, std_m, np.zeros((max(starts - 1, 0), 1)))
+    terms: list[CostTerm] = [FrameKeypointTerm(term)]
+    if np.isfinite(points.depth_m).any():
+        depths = evidence.depths
+        std = _depth_std_m(evidence, points, depths.std_m)[0]
+        expected = depths.expected(points.depth_m)[0]
+        terms.append(FrameDepthTerm(evidence.model, depths.links, expected, std))
     return terms
 
 
@@ -126,12 +146,18 @@ def _keypoint_term(clip: ClipProblem, window: Window, step_s: Array) -> Keypoint
 
 def _hint_term(clip: ClipProblem, window: Window, step_s: Array) -> DepthHintTerm:
     evidence, points = clip.evidence.keypoints, clip.points[window.frames]
+    std_m = _depth_std_m(evidence, points, evidence.depths.error_m)
+    kept = np.exp(-step_s / evidence.depths.memory_s)[:, None]
+    expected = evidence.depths.expected(points.depth_m)
+    return DepthHintTerm(evidence.model, evidence.depths.links, expected, std_m, kept)
+
+
+def _depth_std_m(evidence: KeypointEvidence, points: ObservedKeypoints, error_m: Array) -> Array:
+    """(F, L) errors of the links' guessed depths, of which `error_m` (L,) are those of sure detections."""
     links = evidence.depths.links
     sure = np.where(links.ends != 0.0, points.confidence[:, None], 1.0).min(axis=-1)
     left_out = (links.ends != 0.0) @ (evidence.trust == 0.0) > 0.0
-    std_m = np.where(left_out, np.inf, evidence.depths.error_m) / np.maximum(sure, LEAST_CONFIDENCE)
-    kept = np.exp(-step_s / evidence.depths.memory_s)[:, None]
-    return DepthHintTerm(evidence.model, links, evidence.depths.expected(points.depth_m), std_m, kept)
+    return np.asarray(np.where(left_out, np.inf, error_m) / np.maximum(sure, LEAST_CONFIDENCE))
 
 
 def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTerm:

@@ -67,6 +67,11 @@ class Keypoints:
             tuple(note for part in parts for note in part.notes),
         )
 
+    def frame(self, index: int) -> "Keypoints":
+        """The keypoints of one frame."""
+        own = slice(index, index + 1)
+        return replace(self, pixel=self.pixel[own], score=self.score[own], hint_m=self.hint_m[own])
+
     @property
     def frame_count(self) -> int:
         """Number of frames F."""

@@ -14,7 +14,7 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
-from keymark.operators.markers.marker_styles import marker_styles
+from keymark.operators.keypoints.evidence import scene_evidence
 from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of
@@ -175,7 +175,7 @@ def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.
     take.armature.pose.bones["head"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     bpy.context.view_layer.update()
     before = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
-    frame = frame_in_footage(footage_of(opened, take), marker_styles(take))
+    frame = frame_in_footage(footage_of(opened, take), scene_evidence(take))
     fit_to_frame(frame, take.armature, take.keyframe_action, "POSE")
     bpy.context.view_layer.update()
     after = [np.array(bone.matrix_basis) for bone in take.armature.pose.bones]
@@ -222,7 +222,7 @@ def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy
     varying = replace(reading, tracks=replace(reading.tracks, time_s=stretched))
     opened.frame_set(7)
     with pytest.raises(InputError, match="no frame of its own at 7; go to frame 6"):
-        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)
+        frame_in_footage(footage_of(opened, take), scene_evidence(take), varying)
     opened.frame_set(40)
     with pytest.raises(InputError, match="lies outside the footage"):
-        frame_in_footage(footage_of(opened, take), marker_styles(take), varying)
+        frame_in_footage(footage_of(opened, take), scene_evidence(take), varying)
