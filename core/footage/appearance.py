@@ -100,8 +100,8 @@ class Appearance:
     def completed(self, hidden: BoolArray) -> "Appearance":
         """This appearance with a guess of what a performer who stays in place always hides.
 
-        The color is that of the nearest pixel known, doubted by as much as known pixels differ that are as far
-        apart: much before shelves, little before a wall.
+        The color is that of the nearest pixel known, doubted by as much as known pixels differ that are as
+        far apart: much before shelves, little before a wall.
 
         Args:
             hidden: (rows, columns) pixels whose background was never seen free.
