@@ -47,6 +47,9 @@ TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
 TIMING_MEAN = 0.7
 """Mean of its exponential prior [frames]."""
+LEARNED_SHARE = 1.3
+"""Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
+keyframes, with their errors, which hides about a quarter of these."""
 LENS_DIFFERENCE = 1e-3
 PARAMETER_COUNT = len(PRIOR_STD)
 MOST_DISTRUST = 10.0
@@ -161,6 +164,8 @@ def read_keyframes(
             own = slice(markers * FEATURES, markers * FEATURES + rows)
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
+    if outlines is not None and not markers and seen_points is None:
+        scale *= LEARNED_SHARE
     information = keyframe_information(posing, velocity, scale, timing)
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)

@@ -65,6 +65,16 @@ def _and_what_is_seen(take: Take) -> str:
     return "".join(f", {what}" for what in first) + f" and {last}"
 
 
+def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
+    """Note where contours are all that a take has, and no still background was seen to tell them from."""
+    if followed or not take.contours or take.markers or take.keypoints:
+        return ()
+    return (
+        "contours were not followed: too little of the background stands still; between keyframes the motion "
+        "is their interpolation alone; hold the camera still, or add keypoints or markers",
+    )
+
+
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
     """Note on matched keyframes left out in favor of the posed ones around them."""
     matched = sum(keyframe.matched is not None for keyframe in take.keyframes)

@@ -31,7 +31,7 @@ from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
 from .match_error import undetermined_covariance
-from .notes import evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
+from .notes import contour_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
@@ -157,6 +157,7 @@ def _reconstruct(
         solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
         motion, model = _solved(take, tracks, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
+        notes += contour_notes(take, solution.contours is not None)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -220,6 +221,9 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     }
     index = np.array(take.keyframe_indices, dtype=np.intp)
     points, seen = observed_joints(result.keypoints)
+    if result.outlined is not None and result.contours is not None:
+        points = (*points, *result.contours.model.parts.segments)
+        seen = np.concatenate([seen, result.outlined], axis=1)
     unseen = unobserved_variance(
         take.body.skeleton,
         (*take.marker_segments, *points),

@@ -70,6 +70,8 @@ class WholeClipResult:
     """The problem it solves."""
     contours: ContourEvidence | None
     """The look of performer and background; None where no background can be trusted."""
+    outlined: BoolArray | None = None
+    """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -175,7 +177,9 @@ def estimate_whole_clip(
         points,
         swapped,
     )
-    return (yield from _solve(problem, options, album, earlier))
+    # Nothing but contours moves the postures away from the prior that they were learned from.
+    kept = contours if not (segments or keypoints.names or matched.any()) else None
+    return (yield from _solve(problem, options, album, earlier, kept))
 
 
 def _swaps(
@@ -192,7 +196,11 @@ def _swaps(
 
 
 def _solve(
-    problem: ClipProblem, options: WholeClipOptions, album: Album | None, earlier: WholeClipResult | None
+    problem: ClipProblem,
+    options: WholeClipOptions,
+    album: Album | None,
+    earlier: WholeClipResult | None,
+    contours: ContourEvidence | None,
 ) -> Part[WholeClipResult]:
     """Estimate in windows all frames, or those that changed since an earlier estimate."""
     pace = float(np.median(problem.step_s)) if len(problem.step_s) else REFERENCE_STEP_S
@@ -206,11 +214,16 @@ def _solve(
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
             return replace(result, posture=earlier.posture.plus(step))
-    return (yield from _solve_windows(problem, list(windows(problem.frames, length, margin)), album, None))
+    every = list(windows(problem.frames, length, margin))
+    return (yield from _solve_windows(problem, every, album, None, contours))
 
 
 def _solve_windows(
-    problem: ClipProblem, spans: list[Window], album: Album | None, earlier: WholeClipResult | None
+    problem: ClipProblem,
+    spans: list[Window],
+    album: Album | None,
+    earlier: WholeClipResult | None,
+    contours: ContourEvidence | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate the frames that windows keep.
 
@@ -219,6 +232,7 @@ def _solve_windows(
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
         album: Pictures of all frames.
         earlier: An estimate of all other frames.
+        contours: What was learned of them already; None to learn it once the markers are followed.
     """
     total = max(sum(window.keep_last - window.keep_first for window in spans), 1)
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])
@@ -229,8 +243,10 @@ def _solve_windows(
         part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
-    contours = None if earlier is None else earlier.contours
-    if earlier is None and album is not None:
+    contours = contours if earlier is None else earlier.contours
+    if contours is not None and earlier is None:
+        contours = contours.with_camera(problem.evidence.model.camera)
+    elif earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
         segments = tuple(one.segment for one in problem.evidence.model.placements)
@@ -243,6 +259,9 @@ def _solve_windows(
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
+    outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
+    if earlier is None and contours is not None and contours.along is not None:
+        outlined = np.zeros((problem.frames, len(contours.model.parts.segments)), dtype=bool)
     residual_px = np.empty(problem.observed.quality.shape) if earlier is None else earlier.residual_px.copy()
     postures: list[Posture] = []
     for window, begun, ended in stretches:
@@ -252,10 +271,12 @@ def _solve_windows(
             yield from scaled(part.follow_contours(contours), first, last)
         inner = slice(window.keep_first, window.keep_last)
         posture, covariance[inner], residual_px[inner] = yield from scaled(part.solution(), last, last)
+        if outlined is not None:
+            outlined[inner] = part.outlined()
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

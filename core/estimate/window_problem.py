@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray
 from ..body.posture import Posture
 from ..progress import Part, Preview, scaled
 from .clip_problem import ClipProblem
@@ -28,7 +28,7 @@ CONVERGED = 3e-3
 """Converged once no unknown of any posture changes by more in a step [m, rad]."""
 MOST_UNPACKED = 256 << 20
 """Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
-UNMARKED_DOUBT = 4.0
+UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
 for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
 other side."""
@@ -85,6 +85,11 @@ class WindowProblem:
             yield Preview(self.window.keep_first, self.state.posture[self.window.kept])
             if temperature == 1.0 and moved < CONVERGED:
                 break
+
+    def outlined(self) -> BoolArray:
+        """(F, O) whether each part's contours were seen at the last look, in the frames the window keeps."""
+        term = next(term for term in self.terms if isinstance(term, ContourTerm))
+        return term.parts_seen()[self.window.kept]
 
     def solution(self) -> Generator[None, None, tuple[Posture, Array, Array]]:
         """Postures, their covariance and the centroids' residuals of the frames the window keeps.

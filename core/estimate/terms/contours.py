@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, BoolArray
 from ...observation.contours import SHARES, SIDES, ContourModel
 from ..clip_state import ClipState
 from .term import NormalEquations, student_weight
@@ -16,6 +16,9 @@ PIXEL_STD = 0.6
 DEGREES = 4.0
 ALIKE = len(SHARES) * len(SIDES)
 """The samples of a part err together: all of them weigh as much as one."""
+
+FEWEST_SEEN = 3
+"""Edges of a part that tell where it is: those of one side alone, or of one end, do not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +32,11 @@ class ContourTerm:
     """(F, N, 2) across it."""
     variance: Array
     """(F, N) [px²]."""
+
+    def parts_seen(self) -> BoolArray:
+        """(F, O) whether enough edges of each part were found."""
+        found = np.isfinite(self.edge[..., 0])
+        return np.asarray(found.reshape(len(found), -1, ALIKE).sum(axis=-1) >= FEWEST_SEEN)
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each edge."""
