@@ -28,8 +28,8 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     )
     place: bpy.props.BoolProperty(
         name="Stand in the Footage",
-        description="Stand the actor where the markers say the performer is in the current frame, facing the "
-        "camera; without markers, in the middle of the picture. An actor with keyframes stays where it is",
+        description="Stand the actor where markers or keypoints have the performer in the current frame, facing "
+        "the camera; without either, in the middle of the picture. An actor with keyframes stays where it is",
         default=True,
     )
 
@@ -63,14 +63,15 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             write_posture(take.armature, stance[0])
         self._report_stance(had_actor, stance is not None, stance is not None and stance[1])
 
-    def _report_stance(self, had_actor: bool, stands: bool, by_markers: bool) -> None:
-        if by_markers:
-            say(self, "INFO", "The actor stands where the markers are in this frame")
+    def _report_stance(self, had_actor: bool, stands: bool, is_seen: bool) -> None:
+        if is_seen:
+            say(self, "INFO", "The actor stands where the performer is seen in this frame")
         elif stands:
             say(
                 self,
                 "INFO",
-                "The actor stands in the middle of the picture; with markers it would stand at the performer",
+                "The actor stands in the middle of the picture; with markers or keypoints it would stand at the "
+                "performer",
             )
         elif had_actor:
             say(self, "INFO", "The actor is {height:.2f} m tall now", height=self.stature)

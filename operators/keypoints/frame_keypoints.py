@@ -27,7 +27,7 @@ class FrameKeypoints:
     source: str
     """Name of the detector; `clicks` and `tracks` for what a person clicked on or tracked."""
     names: tuple[str, ...]
-    """(N,) the body points."""
+    """(N,) the body points; those of clicks and tracks are the ones seen here."""
     pixel: Array
     """(H, N, 2) [px] of the footage as it is, NaN where a point is not seen."""
     score: Array
@@ -43,25 +43,29 @@ class FrameKeypoints:
 
 
 def keypoints_at(take: bpy.types.PropertyGroup, scene_frame: int) -> tuple[FrameKeypoints, ...]:
-    """What each source of a take that is switched on sees in a scene frame.
+    """What each source of a take that is switched on sees in a scene frame, in every frame the same sources.
 
-    A file that is missing or cannot be read sees nothing here; the panel says so.
+    Clicks and tracks are listed without any point where they have none; a file that cannot be read is left
+    out, as the panel says.
     """
     follow = take.follow
     if take.clip is None or take.clip_state.missing or not all(take.clip.size):
         return ()
     found: list[FrameKeypoints] = []
     if follow.use_keypoints:
-        found.append(clicks_at(take, scene_frame))
+        if len(follow.clicks):
+            found.append(clicks_at(take, scene_frame))
         index = clip_index(take, scene_frame)
         for entry in follow.files:
             people = keypoint_reading(take, entry).people if entry.is_used else None
             if people is not None:
                 found.append(people_at(people, index))
     if follow.use_tracks:
-        tracked = tracks_at(footage_of(take.id_data, take), scene_frame, assigned_tracks(take))
-        found.append(_one_person(TRACKS, tracked, is_tracked=True))
-    return tuple(each for each in found if each.names)
+        assigned = assigned_tracks(take)
+        if assigned:
+            tracked = tracks_at(footage_of(take.id_data, take), scene_frame, assigned)
+            found.append(_one_person(TRACKS, tracked, is_tracked=True))
+    return tuple(found)
 
 
 def clicks_at(take: bpy.types.PropertyGroup, scene_frame: int) -> FrameKeypoints:

@@ -11,7 +11,7 @@ from ..shell.shown_frame import clip_index
 from ..shell.takes import active_take
 from .assigned_tracks import assigned_tracks, point_of
 from .body_point_items import point_title
-from .clicks import clicked_here
+from .clicks import clip_frame
 from .frame_keypoints import people_at
 from .keypoint_paths import keypoint_path
 from .keypoint_readings import KeypointReading, keypoint_reading
@@ -62,6 +62,27 @@ class KEYMARK_UL_tracks(bpy.types.UIList):
         text = point_title(point) if point else label("Not Followed")
         entry = row.operator_menu_enum("keymark.assign_track", "point", text=text)
         entry.owner, entry.track = data.name, item.name
+
+
+class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
+    """Points that were clicked on in this frame; a list, so that panels keep their height in all frames."""
+
+    use_filter_show = False
+
+    def filter_items(
+        self, context: bpy.types.Context, data: bpy.types.AnyType, name: str
+    ) -> tuple[list[int], list[int]]:
+        """Show those of the current frame."""
+        here = clip_frame(active_take(context.scene))
+        return [self.bitflag_filter_item if each.frame == here else 0 for each in getattr(data, name)], []
+
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one point, and the button that removes it."""
+        row = layout.row(align=True)
+        row.label(text=point_title(item.point), icon="DOT")
+        row.operator("keymark.remove_clicks", text="", icon="X", emboss=False).point = item.point
 
 
 class Keypoints:
@@ -249,21 +270,17 @@ def _draw_file(
 
 def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """Draw the next point to click on, and those of this frame."""
-    column = layout.column()
+    follow, column = take.follow, layout.column()
     column.use_property_split, column.use_property_decorate = True, False
-    column.prop(take.follow, "clicked_point")
+    column.prop(follow, "clicked_point")
     column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
-    if not len(take.follow.clicks):
+    if not len(follow.clicks):
         return
     row = column.row(align=True)
     row.label(text=clicked_label(take), translate=False, icon="CHECKMARK")
-    clicked = clicked_here(take)
-    if len(clicked) > 1:
-        row.operator("keymark.remove_clicks", text="", icon="TRASH")
-    for point in clicked:
-        row = column.row(align=True)
-        row.label(text=point_title(point), icon="DOT")
-        row.operator("keymark.remove_clicks", text="", icon="X").point = point
+    row.operator("keymark.remove_clicks", text="", icon="TRASH")
+    source = (follow, "clicks", follow, "active_click")
+    layout.template_list("KEYMARK_UL_clicked_points", "", *source, rows=FEWEST_ROWS, maxrows=MOST_ROWS)
 
 
 def _title(entry: bpy.types.PropertyGroup, reading: KeypointReading) -> str:
@@ -275,6 +292,7 @@ register, unregister = bpy.utils.register_classes_factory(
     (
         KEYMARK_UL_keypoint_files,
         KEYMARK_UL_tracks,
+        KEYMARK_UL_clicked_points,
         KEYMARK_PT_keypoints,
         KEYMARK_PT_tracks,
         KEYMARK_PT_contours,

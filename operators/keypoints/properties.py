@@ -95,6 +95,9 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
         name="Active Track", description="The track that is chosen in the list", default=0, min=0
     )
     clicks: bpy.props.CollectionProperty(type=KEYMARK_PG_clicked_point)
+    active_click: bpy.props.IntProperty(
+        name="Active Click", description="The clicked point that is chosen in the list", default=0, min=0
+    )
     clicked_point: bpy.props.EnumProperty(
         name="Body Point",
         description="The point of the body to click on next; left and right are the performer's own",

@@ -66,7 +66,7 @@ class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
         say(
             self,
             "INFO",
-            "Posed as '{name}'; Fit from Current Pose brings it to the markers, Store Keyframe keys it",
+            "Posed as '{name}'; Fit from Current Pose brings it to the footage, Store Keyframe keys it",
             name=name,
         )
 

@@ -1,4 +1,4 @@
-"""Open a take from disk: footage, camera, actor, markers and keyframes."""
+"""Open a take from disk: footage, camera, actor, what is followed, and keyframes."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from ..shell.takes import active_take
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
-    """Open a take: its footage behind its camera, its actor, its markers and its keyframes"""
+    """Open a take: its footage behind its camera, its actor, what is followed, and its keyframes"""
 
     bl_idname = "keymark.open_take"
     bl_label = "Open Take"

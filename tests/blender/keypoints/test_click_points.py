@@ -11,7 +11,7 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.keypoints.clicks import clicked_here
 from keymark.operators.keypoints.evidence import scene_evidence
-from keymark.operators.keypoints.frame_keypoints import clicks_at
+from keymark.operators.keypoints.frame_keypoints import clicks_at, keypoints_at
 from keymark.operators.shell.takes import active_take, footage_of
 
 FRAMES = 13
@@ -48,6 +48,7 @@ def test_clicks_stay_with_the_picture_where_the_clip_is_moved(plain: bpy.types.S
     take = active_take(plain)
     take.clip.frame_start = 101
     assert clicks_at(take, 103).names == ("head",) and clicks_at(take, 3).names == ()
+    assert [each.source for each in keypoints_at(take, 3)] == ["clicks"], "sources keep their colors"
     (people,) = scene_evidence(take).people(footage_of(plain, take), 101.0 + np.arange(FRAMES))
     assert [index for index, frame in enumerate(people.frames) if len(frame.pixel)] == [2]
     assert scene_evidence(take).people(footage_of(plain, take), 101.0 + np.arange(2)) == ()

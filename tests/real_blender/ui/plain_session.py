@@ -1,6 +1,6 @@
 """A person's session with plain clothes: footage, keypoints, actor, keyframes, the motion.
 
-Usage: as of session.py, without a step; TAKE has no markers, and a file keypoints.json that is loaded by hand.
+Usage: as of session.py, without a step; TAKE has no markers, but keypoints.json, which is loaded by hand.
 """
 
 import sys

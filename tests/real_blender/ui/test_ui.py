@@ -1,6 +1,7 @@
 """A person's session in a Blender with a screen, and its motion held against the command line's."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,9 @@ STEPS = (
     *("character", "retargeted"),
 )
 """Each leaves at least one picture of this name."""
+PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
+CLICKS_MM = 4.0
+"""What a clicked point and a track in a single frame may change."""
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
 PATIENCE_S = 3000.0
@@ -78,6 +82,36 @@ def test_a_motion_is_reconstructed_without_posing(blender_on_screen: Blender, re
     pictures = " ".join(file.name for file in folder.glob("*.png"))
     assert [step for step in ("matched", "replaced", "unposed") if f"_{step}" not in pictures] == []
     assert _score(folder / "motion.json", take).rooted < UNPOSED_MM
+
+
+def test_plain_clothes_lead_to_a_motion(
+    blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path
+) -> None:
+    """Keypoints loaded, points clicked on and keyframes posed by hand score as the command line does."""
+    take = plain_take(repository / "presets" / "demo" / "aerobic", tmp_path / "plain")
+    folder = repository / "build" / "screenshots" / "plain"
+    run_script(blender_on_screen, "plain_session.py", take, folder)
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in PLAIN_STEPS if f"_{step}" not in pictures] == []
+    output = tmp_path / "out"
+    done = blender.run(
+        *("--command", "keymark", "convert", take, "--output", output, "--quiet", "--no-report")
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    by_hand, by_command = (_score(file, take) for file in (folder / "motion.json", output / "motion.json"))
+    assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=CLICKS_MM)
+
+
+def plain_take(demo: Path, folder: Path) -> Path:
+    """The demonstration without its markers."""
+    folder.mkdir()
+    for name in ("clip.mp4", "keyframes.json", "keypoints.json", "truth.json"):
+        shutil.copy(demo / name, folder / name)
+    fields = json.loads((demo / "take.json").read_text(encoding="utf-8"))
+    for name in ("markers", "evidence"):
+        fields.pop(name, None)
+    (folder / "take.json").write_text(json.dumps(fields), encoding="utf-8")
+    return folder
 
 
 def _score(motion: Path, folder: Path) -> Score:
