@@ -1,6 +1,6 @@
-"""Keyframe libraries: accuracy without posed keyframes, and with two.
+"""Keyframe libraries: accuracy without posed keyframes, and with two, by markers and by keypoints.
 
-Usage: matching.py [TAKE ...] [--choose] with names or folders of takes. See README.md.
+Usage: matching.py [TAKE ...] [--choose | --keypoints] with names or folders of takes. See README.md.
 """
 
 import argparse
@@ -19,6 +19,7 @@ from takes import chosen_takes, load_project, write_results
 load_project()
 
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
@@ -27,6 +28,8 @@ from keymark.core.matching.match_take import LibraryChoice, match_take, with_mat
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth  # noqa: E402
+from keymark.core.take import evidence_kinds as kinds  # noqa: E402
+from keymark.core.take.evidence import with_evidence  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
@@ -52,6 +55,15 @@ ON_THE_FLOOR = 0.0
 RAISED = ("real_balance",)
 """Takes whose performer stands on something other than the floor z = 0; their floor is not given."""
 NONE = "none"
+KEYPOINTS = "keypoints_mediapipe.json"
+"""File of a detector's keypoints in a take's folder, for `--keypoints`."""
+COMBINATIONS: dict[str, tuple[str, ...]] = {
+    "markers": (kinds.MARKERS, kinds.CONTOURS),
+    "and keypoints": kinds.EVIDENCE,
+    "keypoints": (kinds.KEYPOINTS, kinds.CONTOURS),
+    "with hints": (kinds.KEYPOINTS, kinds.DEPTH_HINTS, kinds.CONTOURS),
+}
+"""What a take is held against, by the title of its columns."""
 COLUMNS = (
     "library", "course", "no posing", "hips aligned", "coverage", "two alone", "two interpolated",
     "two and library", "of two alone", "of interpolated", "ms a frame",
@@ -136,6 +148,52 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
     )
 
 
+def compare(name: str, trial: Trial, library: Library) -> dict[str, tuple[Score, Score]]:
+    """Errors of the match and of the motion without posed keyframes, by what the take is held against."""
+    found, bare = {}, None
+    for title, names in COMBINATIONS.items():
+        take = with_evidence(trial.take, names)
+        if take.markers:
+            held = replace(trial, take=take)
+        else:
+            bare = bare or run(read_footage(take))
+            held = replace(trial, take=take, reading=bare)
+        choice, _ = matched(name, take, held.reading, [library])
+        if choice.match is None:
+            raise RuntimeError(f"{library.identifier}, the only one, was not matched with {name}")
+        held = replace(held, take=with_matches(take, choice.match), reading=choice.reading or held.reading)
+        points = take.body.points(take.body.pose(choice.match.postures))
+        found[title] = held.score(points), estimated(held)
+    return found
+
+
+def with_keypoints(trial: Trial, folder: Path) -> Trial:
+    """The same take with the keypoints in its folder."""
+    take, tracks = trial.take, trial.reading.tracks
+    people = read_keypoints(folder / KEYPOINTS, tracks.frame_count, tracks.size, take.fps, take.frame_start)
+    return replace(trial, take=replace(take, keypoints=(people,)))
+
+
+def keypoint_table(results: dict[str, dict[str, tuple[Score, Score]]]) -> str:
+    """Errors by evidence as Markdown, the hips aligned, with their mean."""
+    lines = [
+        "Mean distance from the truth with the hips aligned [mm]: the match, and the motion without posed "
+        "keyframes.",
+        "",
+        "| take | " + " | ".join(f"{title}: match | motion" for title in COMBINATIONS) + " |",
+        "|---" + "|---:" * (2 * len(COMBINATIONS)) + "|",
+    ]
+    rows = {
+        name: [score.rooted for title in COMBINATIONS for score in found[title]]
+        for name, found in results.items()
+    }
+    rows["**mean**"] = np.mean(list(rows.values()), axis=0).tolist()
+    lines += [
+        f"| {name} | " + " | ".join(f"{value:.0f}" for value in row) + " |" for name, row in rows.items()
+    ]
+    return "\n".join(lines)
+
+
 def estimated(trial: Trial) -> Score:
     """Score of the default method's motion."""
     motion = run(reconstruct(trial.take, "map", trial.reading)).motion
@@ -210,16 +268,33 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument("--choose", action="store_true", help="only see which library is chosen")
+    parser.add_argument(
+        "--keypoints", action="store_true", help="compare evidence on takes with a detector's keypoints"
+    )
     options = parser.parse_args(arguments)
     libraries = {path.stem: read_library(path) for path in sorted(SHIPPED.glob("*.json"))}
     measured: dict[str, Measured] = {}
     chosen: dict[str, Chosen] = {}
+    compared: dict[str, dict[str, tuple[Score, Score]]] = {}
     for name, folder in chosen_takes(options.takes).items():
         print(f"{name} ...", file=sys.stderr, flush=True)
         trial = read_unposed(folder)
+        if options.keypoints:
+            if name in FITTING and (folder / KEYPOINTS).is_file():
+                compared[name] = compare(name, with_keypoints(trial, folder), libraries[FITTING[name][0]])
+            continue
         chosen[name] = choose(name, trial, list(libraries.values()))
         if name in FITTING and not options.choose:
             measured[name] = measure(name, trial, libraries[FITTING[name][0]])
+    if options.keypoints:
+        if not compared:
+            raise SystemExit(f"none of the takes has both {KEYPOINTS} and a fitting library")
+        by_take = {
+            name: {title: [asdict(score) for score in pair] for title, pair in found.items()}
+            for name, found in compared.items()
+        }
+        write_results("matching_keypoints", keypoint_table(compared), json.dumps(by_take, indent=1))
+        return 0
     tables = choice_table(chosen)
     if measured:
         tables = f"{accuracy_table(measured)}\n\n{tables}"

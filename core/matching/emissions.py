@@ -109,7 +109,8 @@ def evaluate_emissions(
         cost += _student_cost(
             _extent_error(likelihood, features.second_moment[marker][:, states], marker, depth), 3
         )
-    cost[hips_depth < 0.3] += np.float32(1e3)
+    if likelihood.visible.any():  # else the hips' place is unknown
+        cost[hips_depth < 0.3] += np.float32(1e3)
     kept = _prune(cost, PRUNING_COST, MOST_STATES)
     ground = hips[:, kept]
     ground[2] -= vectors[-2, kept]

@@ -1,6 +1,7 @@
 """The Viterbi path through a library's states, and its continuous times, headings and places."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,7 +33,24 @@ class StatePath:
         emission = self.emissions[frame]
         posture, heading = np.divmod(emission.states[rows], len(self.features.heading_rad))
         hips = emission.hips[:, rows].T.astype(float)
+        if not self.likelihoods[frame].visible.any():
+            hips = np.broadcast_to(self.hips[frame], hips.shape)
         return yawed_at(self.sequences.posture[posture], self.features.heading_rad[heading], hips)
+
+    @cached_property
+    def hips(self) -> Array:
+        """(T, 3) places of the hips on the path [m], interpolated over frames in which nothing is seen."""
+        found = np.stack(
+            [
+                emission.hips[:, emission.index_of(state)]
+                for emission, state in zip(self.emissions, self.best, strict=True)
+            ]
+        )
+        seen = np.flatnonzero([likelihood.visible.any() for likelihood in self.likelihoods])
+        if len(seen) in (0, len(found)):
+            return found
+        columns = [np.interp(self.time_s, self.time_s[seen], column[seen]) for column in found.T]
+        return np.stack(columns, axis=-1)
 
     def continuous(self) -> ContinuousPath:
         """The path with times counted on over cycles and headings without jumps of full turns."""
@@ -57,11 +75,5 @@ class StatePath:
         angle = self.features.heading_rad[heading] - cycle * turn
         for row in range(1, len(own)):
             angle[row] -= 2.0 * np.pi * np.round((angle[row] - angle[row - 1]) / (2.0 * np.pi))
-        hips = np.stack(
-            [
-                emission.hips[:, emission.index_of(state)]
-                for emission, state in zip(self.emissions, self.best, strict=True)
-            ]
-        )
         time = (own + cycle * count) * step
-        return ContinuousPath(sequence, continues, np.column_stack([time, angle, hips]))
+        return ContinuousPath(sequence, continues, np.column_stack([time, angle, self.hips]))

@@ -8,6 +8,8 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.standing_posture import standing_height_m, standing_posture
 from keymark.core.estimate.actor_measure import MEASURED, MeasuredActor, measure_standing
+from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
 
 PLACE = np.array([0.2, 0.3, 0.0])
@@ -74,3 +76,50 @@ def test_someone_who_kneels_does_not_stand() -> None:
         step[names.index(f"knee.{side}.flexion")] = 1.6
     found, _ = measured(body, step)
     assert not found.stands
+
+
+JOINTS = tuple(
+    f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"
+)
+
+
+def measured_by_keypoints(body: Body, posture: Posture, noise_px: float) -> MeasuredActor:
+    """Measure a body by a detector's points alone."""
+    rng = np.random.default_rng(1)
+    pixel = KeypointModel.usual(body, CAMERA, JOINTS).pixels(
+        body.pose(Posture.stack([posture])), np.zeros(1, dtype=np.intp)
+    )
+    pixel = pixel + rng.normal(0.0, noise_px, pixel.shape)
+    seen = Keypoints(
+        JOINTS, ("test",) * 12, pixel, np.full(pixel.shape[:2], 0.9), np.full((1, 12, 3), np.nan)
+    )
+    height = standing_height_m(body)
+    pixels, _ = CAMERA.project(np.stack([PLACE + [0.0, 0.0, height], PLACE]))
+    return measure_standing(CAMERA, 0, height, *pixels, arms_stretched=True, keypoints=seen)
+
+
+def test_keypoints_measure_lengths_without_any_marker() -> None:
+    """Over several people with their arms out: clearly nearer than average proportions, the height kept."""
+    rng = np.random.default_rng(2)
+    before, after = [], []
+    for _ in range(4):
+        body = someone(rng)
+        step = np.where(np.arange(34) < 6, 0.0, 0.03) * rng.normal(size=34)
+        found = measured_by_keypoints(body, standing_posture(body, PLACE, 0.0, 0.0).plus(step), 0.5)
+        assert found.stands
+        assert standing_height_m(found.body) == pytest.approx(standing_height_m(body), rel=1e-9)
+        before.append(log_errors(Body(Actor.from_stature(standing_height_m(body))), body))
+        after.append(log_errors(found.body, body))
+    assert np.sqrt(np.mean(np.square(after))) < 0.85 * np.sqrt(np.mean(np.square(before)))
+
+
+def test_keypoints_tell_who_does_not_stand() -> None:
+    """Someone who kneels: the knees are far from where they would be."""
+    body = Body(Actor.from_stature(1.75))
+    posture = standing_posture(body, PLACE, 0.0, 0.0)
+    angles = np.array(posture.angles)
+    names = [body.skeleton.joints[joint].name for joint in body.skeleton.hinge_joints]
+    angles[[names.index("knee.L"), names.index("knee.R")]] = np.radians(100.0)
+    down = posture.translation - np.array([0.0, 0.0, 0.4])
+    kneeling = Posture(posture.skeleton, down, posture.rotations, angles)
+    assert not measured_by_keypoints(body, kneeling, 0.5).stands

@@ -7,11 +7,17 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.body.standing_posture import standing_posture
-from keymark.core.estimate.keyframe_evidence import uncalibrated
+from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, uncalibrated
+from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.performer_placement import place_standing
 from keymark.core.estimate.single_frame import FrameFit, fit_frame
+from keymark.core.estimate.terms.keypoints import ObservedKeypoints
 from keymark.core.estimate.terms.regions import ObservedRegions
+from keymark.core.footage.keypoints.body_points import mirrored_point
+from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.observation.keypoints import KeypointModel
+from keymark.core.observation.regions import RegionModel
 from keymark.core.prior.frame_prior import (
     FramePrior,
     prior_from_keyframes,
@@ -153,3 +159,101 @@ def test_someone_who_merely_stands_there_is_fitted_too() -> None:
     assert np.nanmax(found.residual_px) < 3.0
     assert error_mm(found.posture, frame) < 150.0
     assert error_mm(found.posture, frame) < error_mm(standing_posture(BODY), frame)
+
+
+NAMES = (
+    "nose", "ear.L", "ear.R",
+    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
+)  # fmt: skip
+UNMARKED = RegionModel(BODY, CAMERA, ())
+
+
+def detected(noise_px: float, hint_std_m: float | None = None, seed: int = 3) -> Keypoints:
+    """What a detector finds of the exercise, with the depths that a network guesses."""
+    rng = np.random.default_rng(seed)
+    frames = np.arange(len(TRUTH.translation))
+    model, pose = KeypointModel.usual(BODY, CAMERA, NAMES), BODY.pose(TRUTH)
+    pixel = model.pixels(pose, frames)
+    pixel = pixel + rng.normal(0.0, noise_px, pixel.shape)
+    hint = np.full((*pixel.shape[:2], 3), np.nan)
+    if hint_std_m is not None:
+        depth = CAMERA.depth(model.world(pose), frames[:, None])
+        hint[:] = 0.0
+        hint[..., 2] = depth - depth[:, 9:11].mean(axis=1, keepdims=True)
+        hint[..., 2] += rng.normal(0.0, hint_std_m, depth.shape)
+    return Keypoints(NAMES, ("test",) * len(NAMES), pixel, np.full(pixel.shape[:2], 0.9), hint)
+
+
+def unmarked_evidence() -> KeyframeEvidence:
+    """Evidence of keypoints alone, before any keyframe is posed."""
+    usual = KeypointEvidence.usual(BODY, CAMERA, NAMES, ("test",) * len(NAMES))
+    return replace(uncalibrated(UNMARKED), keypoints=usual)
+
+
+def fit_points(belief: FramePrior, keypoints: Keypoints, frame: int) -> FrameFit:
+    """Fit one frame to keypoints alone."""
+    nothing = ObservedRegions.from_tracks(RegionTracks.unmarked(np.zeros(1), CAMERA.resolution))
+    points = ObservedKeypoints.of(keypoints)[np.array([frame])]
+    return fit_frame(unmarked_evidence(), nothing, belief, frame, points=points)
+
+
+def shape_error_mm(posture: Posture, frame: int) -> float:
+    """The same with the hips aligned."""
+    there = Posture(posture.skeleton, TRUTH.translation[frame], posture.rotations, posture.angles)
+    return error_mm(there, frame)
+
+
+def test_keypoints_alone_lead_from_the_keyframe_before_towards_the_truth() -> None:
+    """Without any marker, ten frames on: less than half of what the keyframe is off remains."""
+    keypoints = detected(1.0)
+    before, after = [], []
+    for frame in range(10, 45, 5):
+        belief = prior_from_keyframes(keyframes(frame - 10), frame, 30.0)
+        before.append(error_mm(belief.posture, frame))
+        after.append(error_mm(fit_points(belief, keypoints, frame).posture, frame))
+    assert np.mean(after) < 0.45 * np.mean(before)
+
+
+def test_hints_of_depth_help_from_a_standing_body() -> None:
+    """What the picture does not tell, a good guess of the links' depths does."""
+    with_hints, without = [], []
+    for frame in (5, 20, 35):
+        keypoints = detected(1.0, hint_std_m=0.02)
+        here = keypoints.frame(frame)
+        belief = prior_from_standing(place_standing(BODY, CAMERA, frame, keypoints=here))
+        with_hints.append(shape_error_mm(fit_points(belief, keypoints, frame).posture, frame))
+        without.append(shape_error_mm(fit_points(belief, keypoints.without_hints(), frame).posture, frame))
+    assert np.mean(with_hints) < 0.9 * np.mean(without)
+
+
+def test_left_taken_for_right_is_seen_through() -> None:
+    """The posture is that which the same keypoints give with their sides right."""
+    keypoints = detected(1.0)
+    mirror = [NAMES.index(mirrored_point(name)) for name in NAMES]
+    wrong = replace(keypoints, pixel=keypoints.pixel[:, mirror], score=keypoints.score[:, mirror])
+    belief = prior_from_keyframes(keyframes(20), 26, 30.0)
+    right, found = (fit_points(belief, each, 26) for each in (keypoints, wrong))
+    assert error_mm(found.posture, 26) == pytest.approx(error_mm(right.posture, 26), abs=1.0)
+
+
+def test_a_keypoint_on_another_thing_is_named_and_does_no_harm() -> None:
+    """A wrist that a detector sees a meter away is left where it is believed, and said."""
+    keypoints = detected(1.0)
+    pixel = np.array(keypoints.pixel)
+    pixel[:, NAMES.index("wrist.L")] += 80.0
+    belief = prior_from_keyframes(keyframes(20), 26, 30.0)
+    found = fit_points(belief, replace(keypoints, pixel=pixel), 26)
+    assert found.misplaced_points == ("wrist.L",)
+    assert error_mm(found.posture, 26) < 1.3 * error_mm(fit_points(belief, keypoints, 26).posture, 26) + 5.0
+
+
+def test_the_standing_body_goes_where_keypoints_are() -> None:
+    """Someone who stands is found to a tenth of the distance, with and without a floor in sight."""
+    keypoints = detected(1.0)
+    placed = place_standing(BODY, CAMERA, 0, keypoints=keypoints.frame(0))
+    camera_place = CAMERA.pose(0)[1]
+    far = np.linalg.norm(TRUTH.translation[0] - camera_place)
+    assert np.linalg.norm(placed.translation - camera_place) == pytest.approx(far, rel=0.12)
+    shown, _ = CAMERA.project(placed.translation, 0)
+    true, _ = CAMERA.project(TRUTH.translation[0], 0)
+    assert np.linalg.norm(shown - true) < 15.0

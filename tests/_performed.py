@@ -1,0 +1,84 @@
+"""A performance of a library's motion by somebody else, filmed: what matching is tested with."""
+
+from pathlib import Path
+
+import numpy as np
+from keymark.core.body.actor import Actor
+from keymark.core.body.heading import yawed_at
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.reading import Reading
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.library.library import Library
+from keymark.core.library.motion_playback import sample_motion
+from keymark.core.matching.match_take import LibraryChoice
+from keymark.core.observation.regions import MarkerPlacement, RegionModel
+from keymark.core.take.take import Take
+
+SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+BODY = Body(Actor.from_stature(1.62))
+FRAMES, FPS = 50, 25.0
+VIEW = np.array([[1.0, 0.0, 0.0], [0.0, 0.2, -0.98], [0.0, 0.98, 0.2]])
+
+
+def camera(frames: int = 0) -> Camera:
+    """A camera four meters before the performer, a little above; one that drifts where frames are given."""
+    rotation, _ = np.linalg.qr(VIEW)
+    rotation *= np.sign(np.diag(rotation.T @ VIEW))
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = rotation, (0.0, -4.5, 1.7)
+    if frames:
+        matrix = np.repeat(matrix[None], frames, axis=0)
+        matrix[:, 0, 3] = np.linspace(-0.3, 0.3, frames)
+    return Camera(40.0, 36.0, (640, 480), matrix)
+
+
+def performed(library: Library, heading_rad: float, style_rad: float = 0.08, floor_m: float = 0.0) -> Posture:
+    """The library's first motion as this performer does it: a little faster, every joint turned a little."""
+    rng = np.random.default_rng(3)
+    time = 0.2 + 1.1 * np.arange(FRAMES) / FPS
+    led = sample_motion(library, library.motions[0], BODY, time)
+    style = rng.normal(0.0, style_rad, led.skeleton.dof_count)
+    style[:6] = 0.0
+    led = led.plus(style)
+    turn = np.array([[np.cos(heading_rad), -np.sin(heading_rad)], [np.sin(heading_rad), np.cos(heading_rad)]])
+    middle = led.translation[:, :2].mean(axis=0)
+    hips = np.column_stack([(led.translation[:, :2] - middle) @ turn.T, led.translation[:, 2] + floor_m])
+    return yawed_at(led, np.full(FRAMES, heading_rad), hips)
+
+
+def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take, Reading]:
+    """A take and the tracks that the performance leaves in its picture, with noise of half a pixel."""
+    rng = np.random.default_rng(5)
+    frames = len(posture.translation)
+    model = RegionModel(BODY, seen_by, tuple(MarkerPlacement(segment) for segment in SEGMENTS))
+    shown = model.evaluate(BODY.pose(posture), np.arange(frames))
+    lost = (shown.visible < 0.1) | (rng.random(shown.visible.shape) < hidden)
+    centroid = np.where(lost[..., None], np.nan, shown.centroid + rng.normal(0.0, 0.5, shown.centroid.shape))
+    tracks = RegionTracks(
+        SEGMENTS,
+        centroid,
+        np.where(lost[..., None, None], np.nan, shown.second_moment),
+        np.where(lost, np.nan, shown.area),
+        np.where(lost, 0.0, np.clip(shown.visible, 0.0, 1.0)),
+        np.zeros_like(lost),
+        np.arange(frames) / FPS,
+        seen_by.resolution,
+    )
+    styles = tuple(MarkerStyle(name, name, (40 * i, 20, 200 - 30 * i)) for i, name in enumerate(SEGMENTS))
+    take = Take(Path("take"), Path("clip.mp4"), FPS, 1, frames, seen_by, BODY, styles, ())
+    return take, Reading(tracks)
+
+
+def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
+    """Mean distance of the points from the truth, with the hips aligned and absolutely."""
+    assert choice.match is not None
+    found, true = (BODY.points(BODY.pose(posture)) for posture in (choice.match.postures, truth))
+    off = found - true
+    hips = (choice.match.postures.translation - truth.translation)[:, None]
+    return (
+        float(np.linalg.norm(off - hips, axis=-1).mean()),
+        float(np.linalg.norm(off, axis=-1).mean()),
+    )
