@@ -5,7 +5,7 @@ from the keyframes, where the posture is known best; then edges are measured eve
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +14,18 @@ from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.appearance import Appearance, learn_appearance
+from ..footage.band_colors import BandColors
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
+from ..observation.limb_axes import LimbAxes
 from ..observation.part_map import part_map
+from .axial_search import find_shifts, learn_along
 from .contour_schedule import BY_MARKERS, Schedule
 from .contour_search import NARROW, Edges, SearchRange, find_edges
 from .keyframe_evidence import evenly_spread
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
+from .terms.limb_axes import AxialTerm
 from .terms.term import student_weight
 
 APPEARANCE_FRAMES = 32
@@ -33,6 +37,12 @@ SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """Standard deviation of a performer's parts from average ones: thickness at both ends, and place."""
 EDGE_STD_M = 0.012
 FEWEST_EDGES = 20
+AXIAL_STD_PX = 2.0
+AXIAL_STD_M = 0.03
+"""Standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm."""
+AXIAL_MEMORY_S = 0.3
+"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
+toward or away from the camera."""
 LEAST_FRAME_SHARE = 0.1
 """Least share of frames with a picture."""
 DEGREES_OF_FREEDOM = 4.0
@@ -50,6 +60,8 @@ class ContourEvidence:
     """The contours of the performer's own parts."""
     schedule: Schedule = BY_MARKERS
     """How far from the contours edges are looked for."""
+    along: BandColors | None = None
+    """The colors along each part, for shifts along their axes; None where markers tell these."""
 
     def measure(
         self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
@@ -77,6 +89,51 @@ class ContourEvidence:
             yield (chunk[-1] + 1) / len(frame)
         return ContourTerm(model, edge, normal, variance)
 
+    def near(
+        self, posture: Posture, frame: IndexArray, search: SearchRange
+    ) -> tuple[ContourPrediction, Edges]:
+        """The contours of well known postures, and the edges near them."""
+        pictures = self.album.pictures(frame)
+        return _measure(self.model, self.album, self.appearance, posture, frame, pictures, search)
+
+    def with_camera(self, camera: Camera) -> "ContourEvidence":
+        """The same before another camera."""
+        return replace(self, model=replace(self.model, camera=camera))
+
+    def measure_along(
+        self, posture: Posture, frame: IndexArray, search: SearchRange, step_s: Array
+    ) -> Generator[float, None, AxialTerm]:
+        """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
+
+        Args:
+            posture: The F postures.
+            frame: (F,) their indices in the clip.
+            search: How far from the prediction.
+            step_s: Times between all of the clip's frames [s].
+        """
+        model, album = self.model, self.album
+        kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
+        axes = LimbAxes(model.parts, model.camera)
+        assert self.along is not None
+        shape = len(frame), len(model.parts.segments)
+        share, place, variance = np.full(shape, 0.5), np.full(shape, np.nan), np.ones(shape)
+        direction = np.zeros((*shape, 2))
+        for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
+            pictures, known = album.pictures(frame[chunk])
+            pose = model.body.pose(posture[chunk])
+            found = find_shifts(
+                model, pose, frame[chunk], pictures, album.factor, self.appearance, self.along, search
+            )
+            _, pixel = axes.points(pose, frame[chunk], found.share)
+            usable = np.isfinite(found.variance) & known[:, None]
+            at = np.sum(pixel * found.direction, axis=-1) + found.distance
+            share[chunk], direction[chunk] = found.share, found.direction
+            place[chunk] = np.where(usable, at, np.nan)
+            spread = (AXIAL_STD_PX * album.factor) ** 2 + (AXIAL_STD_M * found.scale) ** 2
+            variance[chunk] = np.where(usable, found.variance, 1.0) + spread
+            yield (chunk[-1] + 1) / len(frame)
+        return AxialTerm(axes, share, place, direction, variance, kept)
+
 
 def learn_contours(
     body: Body,
@@ -96,8 +153,8 @@ def learn_contours(
         album: Pictures of the clip's frames.
         posture: The postures of all F frames, by their markers.
         keyframes: Frames whose posture is known best.
-        schedule: How far from the contours edges are to be looked for; a wide one says that only the keyframes'
-            postures are known.
+        schedule: How far from the contours edges are to be looked for; a wide one says that only the
+            keyframes' postures are known.
 
     Returns:
         None where no background can be trusted: before a moving camera, or where most pictures are missing.
@@ -116,7 +173,10 @@ def learn_contours(
     if not appearance.steady:
         return None
     fitted = yield from _fit_shapes(model, album, appearance, posture[known], known)
-    return ContourEvidence(album, appearance, fitted, schedule)
+    along = None
+    if schedule.is_wide:
+        along = learn_along(model, body.pose(posture[known]), known, album.factor, *labeled)
+    return ContourEvidence(album, appearance, fitted, schedule, along)
 
 
 def _learn_appearance(

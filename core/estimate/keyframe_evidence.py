@@ -7,7 +7,7 @@ and lens are the most probable ones given those sizes. Regions that fit none cou
 a marker that never fits is distrusted in all frames.
 """
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,6 +52,10 @@ PARAMETER_COUNT = len(PRIOR_STD)
 MOST_DISTRUST = 10.0
 
 
+ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
+"""Reads the rows of contours at posed postures in given frames."""
+
+
 @dataclass(frozen=True, eq=False)
 class KeyframeEvidence:
     """The calibrated model and the trust that keyframes and markers deserve."""
@@ -81,6 +85,7 @@ def read_keyframes(
     frame: IndexArray,
     keypoints: KeypointEvidence | None = None,
     points: ObservedKeypoints | None = None,
+    contours: ContourReader | None = None,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Calibrate markers and keypoints on the keyframes and judge the keyframes by them.
 
@@ -95,12 +100,13 @@ def read_keyframes(
         frame: (K,) their indices in the clip.
         keypoints: Usual evidence of the N keypoints; None for none.
         points: Those seen at the K keyframes.
+        contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
     keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
-    if not model.placements and not believed:
+    if not model.placements and not believed and contours is None:
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
         found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
         return replace(found, keypoints=keypoints)
@@ -115,6 +121,9 @@ def read_keyframes(
         seen_points = KnownKeypoints(pose, frame[judged], points[judged])
         seen_points = replace(seen_points, observed=seen_points.observed.only(keypoints.trust > 0.0))
         groups += [2] * len(keypoints.model.names)
+    outlines = None if contours is None else contours(posture[judged], frame[judged])
+    if outlines is not None:
+        groups += [1] * outlines.residual.shape[1]
     usual, placed, std_m = keypoints.model, keypoints.model, keypoints.std_m
     size = np.array(groups)
     weight = np.ones((len(judged), int(size.sum())))
@@ -129,10 +138,12 @@ def read_keyframes(
             parts.append(regions)
         if seen_points is not None:
             parts.append(keypoint_rows(placed, usual, seen_points, std_m))
+        if outlines is not None:
+            parts.append(outlines)
         seen = KeyframeRows.stacked(parts, posing[judged], velocity[judged])
         yield
         if iteration > 0:  # before, a careless keyframe looks like a marker mistaken for another thing
-            judging, tied = _judging(markers, keypoints, len(size) > markers)
+            judging, tied = _judging(markers, keypoints, seen_points is not None, outlines)
             scale, timing = yield from _most_likely_sizes(seen.part(judging, tied), weight[:, judging])
         change, left = seen.calibrated(weight, scale, timing)
         squared = seen.squared(left, size, scale, timing)
@@ -145,8 +156,9 @@ def read_keyframes(
         trust = student_weight(squared / doubt**2, DEGREES, size) / doubt**2
         weight = np.repeat(trust, size, axis=1)
         if seen_points is not None:
-            placed = usual.changed(change[ends:-1].reshape(-1, 3), calibrated.camera)
-            own = slice(markers * FEATURES, None)
+            rows, places = 2 * len(usual.names), 3 * len(usual.names)
+            placed = usual.changed(change[ends : ends + places].reshape(-1, 3), calibrated.camera)
+            own = slice(markers * FEATURES, markers * FEATURES + rows)
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     information = keyframe_information(posing, velocity, scale, timing)
@@ -240,8 +252,10 @@ def _area_ratios(ratio: Array) -> Array:
     return np.asarray(np.nanpercentile(filled, 75.0, axis=0))
 
 
-def _judging(markers: int, keypoints: KeypointEvidence, used: bool) -> tuple[BoolArray, BoolArray]:
-    """Which rows (R,) judge keyframes, with their parameters (X,): markers, and keypoints of the joints.
+def _judging(
+    markers: int, keypoints: KeypointEvidence, used: bool, outlines: EvidenceRows | None
+) -> tuple[BoolArray, BoolArray]:
+    """Which rows (R,) judge keyframes, with their parameters (X,): markers, contours, joints' keypoints.
 
     The others, of face, hands and feet, err along with these.
     """
@@ -251,6 +265,9 @@ def _judging(markers: int, keypoints: KeypointEvidence, used: bool) -> tuple[Boo
         points |= not points.any()
         rows = np.concatenate([rows, np.repeat(points, 2)])
         parameters = np.concatenate([parameters, np.repeat(points, 3)])
+    if outlines is not None:
+        rows = np.append(rows, np.ones(outlines.residual.shape[1], bool))
+        parameters = np.append(parameters, np.ones(outlines.by_parameters.shape[2], bool))
     return rows, np.append(parameters, True)
 
 

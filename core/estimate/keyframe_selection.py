@@ -4,14 +4,17 @@ Both ways of filling the time between posed keyframes have an error that can be 
 compared with each posed keyframe, after the others have told how the performer differs from it
 (leave-one-out; Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the
 line of sight, where the footage cannot correct it. The posed keyframes' interpolation is compared with the
-regions seen: its error across the line of sight stands for that along it. The library is left out where its
-error is larger.
+regions and keypoints seen: its error across the line of sight stands for that along it. The library is left
+out where its error is larger.
 """
 
 import numpy as np
 
 from ..arrays import Array, chunks
 from ..body.posture import Posture
+from ..footage.keypoints.body_points import mirrored_point
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.keypoints.principal_keypoints import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
@@ -30,10 +33,18 @@ none."""
 LEAST_TRUSTED = 0.3
 """Least visibility and quality of a region that counts."""
 CHUNK_FRAMES = 500
+KEYPOINT_COLUMNS = 10
+"""Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers."""
+KEYPOINT_ERROR_M = 0.02
+"""Error of a usual keypoint along each axis of the image, beside one that is the same at all times [m]."""
 
 
 def select_keyframes(
-    keyframes: tuple[Keyframe, ...], model: RegionModel, tracks: RegionTracks, fps: float
+    keyframes: tuple[Keyframe, ...],
+    model: RegionModel,
+    tracks: RegionTracks,
+    fps: float,
+    keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
     """The posed keyframes, and those matched ones that are better than interpolation between them.
 
@@ -42,12 +53,16 @@ def select_keyframes(
         model: The region model with average placements.
         tracks: The regions seen.
         fps: Frames per second.
+        keypoints: The performer's; None for none.
     """
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     if len(posed) < FEWEST_POSED or len(posed) == len(keyframes):
         return keyframes
     library_m = _library_error_m(keyframes, posed, model, fps)
     interpolation_error = _interpolation_error_squared_m(posed, model, tracks)
+    if keypoints is not None and keypoints.seen.any():
+        by_points = _keypoint_error_squared_m(posed, model, keypoints)
+        interpolation_error = np.hstack([interpolation_error, *[by_points[:, None]] * KEYPOINT_COLUMNS])
     kept = []
     for keyframe in keyframes:
         before = [other.index for other in posed if other.index <= keyframe.index]
@@ -85,6 +100,8 @@ def _interpolation_error_squared_m(
     Their offset at the posed keyframes is how the markers sit, and is subtracted.
     """
     camera, frames = model.camera, tracks.frame_count
+    if not model.placements:
+        return np.zeros((frames, 0))
     prior = interpolate(posed, frames)
     offset = np.empty((frames, len(model.placements), 2))
     for frame in chunks(np.arange(frames), CHUNK_FRAMES):
@@ -98,3 +115,29 @@ def _interpolation_error_squared_m(
     usual = np.nan_to_num(flat[index])
     placement = [np.interp(np.arange(frames), index, column) for column in usual.T]
     return np.asarray((flat - np.stack(placement, axis=-1)) ** 2)
+
+
+def _keypoint_error_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, keypoints: Keypoints) -> Array:
+    """(F,) squared error of the interpolated keyframes by the median keypoint, along an axis [m²].
+
+    Offsets at the posed keyframes are the detector's, and are subtracted. Left and right may be exchanged.
+    """
+    body, camera, frames = model.body, model.camera, keypoints.frame_count
+    prior, every = interpolate(posed, frames), np.arange(frames)
+    seen = principal_keypoints(keypoints).pixel
+    predicted, _ = camera.project(body.points(body.pose(prior)), every[:, None])
+    meters = camera.depth(prior.translation, every) / camera.focal_px
+    names = body.skeleton.point_names
+    mirrored = seen[:, [names.index(mirrored_point(name)) for name in names]]
+    index = np.array([keyframe.index for keyframe in posed])
+    errors = []
+    for pixel in (seen, mirrored):
+        offset = (predicted - pixel) * meters[:, None, None]
+        usual = np.nan_to_num(offset[index]).reshape(len(index), -1)
+        placement = np.stack([np.interp(every, index, column) for column in usual.T], axis=-1)
+        squared = 0.5 * ((offset - placement.reshape(offset.shape)) ** 2).sum(axis=-1)  # (F, P)
+        some = np.isfinite(squared).any(axis=1)
+        median = np.full(frames, np.nan)
+        median[some] = np.nanmedian(squared[some], axis=1)
+        errors.append(median)
+    return np.maximum(np.fmin(*errors) - KEYPOINT_ERROR_M**2, 0.0)

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..observation.regions import RegionModel
-from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
+from .keyframe_evidence import ContourReader, KeyframeEvidence, read_keyframes, uncalibrated
 from .keypoint_evidence import KeypointEvidence
 from .match_error import match_covariance
 from .posing_error import posing_covariance
@@ -32,8 +32,9 @@ def read_mixed_keyframes(
     posture: Posture,
     frame: IndexArray,
     match_scale: Array,
-    keypoints: KeypointEvidence,
-    points: ObservedKeypoints,
+    keypoints: KeypointEvidence | None = None,
+    points: ObservedKeypoints | None = None,
+    contours: ContourReader | None = None,
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
@@ -46,11 +47,14 @@ def read_mixed_keyframes(
         frame: (K,) their places in the clip.
         match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
             0 for posed ones.
-        keypoints: Usual evidence of the N keypoints.
+        keypoints: Usual evidence of the N keypoints; None for none.
         points: Those seen at the K keyframes.
+        contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
     if not match_scale.any():
-        reading = read_keyframes(model, noise, observed, width_px, posture, frame, keypoints, points)
+        reading = read_keyframes(
+            model, noise, observed, width_px, posture, frame, keypoints, points, contours
+        )
         return (yield from reading)
     posed = np.flatnonzero(match_scale == 0.0)
     information = np.linalg.inv(match_covariance(posture, model.camera, frame))
@@ -64,11 +68,13 @@ def read_mixed_keyframes(
             posture[posed],
             frame[posed],
             keypoints,
-            points[posed],
+            None if points is None else points[posed],
+            contours,
         )
         evidence = yield from reading
         information[posed] = evidence.information
         return replace(evidence, information=information)
     if len(posed):
         information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(posture[posed])))
-    return replace(uncalibrated(model), information=information, keypoints=keypoints)
+    evidence = replace(uncalibrated(model), information=information)
+    return evidence if keypoints is None else replace(evidence, keypoints=keypoints)

@@ -140,7 +140,9 @@ def _reconstruct(
     else:
         _check_tracks(take, reading.tracks)
     tracks = reading.tracks
-    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps)
+    every = interpolate(take.keyframes, tracks.frame_count)
+    seen = performer_keypoints(take, every, tracks)
+    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, seen)
     notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
     take = replace(take, keyframes=worth)
     notes += match_notes(take)

@@ -2,8 +2,9 @@
 
 A hidden Markov model for each source over four states: nothing exchanged, the arms, the legs, or both
 (Rabiner 1989, *A tutorial on hidden Markov models*). A state is held against where the keyframes have the
-limbs, which says much near them and little midway, and against how the points move on from frame to frame,
-which says whether they were exchanged just now. The most probable sequence is Viterbi's.
+limbs, which says much near them and little midway, and against how the points move on from frame to frame:
+limbs that pass each other keep their velocities, where an exchange makes both turn about. The most probable
+sequence is Viterbi's.
 """
 
 from dataclasses import replace
@@ -22,10 +23,11 @@ STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
 """Whether arms, and whether legs, are exchanged."""
 PLACE_STD_M = 0.04
 """Error of a point where a keyframe is: the detector's, the posing error, and what places differ by."""
-PLACE_STD_M_PER_S = 1.0
-"""How fast it grows away from a keyframe: a limb swings past what is interpolated."""
-MOVE_STD_M_PER_S = 1.2
-"""Difference of a point's speed from that of the interpolated motion."""
+LEAST_SPEED_M_PER_S, SPEED_QUANTILE = 0.3, 0.8
+"""Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
+interpolated, and at least so fast: a running leg is anywhere a few frames later."""
+JITTER_STD_M, ACCELERATION_M_PER_S2 = 0.04, 40.0
+"""How far a point is from where its velocity takes it: a detector's jitter, and fast limbs."""
 ALIKE = 0.5
 """The points of a limb err alike: each counts as half."""
 CHANGE = 1.0 / 60.0
@@ -47,8 +49,8 @@ def find_swaps(
     """
     swapped = np.zeros(keypoints.seen.shape, dtype=bool)
     away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
-    place_std = PLACE_STD_M + PLACE_STD_M_PER_S * away_s
-    move_std = MOVE_STD_M_PER_S * np.diff(time_s)
+    step_s = np.maximum(np.diff(time_s), 1e-3)
+    move_std = np.hypot(JITTER_STD_M, ACCELERATION_M_PER_S2 * step_s**2)[:, None, None]
     for source in dict.fromkeys(keypoints.sources):
         pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
         if not any(len(own) for own in pairs):
@@ -63,13 +65,14 @@ def find_swaps(
             seen, guessed = (
                 array[:, own] / scale[:, None, None, None] for array in (keypoints.pixel, predicted)
             )
+            speed = _departure_speed(seen - guessed, step_s)
+            place_std = PLACE_STD_M + speed[:, None] * away_s[:, None, None]
             kept = _cost(seen - guessed, place_std)
             other = _cost(seen[:, :, ::-1] - guessed, place_std)
             place += np.where(exchanged, other[:, None], kept[:, None])
-            step = np.diff(guessed, axis=0)
-            stays = _cost(seen[1:] - seen[:-1] - step, move_std)
-            turns = _cost(seen[1:] - seen[:-1, :, ::-1] - step, move_std)
-            turns = 0.5 * (turns + _cost(seen[1:, :, ::-1] - seen[:-1] - step, move_std))
+            onward = _extrapolated(seen, step_s)
+            stays = _cost(seen[1:] - onward, move_std)
+            turns = _cost(seen[1:, :, ::-1] - onward, move_std)
             differs = exchanged[:, None] != exchanged
             move += np.where(differs, (turns - np.log(CHANGE))[:, None, None], stays[:, None, None])
         exchanged = STATES[_most_probable(place, move)]  # (F, 2)
@@ -110,9 +113,27 @@ def _pairs(keypoints: Keypoints, source: str, limbs: tuple[str, ...]) -> IndexAr
     return np.array(found, dtype=np.intp).reshape(-1, 2)
 
 
+def _departure_speed(departure: Array, step_s: Array) -> Array:
+    """(P,) usual speed [m/s] at which pairs of points (F, P, 2, 2) depart from what is expected."""
+    speed = np.linalg.norm(np.diff(departure, axis=0), axis=-1) / step_s[:, None, None]
+    usual = [
+        np.quantile(one[np.isfinite(one)], SPEED_QUANTILE) if np.isfinite(one).any() else 0.0
+        for one in np.moveaxis(speed, 1, 0)
+    ]
+    return np.maximum(np.array(usual), LEAST_SPEED_M_PER_S)
+
+
+def _extrapolated(seen: Array, step_s: Array) -> Array:
+    """(F - 1, P, 2, 2) where the velocities of the frames before take points to from the second frame on."""
+    onward = seen[:-1].copy()
+    moved = np.diff(seen[:-1], axis=0) * (step_s[1:] / step_s[:-1])[:, None, None, None]
+    onward[1:] += np.where(np.isfinite(moved), moved, 0.0)
+    return onward
+
+
 def _cost(error: Array, std: Array) -> Array:
     """(F,) negative logarithm of Student's t of errors (F, P, 2, 2) [m]; what is not seen costs nothing."""
-    squared = (error**2).sum(axis=-1) / (std**2)[:, None, None]
+    squared = (error**2).sum(axis=-1) / std**2
     cost = 0.5 * (DEGREES + 2.0) * np.log1p(squared / DEGREES)
     return np.asarray(ALIKE * np.nan_to_num(cost).sum(axis=(1, 2)))
 

@@ -8,7 +8,7 @@ annealed, so that early steps do not lock on to a wrong visibility.
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -26,9 +26,10 @@ from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
-from .contour_schedule import contour_schedule
+from .contour_keyframes import contour_rows
+from .contour_schedule import all_located, contour_schedule
 from .keyframe_evidence import KeyframeEvidence
-from .keyframe_trust import read_mixed_keyframes
+from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
@@ -135,6 +136,11 @@ def estimate_whole_clip(
     if keypoints.names and len(posed):
         said = keypoint_trust(usual.model, usual.sources, points, body.pose(prior[posed]), posed)
         usual = replace(usual, trust=said.trust, lag={name: lag for name, lag in said.lag.items() if lag})
+    contours = None  # where markers judge keyframes, contours would add nothing
+    if album is not None and not all_located(body, segments) and len(posed) >= FEWEST_POSED:
+        schedule = contour_schedule(body, camera, album.factor, segments, prior)
+        learning = learn_contours(body, camera, album, prior, posed, schedule)
+        contours = yield from scaled(learning, 0.0, 0.0)
     reading = read_mixed_keyframes(
         model,
         options.regions,
@@ -145,6 +151,7 @@ def estimate_whole_clip(
         match_scale,
         usual,
         points[index],
+        None if contours is None else partial(contour_rows, contours),
     )
     evidence = yield from scaled(reading, 0.0, 0.0)
     factor = process_noise_factor(prior[index], tracks.time_s[index])
@@ -226,12 +233,9 @@ def _solve_windows(
     if earlier is None and album is not None:
         known = problem.evidence.model.camera  # with the lens that was found
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+        segments = tuple(one.segment for one in problem.evidence.model.placements)
         schedule = contour_schedule(
-            problem.body,
-            known,
-            album.factor,
-            tuple(one.segment for one in problem.evidence.model.placements),
-            problem.prior,
+            problem.body, known, album.factor, segments, problem.prior, problem.keypoints
         )
         learning = learn_contours(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule

@@ -1,7 +1,7 @@
 """Gauss-Newton on one window of a clip: first by the markers, then with the contours."""
 
 from collections.abc import Generator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from .clip_problem import ClipProblem
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
 from .terms.assembly import window_terms, with_contours
+from .terms.contours import ContourTerm
+from .terms.limb_axes import AxialTerm
 from .terms.term import NormalEquations
 from .windows import Window
 
@@ -24,6 +26,12 @@ LARGEST_STEP = 0.5
 """Largest change of a posture's unknown in one step [m, rad]."""
 CONVERGED = 3e-3
 """Converged once no unknown of any posture changes by more in a step [m, rad]."""
+MOST_UNPACKED = 256 << 20
+"""Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
+UNMARKED_DOUBT = 4.0
+"""Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
+for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
+other side."""
 MEASURING_SHARE = 0.5
 """Share of following the contours that measuring their edges is."""
 
@@ -39,6 +47,7 @@ class WindowProblem:
     def __post_init__(self) -> None:
         """Assemble the terms."""
         self.terms = window_terms(self.clip, self.window, self.state)
+        self.contours_doubt = 1.0
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
@@ -48,12 +57,19 @@ class WindowProblem:
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
         others = list(self.terms)
+        contours = replace(contours, album=contours.album.opened(MOST_UNPACKED))
         looks = len(contours.schedule.looks)
         for number, search in enumerate(contours.schedule.looks):
             measuring = contours.measure(self.state.posture, self.state.frame, search)
             begun, measured = number / looks, (number + MEASURING_SHARE) / looks
             term = yield from scaled(measuring, begun, measured)
             self.terms = with_contours(others, term)
+            if contours.along is not None:
+                shifts = contours.measure_along(
+                    self.state.posture, self.state.frame, search, self.clip.step_s
+                )
+                self.terms.append((yield from scaled(shifts, measured, measured)))
+                self.contours_doubt = UNMARKED_DOUBT
             yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
@@ -78,7 +94,7 @@ class WindowProblem:
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
-        yield from self._assemble(equations, 1.0)
+        yield from self._assemble(equations, 1.0, self.contours_doubt)
         factorized = equations.matrix.factorize()
         yield
         blocks = factorized.covariance_blocks()[kept, :dofs, :dofs]
@@ -93,10 +109,13 @@ class WindowProblem:
         distance[predicted.visible <= self.clip.noise.least_visible] = np.nan
         return state.posture[kept], covariance, distance[kept]
 
-    def _assemble(self, equations: NormalEquations, temperature: float) -> Generator[None, None, None]:
+    def _assemble(
+        self, equations: NormalEquations, temperature: float, contours_doubt: float = 1.0
+    ) -> Generator[None, None, None]:
         """Add the normal equations of all terms at the current state, one after the other."""
         _ = self.state.pose, self.state.tangent_jacobian  # cached for all terms
         for term in self.terms:
             yield
-            term.add_to(equations, self.state, temperature)
+            doubt = contours_doubt if isinstance(term, ContourTerm | AxialTerm) else 1.0
+            term.add_to(equations, self.state, temperature * doubt)
         yield

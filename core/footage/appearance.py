@@ -83,9 +83,8 @@ class Appearance:
         seen = [_seen(image, label, nothing, len(names)) for image, label in zip(images, labels, strict=True)]
         counts = _counts(seen, len(names))[:-1]
         own = _log_densities(counts)
-        for left, right in _pairs(names):
-            if _overlap(own[left], own[right]) > ALIKE:
-                own[[left, right]] = _log_densities(counts[[left]] + counts[[right]])
+        for left, right in paired(names, own):
+            own[[left, right]] = _log_densities(counts[[left]] + counts[[right]])
         return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
 
     def where_steady(self) -> "Appearance":
@@ -155,15 +154,19 @@ def _counts(seen: list[IndexArray], parts: int) -> IndexArray:
     return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
 
 
-def _pairs(names: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Indices of the left and right of each pair of segments."""
-    left = [name for name in names if name.endswith(".L")]
-    return [(names.index(name), names.index(name[:-2] + ".R")) for name in left]
+def paired(names: tuple[str, ...], logs: Array) -> list[tuple[int, int]]:
+    """Indices of left and right of those segments whose colors, by log densities, are one garment's."""
+    left = [index for index, name in enumerate(names) if name.endswith(".L")]
+    pairs = [(index, names.index(names[index][:-2] + ".R")) for index in left]
+    return [pair for pair in pairs if _overlap(logs[pair[0]], logs[pair[1]]) > ALIKE]
 
 
 def _overlap(one: Array, other: Array) -> float:
     """Bhattacharyya's coefficient of two log densities (cells,), 0 to 1."""
-    return float(np.exp(0.5 * (one.astype(np.float64) + other)).sum() * CELL_VOLUME)
+    root = 0.5 * (one.astype(np.float64) + other)
+    # Densities per level³ or per cell alike.
+    scale = np.exp(one.astype(np.float64)).sum() * np.exp(other.astype(np.float64)).sum()
+    return float(np.exp(root).sum() / np.sqrt(scale))
 
 
 def _cells(pixels: Image) -> IndexArray:

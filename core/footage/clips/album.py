@@ -26,6 +26,9 @@ class Album:
     factor: int = 1
     """Pixels of the clip to a pixel of the pictures, along either axis."""
     _pictures: dict[int, Image] = field(default_factory=dict)
+    _room: int = 0
+    """Bytes of pictures that may be kept as they are."""
+    _opened: dict[int, Image] = field(default_factory=dict)
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
@@ -38,6 +41,10 @@ class Album:
         """The album of a clip that consists of every `step`-th frame, with indices of its own."""
         kept = {index // step: packed for index, packed in self._pictures.items() if index % step == 0}
         return Album(self.factor, kept)
+
+    def opened(self, room: int) -> "Album":
+        """The same album for many looks at the same frames: it keeps `room` bytes of what it has unpacked."""
+        return Album(self.factor, self._pictures, room)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The concatenated compressed pictures, with their frames and end offsets."""
@@ -84,4 +91,11 @@ class Album:
         Raises:
             KeyError: The frame was never read, or is blank.
         """
-        return smooth(np.asarray(cv2.imdecode(self._pictures[index], cv2.IMREAD_COLOR), dtype=np.uint8))
+        if index in self._opened:
+            return self._opened[index]
+        packed = self._pictures[index]
+        image = smooth(np.asarray(cv2.imdecode(packed, cv2.IMREAD_COLOR), dtype=np.uint8))
+        if image.nbytes <= self._room:
+            self._room -= image.nbytes
+            self._opened[index] = image
+        return image

@@ -6,6 +6,10 @@ import numpy as np
 from _scene import BODY, MODEL, exercise, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.keyframe_selection import select_keyframes
+from keymark.core.footage.keypoints.body_points import mirrored_point
+from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.observation.regions import RegionModel
 from keymark.core.prior.keyframes import Keyframe, Matched
 
 FRAMES, FPS = 91, 30.0
@@ -70,3 +74,29 @@ def test_a_clip_in_which_nothing_is_seen_keeps_a_library_that_agrees() -> None:
         Keyframe(90, TRUTH[90]),
     )
     assert select_keyframes(keyframes, MODEL, hidden, FPS) == keyframes
+
+
+def test_keypoints_alone_judge_as_markers_do() -> None:
+    """A detector that jitters, takes left for right in a fifth of the frames and is far off at times."""
+    rng = np.random.default_rng(6)
+    pixel, _ = MODEL.camera.project(BODY.points(BODY.pose(TRUTH)), np.arange(FRAMES)[:, None])
+    pixel = pixel + rng.normal(0.0, 1.0, pixel.shape) + np.array([2.0, -1.0])
+    names = BODY.skeleton.point_names
+    mirror = [names.index(mirrored_point(name)) for name in names]
+    pixel[20:38] = pixel[20:38][:, mirror]
+    wrong = rng.random(pixel.shape[:2]) < 0.1
+    pixel[wrong] += 60.0
+    seen = Keypoints(names, ("test",) * 13, pixel, np.ones(pixel.shape[:2]), np.full((FRAMES, 13, 3), np.nan))
+    bare = RegionModel(BODY, MODEL.camera, ())
+    unmarked = RegionTracks.unmarked(TRACKS.time_s, TRACKS.size)
+
+    def matched(posed: list[int], library: Posture) -> list[int]:
+        keyframes = [Keyframe(i, library[i], matched=SAID) for i in range(5, FRAMES, 10) if i not in posed]
+        keyframes += [Keyframe(i, TRUTH[i]) for i in posed]
+        ordered = tuple(sorted(keyframes, key=lambda keyframe: keyframe.index))
+        left = select_keyframes(ordered, bare, unmarked, FPS, seen)
+        return [keyframe.index for keyframe in left if keyframe.matched is not None]
+
+    assert matched([0, 90], alike()) == list(range(5, FRAMES, 10))
+    assert matched([20, 45, 70], unlike()) == [5, 15, 75, 85]
+    assert not set(matched([*range(0, 43, 3), 90], alike())) & set(range(43))

@@ -1,4 +1,4 @@
-"""Keypoints in the whole-clip estimate: what they add, how they are calibrated, and detectors that are wrong."""
+"""Keypoints in the whole-clip estimate: what they add, their calibration, and detectors that are wrong."""
 
 from dataclasses import replace
 from functools import cache

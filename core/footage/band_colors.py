@@ -1,0 +1,90 @@
+"""Colors along limbs: each part's length in bands, from one end to the other.
+
+Sleeves end, trousers meet shoes, a neck rises out of a collar: what a part shows changes along it, and what
+it shows where is learned from frames in which the body is known best.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array, Image, IndexArray
+from .appearance import NO_PART, UNSEEN, paired
+
+BANDS = 6
+"""Bands of a part's length."""
+BITS = 4
+"""Coarser than whole parts' colors: a band has a sixth of their pixels."""
+LEVELS = 1 << BITS
+CELLS = LEVELS**3
+BLUR = np.array([0.16, 0.68, 0.16])
+"""Smoothing of a histogram along each of its axes: noise of a few levels."""
+SHARED = 0.25
+"""Share of a band's colors that are the whole part's: folds and shadows wander."""
+
+
+@dataclass(frozen=True, eq=False)
+class BandColors:
+    """Log likelihoods of colors, as densities per cell."""
+
+    bands: Array
+    """(O, BANDS, cells) of each part's bands."""
+    parts: Array
+    """(O, cells) of whole parts."""
+    anything: Array
+    """(cells,) of performer and background together."""
+
+
+def learn_band_colors(
+    images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], names: tuple[str, ...]
+) -> BandColors:
+    """Learn the colors along all parts.
+
+    Args:
+        images: Frames (rows, columns, 3).
+        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
+        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
+            the part is seen end on.
+        names: The parts' segments, O of them.
+    """
+    count = len(names)
+    size = count * BANDS * CELLS
+    counts, background = np.zeros(size), np.zeros(CELLS)
+    for image, label, share in zip(images, labels, shares, strict=True):
+        cell = band_cells(image)
+        inside = (label != NO_PART) & np.isfinite(share)
+        band = np.clip(share[inside] * BANDS, 0, BANDS - 1).astype(np.intp)
+        where = (label[inside].astype(np.intp) * BANDS + band) * CELLS + cell[inside]
+        counts += np.bincount(where, minlength=size)
+        background += np.bincount(cell[label == NO_PART], minlength=CELLS)
+    own = counts.reshape(count, BANDS, CELLS)
+    whole = _densities(own.sum(axis=1))
+    for left, right in paired(names, np.log(whole)):
+        own[[left, right]] = own[left] + own[right]
+        whole[[left, right]] = _densities(own[[left]].sum(axis=1))
+    bands = (1.0 - SHARED) * _densities(own) + SHARED * whole[:, None]
+    anything = 0.5 * (whole.mean(axis=0) + _densities(background))
+    return BandColors(np.log(bands), np.log(whole), np.log(anything))
+
+
+def band_cells(pixels: Image) -> IndexArray:
+    """Histogram cell of pixels (..., 3)."""
+    reduced = (pixels >> (8 - BITS)).astype(np.intp)
+    return np.asarray((reduced[..., 0] << 2 * BITS) | (reduced[..., 1] << BITS) | reduced[..., 2])
+
+
+def _densities(counts: Array) -> Array:
+    """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
+    grid = counts.reshape(*counts.shape[:-1], LEVELS, LEVELS, LEVELS)
+    for axis in (-3, -2, -1):
+        padded = np.concatenate(
+            [np.take(grid, [0], axis), grid, np.take(grid, [LEVELS - 1], axis)], axis=axis
+        )
+        grid = sum(
+            share * np.take(padded, np.arange(LEVELS) + shift, axis) for shift, share in enumerate(BLUR)
+        )
+    smoothed = np.asarray(grid).reshape(counts.shape)
+    total = smoothed.sum(axis=-1, keepdims=True)
+    share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / CELLS)
+    return np.asarray((1.0 - UNSEEN) * share + UNSEEN / CELLS)
