@@ -28,8 +28,8 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     )
     place: bpy.props.BoolProperty(
         name="Stand in the Footage",
-        description="Stand the actor where markers or keypoints have the performer in the current frame, facing "
-        "the camera; without either, in the middle of the picture. An actor with keyframes stays where it is",
+        description="Stand the actor where markers or keypoints show the performer in this frame, facing the "
+        "camera; without either, in the middle of the picture. An actor with keyframes stays where it is",
         default=True,
     )
 
@@ -70,8 +70,8 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "INFO",
-                "The actor stands in the middle of the picture; with markers or keypoints it would stand at the "
-                "performer",
+                "The actor stands in the middle of the picture; with markers or keypoints it would stand at "
+                "the performer",
             )
         elif had_actor:
             say(self, "INFO", "The actor is {height:.2f} m tall now", height=self.stature)
