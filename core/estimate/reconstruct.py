@@ -140,15 +140,16 @@ def _reconstruct(
     else:
         _check_tracks(take, reading.tracks)
     tracks = reading.tracks
-    every = interpolate(take.keyframes, tracks.frame_count)
-    seen = performer_keypoints(take, every, tracks)
-    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, seen)
-    notes += reading.notes + left_out_notes(take, len(take.keyframes) - len(worth))
+    keypoints = performer_keypoints(take, interpolate(take.keyframes, tracks.frame_count), tracks)
+    worth = select_keyframes(take.keyframes, average_model(take), tracks, take.fps, keypoints)
+    left_out = len(take.keyframes) - len(worth)
+    notes += reading.notes + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
     notes += match_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
-    keypoints = performer_keypoints(take, prior, tracks)
+    if left_out or match_scale.any():  # else the prior is that of all keyframes
+        keypoints = performer_keypoints(take, prior, tracks)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
     motion, model, solution = baseline, average_model(take), None

@@ -216,9 +216,9 @@ def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
     asked: list[int] = []
     original = single_frame_fit.calibrated
 
-    def calibrated(model, seen, posture, frames):  # noqa: ANN001, ANN202
+    def calibrated(model, seen, posture, frames, *keypoints):  # noqa: ANN001, ANN002, ANN202
         asked.append(len(frames))
-        return original(model, seen, posture, frames)
+        return original(model, seen, posture, frames, *keypoints)
 
     monkeypatch.setattr(single_frame_fit, "calibrated", calibrated)
     bpy.ops.keymark.propose_keyframes()  # reads the clip

@@ -19,7 +19,7 @@ def call(text: str, **values: str) -> list[str]:
 
 def test_words_are_split_filled_in_and_never_split_again() -> None:
     """A clip whose name holds spaces, quotes, braces and a shell's signs stays one word."""
-    odd = "/tmp/a b'c\"{output}; rm -rf $HOME `x`|.mp4"
+    odd = "/odd/a b'c\"{output}; rm -rf $HOME `x`|.mp4"
     words = call(f'"{sys.executable}" -u {{clip}} --output={{output}} "two words" {{{{x}}}}', clip=odd)
     assert words == ["-u", odd, "--output=<output>", "two words", "{x}"]
     listed = json.dumps([sys.executable, "{clip}", "a b", "", "{width}x{height}"])
