@@ -33,7 +33,7 @@ class KeypointFit:
     weight: Array
     """(F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out."""
     thrown_out: BoolArray
-    """(F, N) those seen that had next to no weight: jumps to another thing or person."""
+    """(F, N) those seen that had next to no weight: jumps to another thing, person or side."""
     swapped: BoolArray
     """(F, N) those that the source had on the other side of the body."""
     trust: Array
@@ -73,13 +73,14 @@ def keypoint_fit(
         )
         for source in dict.fromkeys(evidence.sources)
     }
+    doubted = points.seen & (keypoints.score == 0.0)
     return KeypointFit(
         keypoints,
         predicted,
         residual,
         std_px,
         weight,
-        points.seen & (weight < THROWN_OUT),
+        points.seen & (weight < THROWN_OUT) | doubted,
         swapped,
         evidence.trust,
         MappingProxyType(trust),

@@ -33,6 +33,8 @@ ALIKE = 0.5
 CHANGE = 1.0 / 60.0
 """Probability that limbs begin or cease to be exchanged, a frame."""
 DEGREES = 4.0
+SLIDING_S = 0.07
+"""Before and after a change: a detector that follows limbs slides from one to the other for a while."""
 
 
 def find_swaps(
@@ -97,6 +99,28 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
         pixel=np.where(either[..., None], keypoints.pixel[:, partner], keypoints.pixel),
         score=np.where(either, keypoints.score[:, partner], keypoints.score),
         hint_m=np.where(either[..., None], keypoints.hint_m[:, partner], keypoints.hint_m),
+    )
+
+
+def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:
+    """The keypoints without their confidence and hints in frames near a change of what is exchanged.
+
+    Args:
+        keypoints: The performer's, exchanged back.
+        swapped: (F, N) which of them were exchanged.
+        time_s: (F,) times of the frames [s].
+    """
+    doubted = np.zeros_like(swapped)
+    for frame in np.flatnonzero((swapped[1:] != swapped[:-1]).any(axis=1)):
+        changed = (swapped[frame + 1] != swapped[frame]) & keypoints.seen[[frame, frame + 1]].all(axis=0)
+        middle_s = 0.5 * (time_s[frame] + time_s[frame + 1])
+        doubted |= (np.abs(time_s - middle_s) <= SLIDING_S)[:, None] & changed
+    if not doubted.any():
+        return keypoints
+    return replace(
+        keypoints,
+        score=np.where(doubted, 0.0, keypoints.score),
+        hint_m=np.where(doubted[..., None], np.nan, keypoints.hint_m),
     )
 
 

@@ -34,7 +34,7 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
-from .side_swaps import exchanged_back, find_swaps
+from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
@@ -132,7 +132,7 @@ def estimate_whole_clip(
     keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
-    keypoints = exchanged_back(keypoints, swapped)
+    keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
     points = ObservedKeypoints.of(keypoints)
     posed = index[~matched]
     if keypoints.names and len(posed):

@@ -12,7 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import observed_joints
 from keymark.core.estimate.keypoint_notes import keypoint_notes
-from keymark.core.estimate.side_swaps import exchanged_back, find_swaps
+from keymark.core.estimate.side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from keymark.core.estimate.terms.drift import add_drift, drift
 from keymark.core.estimate.terms.term import NormalEquations
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
@@ -166,7 +166,7 @@ def test_sides_that_are_exchanged_are_exchanged_back() -> None:
     result = estimate(sides_exchanged(GOOD, some))
     paired = np.array(["." in name for name in LAYOUT])
     np.testing.assert_array_equal(result.keypoints.swapped[:, paired].all(axis=1), some)
-    assert error_mm(result) == pytest.approx(error_mm(with_good()), rel=0.02)
+    assert error_mm(result) < 1.02 * error_mm(with_good())
 
 
 def test_legs_alone_may_be_exchanged() -> None:
@@ -181,6 +181,24 @@ def test_legs_alone_may_be_exchanged() -> None:
     swapped = find_swaps(mixed, predicted, np.full(FRAMES, 85.0), np.array(POSED), np.arange(FRAMES) / 30.0)
     np.testing.assert_array_equal(swapped, some[:, None] & legs)
     np.testing.assert_array_equal(exchanged_back(mixed, swapped).pixel, GOOD.pixel)
+
+
+def test_points_near_a_change_of_sides_count_for_little() -> None:
+    """A detector slides from one limb to the other there; where it was sure of, it stays."""
+    time_s = np.arange(FRAMES) / 30.0
+    legs = np.array([name.startswith(("hip", "knee", "ankle")) for name in LAYOUT])
+    swapped = np.zeros((FRAMES, len(LAYOUT)), dtype=bool)
+    swapped[47:56, legs] = True
+    hinted = detect(TRUTH, hint_error_m=0.03)
+    doubted = doubted_at_changes(hinted, swapped, time_s)
+    near = np.zeros(FRAMES, dtype=bool)
+    near[[45, 46, 47, 48, 54, 55, 56, 57]] = True
+    here = near[:, None] & legs & hinted.seen
+    np.testing.assert_array_equal((doubted.score == 0.0) & hinted.seen, here | (hinted.score == 0.0))
+    assert np.isnan(doubted.hint_m[here]).all()
+    np.testing.assert_array_equal(doubted.hint_m[~here], hinted.hint_m[~here])
+    np.testing.assert_array_equal(doubted.pixel, hinted.pixel)
+    assert doubted_at_changes(hinted, np.zeros_like(swapped), time_s) is hinted
 
 
 def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
