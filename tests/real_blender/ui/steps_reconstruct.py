@@ -8,7 +8,8 @@ from person import Person, keymark
 def keyframes(person: Person) -> Steps[None]:
     """Propose frames, go to one of them, and pose and store the keyframes."""
     propose = "keymark.propose_keyframes"
-    yield from person.changes_nothing("cancelling the proposal", lambda: cancelled(person, propose))
+    if len(person.take.markers):  # with none to follow, it is over before a key can be pressed
+        yield from person.changes_nothing("cancelling the proposal", lambda: cancelled(person, propose))
     yield from person.undoable("proposing keyframes", lambda: job(person, propose))
     expect(len(person.take.proposals) >= 2, "no keyframes were proposed")
     for direction in ("NEXT", "PREVIOUS"):
