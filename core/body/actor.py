@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ..errors import InputError
+from ..files.fields import is_number
 from ..files.json_file import shown
 from .skeleton import SIDES
 
@@ -90,8 +91,7 @@ def _checked_length(name: str, value: Any) -> float:
             f"actor.segments_m names the unknown segment {shown(name)}; "
             f"known are {', '.join(SHARES_OF_STATURE)}"
         )
-    usable = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    if not usable or not SHORTEST_M <= value <= LONGEST_M:
+    if not is_number(value) or not SHORTEST_M <= value <= LONGEST_M:
         raise InputError(
             f"actor.segments_m.{name} is {shown(value)}; "
             f"a length between {SHORTEST_M} and {LONGEST_M} m is valid"

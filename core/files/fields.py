@@ -82,7 +82,7 @@ class Fields:
         """A number from `low` to `high`."""
         valid = f"a number from {low:g} to {high:g}{unit and ' ' + unit}"
         value = self.required(name, valid)
-        if not _is_number(value) or not low <= value <= high:
+        if not is_number(value) or not low <= value <= high:
             raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
         return float(value)
 
@@ -90,7 +90,7 @@ class Fields:
         """A whole number from `low` to `high`; 3.0 is one too."""
         valid = f"a whole number from {low} to {high}"
         value = self.required(name, valid)
-        if not _is_number(value) or value != int(value) or not low <= value <= high:
+        if not is_number(value) or value != int(value) or not low <= value <= high:
             raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
         return int(value)
 
@@ -115,10 +115,13 @@ class Fields:
         """`count` numbers from `low` to `high`."""
         value = self.required(name, valid)
         usable = isinstance(value, list) and len(value) == count
-        if not usable or not all(_is_number(item) and low <= item <= high for item in value):
+        if not usable or not all(is_number(item) and low <= item <= high for item in value):
             raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
         return tuple(float(item) for item in value)
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+def is_number(value: Any) -> bool:
+    """Whether a value of JSON is a finite number; whole ones may be larger than a float can be."""
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, int) or (isinstance(value, float) and isfinite(value))
