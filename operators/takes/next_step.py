@@ -5,6 +5,7 @@ import bpy
 from ..keypoints.evidence import has_contours, has_keypoints
 from ..matching.matches import state_of
 from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
+from ..shell.takes import has_lost_actor, present_actor
 
 FEWEST_KEYFRAMES = 2
 
@@ -18,7 +19,9 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     follow = take.follow
     if follow.use_markers and any(not marker.is_picked for marker in take.markers):
         return "Next: pick the markers' colors"
-    has_actor = take.armature is not None and take.armature.name in take.id_data.objects
+    if has_lost_actor(take):
+        return "Next: bring the actor back"
+    has_actor = present_actor(take) is not None
     followed = (follow.use_markers and len(take.markers)) or has_keypoints(take)
     # Contours need nothing to be done: whoever goes on to the actor follows these alone.
     if not followed and not (has_actor and has_contours(take)):
