@@ -4,7 +4,8 @@ import bpy
 
 from ..keypoints.evidence import has_contours, has_keypoints
 from ..matching.matches import state_of
-from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
+from ..overlays.timeline_figures import DOUBTED
+from ..shell.keyed_frames import is_posed, keyframes_of, matched_frames, unposed_proposals
 from ..shell.takes import has_lost_actor, present_actor
 
 FEWEST_KEYFRAMES = 2
@@ -35,9 +36,11 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
             return "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"
-        if any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches):
+        if _has_doubtful_matches(take):
             return "Next: check matches, reconstruct"
         return "Next: reconstruct the motion"
+    if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
+        return _how_to_better(take)
     if take.finish.action is None:
         return "Next: review, then finish"
     if take.finish.outdated:
@@ -47,3 +50,22 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if not any(result.action for character in take.characters for result in character.results):
         return "Next: a character, or export"
     return "Next: mark as asset, or export"
+
+
+def is_doubtful(take: bpy.types.PropertyGroup) -> bool:
+    """Whether a take's motion is to be corrected and not finished: no better than chance."""
+    return 0.0 <= take.review.confidence < DOUBTED
+
+
+def _how_to_better(take: bpy.types.PropertyGroup) -> str:
+    """What makes a doubtful motion better: the keyframes are what it lacks."""
+    weak = [each.frame for each in take.review.weak_frames]
+    if _has_doubtful_matches(take):
+        return "Next: check the doubtful poses"
+    if any(not is_posed(take, frame) for frame in weak):
+        return "Next: pose the weak frames"
+    return "Next: reconstruct again" if weak else "Next: pose more keyframes"
+
+
+def _has_doubtful_matches(take: bpy.types.PropertyGroup) -> bool:
+    return any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches)
