@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, IndexArray
+from ...body.center_of_mass import mass_weights
 from ...body.kinematics import Body
 from ...body.skeleton import SIDES
 from ...body.soles import sole_places
@@ -18,30 +19,8 @@ from .term import NormalEquations, student_weight
 
 DEGREES = 3.0
 """Of Student's t: whoever runs, leaps, kicks or leans on something is forgiven."""
-MASS_SHARES = {
-    "head": ((("head", 1.0),), 0.081),
-    "trunk": ((("shoulder", 0.5), ("hip", 0.5)), 0.497),
-    "upper_arm": ((("shoulder", 0.564), ("elbow", 0.436)), 0.056),
-    "forearm": ((("elbow", 0.318), ("wrist", 0.682)), 0.044),
-    "thigh": ((("hip", 0.567), ("knee", 0.433)), 0.2),
-    "shin": ((("knee", 0.394), ("ankle", 0.606)), 0.122),
-}
-"""Where each segment's center of mass lies between principal points, and its share of the body's mass, both
-sides together, hands and feet with the segments above them (Winter 2009, *Biomechanics and Motor Control of
-Human Movement*, table 4.1)."""
 STEP_M = 0.1
 """A foot that is higher above the other than this bears nothing."""
-
-
-def mass_weights(body: Body) -> Array:
-    """(P,) weight of each principal point in the center of mass; they sum to 1."""
-    names = body.skeleton.point_names
-    weights = np.zeros(len(names))
-    for points, share in MASS_SHARES.values():
-        for stem, part in points:
-            own = [index for index, name in enumerate(names) if name.partition(".")[0] == stem]
-            weights[own] += share * part / len(own)
-    return weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +28,13 @@ class BalanceTerm:
     """The horizontal way from the place between the feet that is nearest to the center of mass, to that."""
 
     body: Body
-    std_m: float = 0.1
-    """What a foot is long and a step in progress adds."""
+    std_m: float = 0.08
+    """Half of what a foot is long, and what a step under way adds."""
     robust: ClassVar[bool] = True
 
     @cached_property
     def _weights(self) -> Array:
-        return mass_weights(self.body)
+        return mass_weights(self.body.skeleton)
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add two rows for each frame."""
