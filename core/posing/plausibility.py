@@ -28,8 +28,10 @@ DIMENSIONS = 4.0
 UNUSUAL_SHARE = 0.002
 """Share of known postures, each by the libraries it is not from, that are more unusual than is called
 plausible."""
-MARGIN = 2.0
-"""Cost by which an unknown motion may be more unusual than that: an e-fold density less in two directions."""
+MARGIN = 6.0
+"""Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
+BEYOND_RAD = 0.25
+"""A joint this far beyond its range is contorted, whatever is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +50,10 @@ class Plausibility:
     def contorted(self, pose: Pose) -> BoolArray:
         """(N, 5) whether each part is where no known posture has anything like it."""
         most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
-        return np.asarray(self.costs(pose) > most)
+        skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
+        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
+        parts = [beyond[:, dofs].any(axis=-1) for dofs in skeleton.limbs]
+        return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
     @cached_property
     def usual(self) -> Mapping[str, tuple[float, float]]:
