@@ -12,10 +12,13 @@ from functools import cached_property
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
+from ..body.limbs import TRUNK
+from ..body.skeleton import Skeleton
 from ..library.library import Library
 from .known_postures import PARTS, KnownPostures, known_postures, part_shapes
+from .part_pools import JOINTS, TORSO
 
 KERNEL_M = 0.05
 """Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
@@ -52,7 +55,7 @@ class Plausibility:
         most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
         skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
         beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
-        parts = [beyond[:, dofs].any(axis=-1) for dofs in skeleton.limbs]
+        parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
         return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
     @cached_property
@@ -77,6 +80,14 @@ def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
         InputError: No library has a posture.
     """
     return Plausibility(known_postures(body, libraries))
+
+
+def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
+    """Degrees of freedom of a part."""
+    kind, _, side = part.partition(".")
+    stems = JOINTS[TORSO if part == TRUNK else kind]
+    joints = {f"{stem}.{side}" if side else stem for stem in stems}
+    return np.flatnonzero([name.rpartition(".")[0] in joints for name in skeleton.dof_names])
 
 
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
