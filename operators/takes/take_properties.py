@@ -16,6 +16,7 @@ from ..keypoints.properties import KEYMARK_PG_follow
 from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
+from ..shell.contradictions import KEYMARK_PG_contradiction
 from ..shell.takes import unique_name
 from ..turntable.properties import KEYMARK_PG_turntable
 
@@ -136,6 +137,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
     matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
+    contradictions: bpy.props.CollectionProperty(type=KEYMARK_PG_contradiction)
     method: bpy.props.EnumProperty(
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )
