@@ -41,15 +41,15 @@ def shipped_libraries() -> list[Library]:
     return list(find_libraries(EVERY_LIBRARY, [SHIPPED]))
 
 
-def libraries_to_match(name: str) -> Sequence[Library]:
-    """The library of an identifier, title or file; all registered ones for `EVERY_LIBRARY`.
+def all_libraries() -> Sequence[Library]:
+    """All registered libraries.
 
     Raises:
         InputError: There is none.
     """
-    libraries = find_libraries(name, folders())
+    libraries = find_libraries(EVERY_LIBRARY, folders())
     if not libraries:
-        raise InputError("there is no library to match with; import one, or install Keymark as a whole")
+        raise InputError("there is no library of postures; import one, or install Keymark as a whole")
     return libraries
 
 

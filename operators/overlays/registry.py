@@ -35,6 +35,8 @@ OVERLAYS = (
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
     Overlay("Keypoints in the Viewport", "keypoints", "SpaceView3D"),
     Overlay("Keypoints in the Clip Editor", "keypoints", "SpaceClipEditor"),
+    Overlay("Candidates in the Viewport", "candidates", "SpaceView3D"),
+    Overlay("Candidates in the Clip Editor", "candidates", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
     Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),

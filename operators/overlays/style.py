@@ -28,6 +28,8 @@ DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
 CORE_SHARE = 0.45
 """Thickness of the core of a hollow line, as a share of the line's."""
+GHOST = 0.6
+"""Opacity of figures that are only offered."""
 LIMB = 2.4
 """Thickness of limbs relative to outlines."""
 METER, SMALLEST = 160.0, 0.35

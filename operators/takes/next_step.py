@@ -3,7 +3,7 @@
 import bpy
 
 from ..keypoints.evidence import has_contours, has_keypoints
-from ..matching.matches import state_of
+from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import keyframes_of, matched_frames, unposed_proposals
 
 FEWEST_KEYFRAMES = 2
@@ -26,14 +26,14 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if not has_actor:
         return "Next: build the actor"
     if not len(take.proposals) and not keyframes_of(take):
-        return "Next: match a library, or pose"
+        return "Next: pose all keyframes" if followed else "Next: propose keyframes"
     if take.motion_action is None:
         if unposed_proposals(take) and not matched_frames(take):
-            return "Next: pose the proposed frames"
+            return "Next: pose all keyframes" if followed else "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"
-        if any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches):
-            return "Next: check matches, reconstruct"
+        if doubtful_matches(take):
+            return "Next: check doubtful ones, reconstruct"
         return "Next: reconstruct the motion"
     if take.finish.action is None:
         return "Next: review, then finish"
