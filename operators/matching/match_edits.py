@@ -10,8 +10,8 @@ from ...core.arrays import Array
 from ...core.body.heading import facing_rad
 from ...core.body.posture import Posture
 from ..bridge.actions import assign_action
+from ..bridge.candidate_posture import candidate_posture
 from ..bridge.matched_keyframes import write_matched
-from ..shell.found_frames import candidate_posture
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
 from ..shell.takes import actor_of

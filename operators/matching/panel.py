@@ -4,7 +4,7 @@ from math import degrees
 
 import bpy
 
-from ..overlays.candidates import candidate_icon
+from ..overlays.style import candidate_icon
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label

@@ -10,19 +10,18 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ..bridge.camera_from_scene import read_lens
+from ..bridge.candidate_posture import candidate_posture
 from ..shell.footage_view import FootageView, footage_view
-from ..shell.found_frames import candidate_posture, match_at, state_of
+from ..shell.found_frames import match_at, state_of
 from ..shell.lru_cache import LruCache
 from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import Color
 from .picture import Item, Label, Stroke, paint
 from .skeleton import limb_lines
-from .style import CORE, CORE_SHARE, GHOST, LIMB, Style, body_scale
+from .style import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Style, body_scale
 from .viewport import world_view
 
-ICONS = 8
-"""Colors of collections that Blender's themes have, with an icon each."""
 TALL_M = 1.7
 """Height of a figure by which lines get thinner where it is small [m]."""
 ABOVE_HEAD = 6.0
@@ -32,14 +31,9 @@ _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
 
 
-def candidate_icon(index: int) -> str:
-    """Icon in a candidate's color."""
-    return f"COLLECTION_COLOR_{index % ICONS + 1:02d}"
-
-
 def candidate_color(index: int) -> Color:
     """A candidate's color in the user's theme."""
-    red, green, blue = bpy.context.preferences.themes[0].collection_color[index % ICONS].color
+    red, green, blue = bpy.context.preferences.themes[0].collection_color[index % CANDIDATE_COLORS].color
     return (red, green, blue, GHOST)
 
 

@@ -3,10 +3,7 @@
 from collections.abc import Sequence
 
 import bpy
-import numpy as np
 
-from ...core.body.human import HUMAN
-from ...core.body.posture import Posture
 from .contradictions import contradictions_at
 from .keyed_frames import SAME_FRAME, matched_frames, posed_frames
 
@@ -44,13 +41,8 @@ def doubtful_matches(take: bpy.types.PropertyGroup) -> list[int]:
 def match_at(take: bpy.types.PropertyGroup, frame: float) -> int:
     """Place in the list of the found keyframe at a scene frame; -1 for none."""
     apart = [abs(match.frame - frame) for match in take.matching.matches]
-    nearest = int(np.argmin(apart)) if apart else -1
+    nearest = min(range(len(apart)), key=apart.__getitem__, default=-1)
     return nearest if apart and apart[nearest] < SAME_FRAME else -1
-
-
-def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
-    """A candidate's posture, in the world."""
-    return Posture.from_vector(HUMAN, np.array([*candidate.place, *candidate.turns]))
 
 
 def count_found(take: bpy.types.PropertyGroup) -> tuple[int, int]:
