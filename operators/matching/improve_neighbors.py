@@ -114,7 +114,7 @@ def section_around(time_s: Array, corrected: int, keyframes: "Collection[Keyfram
     """The part of a clip around a corrected keyframe that is posed anew.
 
     On either side it reaches to the next keyframe that the animator decided on, or else to the first found
-    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe.
+    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere without one.
 
     Args:
         time_s: (F,) times of the clip's frames [s].
@@ -134,7 +134,7 @@ def section_around(time_s: Array, corrected: int, keyframes: "Collection[Keyfram
                 end = each.index
                 break
             near.append(each.index)
-        ends.append(end)
+        ends.append(end if near else corrected)
         changed += near
     return Section(ends[0], ends[1], tuple(sorted(changed)))
 
