@@ -33,7 +33,7 @@ class FindOperator(JobOperator):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
     )
 

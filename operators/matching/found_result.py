@@ -1,15 +1,15 @@
 """Keyframes found in a take's footage, and how they are written into the scene."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import bpy
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ...core.footage.reading import Reading
-from ...core.matching.candidates import Candidate
+from ...core.posing.found_poses import FoundPoses, with_found
 from ...core.prior.keyframes import Keyframe
+from ...core.take.take import Take
 from ..bridge.matched_keyframes import remove_keyframes, take_over
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import state_of
@@ -38,19 +38,9 @@ class FoundResult:
     take: str
     """The take's identifier."""
     clip: SceneClip
+    found: FoundPoses
     keyframes: tuple[Keyframe, ...]
     """The found keyframes, in order."""
-    candidates: Mapping[int, Sequence[Candidate]]
-    """Those of frames of the clip, the chosen one first."""
-    fit: float
-    """Share of the footage that is explained, 0 to 1."""
-    floor_m: float
-    reason: str
-    """Sentence for people."""
-    reading: Reading | None = None
-    """The clip as read again, if it was."""
-    contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
-    """What no plausible posture explains, by index of a frame of the clip."""
     proposals: Proposals | None = None
     """Where no frames were proposed before."""
 
@@ -62,9 +52,9 @@ class FoundResult:
         """
         take = take_by_identifier(scene, self.take)
         clear_found(take)
-        matching = take.matching
-        matching.fit, matching.floor_found = self.fit, self.floor_m
-        matching.reason = self.reason[:1].upper() + self.reason[1:]
+        matching, found = take.matching, self.found
+        matching.fit, matching.floor_found = found.fit, found.floor_m
+        matching.reason = found.reason[:1].upper() + found.reason[1:]
         posed, frames = posed_frames(take), self.clip.frames
         decided = [match.frame for match in matching.matches]
         free = [
@@ -73,14 +63,19 @@ class FoundResult:
             if not has_frame(posed, float(frames[keyframe.index]))
             and not has_frame(decided, float(frames[keyframe.index]))
         ]
-        keep_reading(take, self.reading or self.clip.reading)
+        keep_reading(take, found.reading or self.clip.reading)
         if self.proposals is not None:
             keep_speed(take, frames, self.proposals.speed)
             take.proposals.clear()
             for index in self.proposals.indices:
                 take.proposals.add().frame = round(float(frames[index]))
-        write_found(take, self.clip, free, self.candidates, self.contradictions)
+        write_found(take, self.clip, free, found)
         return take
+
+
+def found_keyframes(take: Take, found: FoundPoses) -> tuple[Keyframe, ...]:
+    """The found keyframes of a take with decided ones, in order."""
+    return tuple(each for each in with_found(take, found).keyframes if each.matched is not None)
 
 
 def clear_found(take: bpy.types.PropertyGroup) -> int:
@@ -109,11 +104,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
 
 
 def write_found(
-    take: bpy.types.PropertyGroup,
-    clip: SceneClip,
-    keyframes: Sequence[Keyframe],
-    candidates: Mapping[int, Sequence[Candidate]],
-    contradictions: Mapping[int, tuple[str, ...]],
+    take: bpy.types.PropertyGroup, clip: SceneClip, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
     """Key found postures and store what is known of them; none of their frames may have an entry.
 
@@ -121,9 +112,9 @@ def write_found(
         take: The take.
         clip: Its clip, as it was read.
         keyframes: The found keyframes, in order of frame.
-        candidates: Those of frames of the clip, the chosen one first.
-        contradictions: What no plausible posture explains, by index of a frame of the clip.
+        found: What was found, with the candidates of frames.
     """
+    candidates = {frame.index: frame.candidates for frame in found.frames}
     for keyframe in keyframes:
         said, frame = keyframe.matched, float(clip.frames[keyframe.index])
         assert said is not None
@@ -132,7 +123,7 @@ def write_found(
         others = candidates.get(keyframe.index, ())[1:]
         for other in sorted(others, key=lambda other: -other.confidence):
             add_candidate(match, other.posture, other.name, other.mirrored, other.confidence)
-        note_contradictions(take, frame, contradictions.get(keyframe.index, ()))
+        note_contradictions(take, frame, found.contradictions.get(keyframe.index, ()))
     if keyframes:
         frames = clip.frames[[keyframe.index for keyframe in keyframes]]
         key_matches(take, frames, [keyframe.posture for keyframe in keyframes])

@@ -76,7 +76,6 @@ def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading 
 def _pose_anew(
     scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, reading: "Reading", frame: float
 ) -> int:
-    from ...core.posing.found_poses import COMPOSED
     from ...core.posing.pose_clip import pose_clip
     from ...core.prior.keyframes import Keyframe, Matched
     from ..bridge.scene_frames import scene_frames
@@ -100,12 +99,10 @@ def _pose_anew(
     for each in found.frames:
         if each.index in section.changed:
             chosen = each.candidates[0]
-            said = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
+            said = Matched(found.library, chosen.name, chosen.mirrored, chosen.confidence)
             keyframes.append(Keyframe(each.index, chosen.posture, matched=said))
             matching.matches.remove(match_at(settings, float(frames[each.index])))
-    candidates = {each.index: each.candidates for each in found.frames}
-    clip = SceneClip(take, reading, frames, notes)
-    write_found(settings, clip, keyframes, candidates, found.contradictions)
+    write_found(settings, SceneClip(take, reading, frames, notes), keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)
 
@@ -114,7 +111,8 @@ def section_around(time_s: Array, corrected: int, keyframes: "Collection[Keyfram
     """The part of a clip around a corrected keyframe that is posed anew.
 
     On either side it reaches to the next keyframe that the animator decided on, or else to the first found
-    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere without one.
+    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere
+    without one.
 
     Args:
         time_s: (F,) times of the clip's frames [s].

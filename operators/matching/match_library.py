@@ -1,5 +1,6 @@
 """Match the footage with a keyframe library that the animator names."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -32,33 +33,21 @@ class KEYMARK_OT_match_library(FindOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
         """Read the scene's take and match it; what was found earlier is ignored."""
-        from ...core.matching.match_take import match_take, with_matches
+        from ...core.posing.match_clip import match_clip
         from ..library.registry_files import load_registered
-        from .found_result import FoundResult
+        from .found_result import FoundResult, found_keyframes
 
         settings = active_take(scene)
-        identifier, count = settings.identifier, settings.keyframe_count or None
+        identifier, count, floor_m = settings.identifier, settings.keyframe_count or None, self.floor_m
         matching = settings.matching
         chosen = matching.library if matching.library_name in UNCHOSEN else matching.library_name
         library = load_registered(self.library or chosen)
         clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
-        job = match_take(clip.take, clip.reading, [library], self.floor_m, count)
-        choice = yield from stretch(job, READ, 1.0)
-        match = choice.match
-        assert match is not None  # a library that is named is used however badly it fits
-        elsewhere = "" if match.fit >= WELL else "; it probably shows something else"
-        found = with_matches(clip.take, match).keyframes
-        return FoundResult(
-            identifier,
-            clip,
-            tuple(keyframe for keyframe in found if keyframe.matched is not None),
-            {frame.index: frame.candidates for frame in match.frames},
-            match.fit,
-            match.floor_m,
-            choice.reason + elsewhere,
-            # Matching corrects the reading where another object of a marker's color was taken for the marker.
-            choice.reading,
-        )
+        job = match_clip(clip.take, clip.reading, library, floor_m, count)
+        found = yield from stretch(job, READ, 1.0)
+        if found.fit < WELL:
+            found = replace(found, reason=f"{found.reason}; it probably shows something else")
+        return FoundResult(identifier, clip, found, found_keyframes(clip.take, found))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_match_library,))

@@ -30,10 +30,9 @@ class KEYMARK_OT_pose_all(FindOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
         """Read the scene's take, propose frames where none are proposed, and find their postures."""
-        from ...core.posing.found_poses import with_found
         from ...core.posing.pose_clip import pose_clip
         from ..library.registry_files import all_libraries
-        from .found_result import FoundResult
+        from .found_result import FoundResult, found_keyframes
 
         settings = active_take(scene)
         identifier, count, floor_m = settings.identifier, settings.keyframe_count or None, self.floor_m
@@ -50,18 +49,7 @@ class KEYMARK_OT_pose_all(FindOperator, bpy.types.Operator):
             raise InputError("every proposed frame is posed; propose more, or remove keyframes first")
         job = pose_clip(clip.take, clip.reading, libraries, floor_m, frames=sorted(wanted - decided))
         found = yield from stretch(job, MEASURED, 1.0)
-        return FoundResult(
-            identifier,
-            clip,
-            tuple(each for each in with_found(clip.take, found).keyframes if each.matched is not None),
-            {frame.index: frame.candidates for frame in found.frames},
-            found.fit,
-            found.floor_m,
-            found.reason,
-            found.reading,
-            found.contradictions,
-            proposals,
-        )
+        return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
 
 
 def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":

@@ -10,9 +10,8 @@ import pytest
 from _found import made_up_frames, shown, wave_library
 from keymark.core.library.library import LibraryMotion, MotionStep
 from keymark.core.library.library_file import write_library
-from keymark.core.matching import match_take as matching
-from keymark.core.matching.library_match import LibraryMatch
-from keymark.core.matching.match_take import LibraryChoice
+from keymark.core.posing import match_clip as matching
+from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.progress import Progress
 from keymark.core.take.motion import Motion
 from keymark.operators.library import registry_files
@@ -27,17 +26,15 @@ Group = bpy.types.PropertyGroup
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> dict[str, object]:
     """A stand-in for matching, and what it was asked for; its `frames` may be changed."""
-    waves = wave_library(wave_motion)
     record: dict[str, object] = {"frames": {0: 0.9, 6: 0.3, 12: 0.7}, "fit": 0.75}
 
-    def match(take, reading, libraries, floor_m=None, keyframe_count=None):  # noqa: ANN001, ANN202
-        record.update(libraries=[library.identifier for library in libraries], floor_m=floor_m)
+    def match(take, reading, library, floor_m=None, keyframe_count=None):  # noqa: ANN001, ANN202
+        record.update(library=library.identifier, floor_m=floor_m)
         yield Progress("Matching Waves", 0.5)
-        frames = made_up_frames(wave_motion, record["frames"])
-        found = LibraryMatch(waves, frames, record["fit"], 0.02, wave_motion.posture, 0.0)
-        return LibraryChoice(((waves, 1.0),), found, "Waves explains some of the footage")
+        frames, said = made_up_frames(wave_motion, record["frames"]), "Waves explains some of the footage"
+        return FoundPoses(frames, wave_motion.posture, record["fit"], 0.02, said, library=library.identifier)
 
-    monkeypatch.setattr(matching, "match_take", match)
+    monkeypatch.setattr(matching, "match_clip", match)
     monkeypatch.setattr(registry_files, "load_registered", lambda name: wave_library(wave_motion, name))
     return record
 
@@ -48,7 +45,7 @@ def test_a_named_library_alone_is_matched(
     """Its postures are keyed as found; how many of them are doubtful, and that it may not fit, is said."""
     assert bpy.ops.keymark.match_library(library="waves", floor="HEIGHT", floor_height=0.4) == {"FINISHED"}
     take = active_take(bpy.context.scene)
-    assert (asked["libraries"], asked["floor_m"]) == (["waves"], pytest.approx(0.4))
+    assert (asked["library"], asked["floor_m"]) == ("waves", pytest.approx(0.4))
     assert (matched_frames(take), posed_frames(take)) == ((1.0, 7.0, 13.0), ())
     assert {match.library for match in take.matching.matches} == {"waves"}
     assert "probably shows something else" in take.matching.reason
