@@ -24,6 +24,8 @@ HELD_M = 0.05
 """Joints that should stay where they are, but may give way to the dragged one."""
 PLANTED_M = 0.005
 """Ankles of a body whose trunk is dragged."""
+FLAT_M = 0.01
+"""Difference in depth of a limb's middle from its root below which it is on neither side [m]."""
 STRAIGHT = 1e-3
 """Sine of a bend below which a limb's middle lies on no side."""
 HIPS = ("hip.L", "hip.R")
@@ -94,11 +96,15 @@ def _limb_dragged(
     root, before, held = places
     line = SightLine(place, sight)
     if point == limb.points[2]:
-        end = _reached(place, line, root, _reach_m(body, limb, lengths), pushed)
+        least, most = _reach_m(body, limb, lengths)
+        end = line.within(place, root, (least, most))
+        if pushed:
+            away = float(np.linalg.norm(place - root))
+            end = _on_sphere(place, root, float(np.clip(away, least, most)))
         middle = _bent(places, lengths, end, _bends_to(body, posture, limb))
         pulls = [_pull(point, end, sight, pushed)]
     else:
-        middle = _reached(place, line, root, (lengths[0], lengths[0]), pushed)
+        middle = _on_sphere(place, root, lengths[0]) if pushed else _swung_about(places, lengths, line)
         end = middle + lengths[1] * (held - middle) / max(float(np.linalg.norm(held - middle)), 1e-9)
         pulls = [_pull(point, middle, sight, pushed), Pull(limb.points[2], held, HELD_M)]
     moved = aimed(body, posture, limb, middle, end)
@@ -109,12 +115,23 @@ def _limb_dragged(
     return pulled(body, moved, pulls, free, allowed=posture)
 
 
-def _reached(place: Array, line: SightLine, root: Array, radii_m: tuple[float, float], pushed: bool) -> Array:
-    """The place within reach of a limb's root that is nearest to one: on its line of sight, or anywhere."""
-    if not pushed:
-        return line.within(place, root, radii_m)
-    away = float(np.linalg.norm(place - root))
-    return np.asarray(root + (place - root) * (np.clip(away, *radii_m) / max(away, 1e-9)))
+def _on_sphere(place: Array, center: Array, radius_m: float) -> Array:
+    """The place nearest to one at a distance from a center."""
+    return np.asarray(center + radius_m * (place - center) / max(float(np.linalg.norm(place - center)), 1e-9))
+
+
+def _swung_about(places: Array, lengths: tuple[float, float], line: SightLine) -> Array:
+    """Where a limb's middle lies on a line of sight: on the side of its root where it was.
+
+    Where it was on neither, on the side where its end can stay more nearly where it is.
+    """
+    root, before, end = places
+    near, far = line.at_distance(root, lengths[0])
+    depth = float((before - root) @ line.direction)
+    if abs(depth) > FLAT_M:
+        return np.asarray(far if depth > 0.0 else near)
+    choices = sorted((near, far), key=lambda each: abs(float(np.linalg.norm(end - each)) - lengths[1]))
+    return np.asarray(choices[0])
 
 
 def _reach_m(body: Body, limb: LimbChain, lengths: tuple[float, float]) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from keymark.core.body.human import HUMAN
 from keymark.core.body.limbs import TRUNK, limb_of
 from keymark.core.body.posture import Posture
+from keymark.core.body.rotations import hinge
 from keymark.core.body.standing_posture import standing_posture
 from keymark.core.posing.dragged import dragged
 
@@ -88,7 +89,10 @@ def test_an_elbow_swings_about_a_wrist_that_stays() -> None:
     vector[HUMAN.dof_names.index("elbow.L.flexion")] = 1.2
     posture = Posture.from_vector(HUMAN, vector)
     before = points(posture)
-    place = before[POINT["elbow.L"]] + [-0.05, 0.0, 0.03]
+    root, elbow, wrist = (before[POINT[name]] for name in ("shoulder.L", "elbow.L", "wrist.L"))
+    axis = (wrist - root) / np.linalg.norm(wrist - root)
+    swung = root + hinge(axis, 0.5) @ (elbow - root)
+    place = np.array([swung[0], elbow[1], swung[2]])
     after = points(dragged(BODY, posture, "elbow.L", place, ACROSS))
     assert np.linalg.norm((after - before)[POINT["wrist.L"]]) < 0.04
     assert np.linalg.norm((after[POINT["elbow.L"]] - place)[[0, 2]]) < 0.003
