@@ -126,6 +126,10 @@ def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
     settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
+    placed = {"height_m": 1.0, "tilt_deg": -0.5, "roll_deg": 0.5, "distance_m": 4.0}
+    shared["camera"] = {
+        name: shared["camera"][name] for name in shared["camera"] if name != "matrix_world"
+    } | placed
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 
 

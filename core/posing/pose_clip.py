@@ -1,13 +1,20 @@
 """All poses of a clip in one go: the likeliest postures where nobody has posed, shared by every caller."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from ..errors import InputError
 from ..footage.reading import Reading
 from ..library.library import Library
-from ..matching.match_take import match_take
+from ..library.texts import COMPOSED
+from ..matching.library_match import prepare_library
+from ..matching.match_input import match_input
 from ..progress import Job
 from ..take.take import Take
 from .found_poses import FoundPoses
+from .match_clip import match_clip
 
 
 def pose_clip(
@@ -37,12 +44,11 @@ def pose_clip(
     Raises:
         InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
     """
-    choice = yield from match_take(take, reading, libraries, floor_m, keyframe_count)
-    match = choice.match
-    if match is None:
-        choice = yield from match_take(take, reading, [choice.ranking[0][0]], floor_m, keyframe_count)
-        match = choice.match
-    assert match is not None
-    return FoundPoses(
-        match.frames, match.postures, match.fit, match.floor_m, choice.reason, reading=choice.reading
-    )
+    usable = [library for library in libraries if library.postures]
+    if not usable:
+        raise InputError("no keyframe library with a posture is given; at least one is needed to pose with")
+    given = match_input(take, reading, keyframe_count)
+    cost = [prepare_library(given, library).coarse_pass.cost for library in usable]
+    nearest = usable[int(np.argmin(cost))]
+    found = yield from match_clip(take, reading, nearest, floor_m, keyframe_count)
+    return replace(found, library=COMPOSED)

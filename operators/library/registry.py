@@ -36,7 +36,7 @@ def library_items(_properties: object, context: bpy.types.Context | None) -> lis
     manager = (context or bpy.context).window_manager
     if bpy.app.background and not len(manager.keymark_shelf.libraries):
         refresh()  # no timer runs, and nothing is drawn
-    automatic = "Choose the library that fits the footage best, and say how sure that is"
+    automatic = "Find the poses with all libraries, each limb from the one that fits it best"
     found: list[Item] = [(EVERY_LIBRARY, "Automatic", automatic, "VIEWZOOM", 0)]
     found += [
         (library.name, library.title, library.description, "ASSET_MANAGER", _number(library.name))

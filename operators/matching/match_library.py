@@ -36,7 +36,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
 
     library: bpy.props.StringProperty(
         name="Library",
-        description="Identifier or file of the library; auto tries all and chooses",
+        description="Identifier or file of the library; auto takes from all of them",
         default=EVERY_LIBRARY,
     )
     floor: bpy.props.EnumProperty(
@@ -48,7 +48,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
     )
 
@@ -61,7 +61,9 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[MatchResult]":
         """Read the scene's take and match it; earlier matches are ignored."""
-        from ...core.matching.match_take import match_take, with_matches
+        from ...core.posing.found_poses import with_found
+        from ...core.posing.match_clip import match_clip
+        from ...core.posing.pose_clip import pose_clip
         from ...core.take.read_footage import read_footage
         from ..bridge.take_from_scene import read_scene_take
         from ..library.registry_files import libraries_to_match
@@ -82,11 +84,16 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         posed = replace(whole, keyframes=tuple(each for each in whole.keyframes if each.matched is None))
         reading = yield from stretch(read_footage(posed, kept), TIMES, READ)
         frames = scene_frames(reading.tracks.time_s, posed.frame_start, posed.fps)
-        choice = yield from stretch(match_take(posed, reading, libraries, floor_m, count), READ, 1.0)
-        found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
-        matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
+        job = (
+            pose_clip(posed, reading, libraries, floor_m, count)
+            if self.library == EVERY_LIBRARY
+            else match_clip(posed, reading, libraries[0], floor_m, count)
+        )
+        found = yield from stretch(job, READ, 1.0)
+        keyframes = with_found(posed, found).keyframes
+        matched = tuple(keyframe for keyframe in keyframes if keyframe.matched is not None)
         # Matching corrects the reading where another object of a marker's color was taken for the marker.
-        return MatchResult(identifier, frames, choice.reading or reading, choice, matched, notes)
+        return MatchResult(identifier, frames, found.reading or reading, found, matched, notes)
 
     def finish(self, scene: bpy.types.Scene, result: "MatchResult") -> None:
         """Key the matches beside what is posed, in place of earlier ones."""
@@ -95,17 +102,14 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         for note in result.notes:
             self.report({"WARNING"}, note[:1].upper() + note[1:])
         matches, reason = take.matching.matches, take.matching.reason
-        if result.choice.match is None:
-            self.report({"WARNING"}, reason)
-        else:
-            self.report({"INFO"}, reason)
-            say(
-                self,
-                "INFO",
-                "Matched {count} keyframes, {doubtful} of them doubtful",
-                count=len(matches),
-                doubtful=sum(match.is_doubtful for match in matches),
-            )
+        self.report({"INFO"}, reason)
+        say(
+            self,
+            "INFO",
+            "Matched {count} keyframes, {doubtful} of them doubtful",
+            count=len(matches),
+            doubtful=sum(match.is_doubtful for match in matches),
+        )
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_match_library,))

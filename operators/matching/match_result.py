@@ -1,4 +1,4 @@
-"""The result of matching a take's footage with libraries, and how it is written into the scene."""
+"""The result of finding keyframes in a take's footage, and how it is written into the scene."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.footage.reading import Reading
 from ...core.matching.candidates import Candidate
-from ...core.matching.match_take import LibraryChoice
+from ...core.posing.found_poses import FoundPoses
 from ...core.prior.keyframes import Keyframe
 from ..bridge.matched_keyframes import remove_keyframes, take_over
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, matched_frames, posed_frames
@@ -27,7 +27,7 @@ class MatchResult:
     frames: Array
     """(F,) scene frames."""
     reading: Reading
-    choice: LibraryChoice
+    found: FoundPoses
     keyframes: tuple[Keyframe, ...]
     """The matched keyframes."""
     notes: tuple[str, ...]
@@ -39,14 +39,14 @@ class MatchResult:
             InputError: The take or its actor has been removed, or the actor lacks bones.
         """
         take = take_by_identifier(scene, self.take)
-        store_matches(take, self.choice, self.keyframes, self.frames)
+        store_matches(take, self.found, self.keyframes, self.frames)
         keep_reading(take, self.reading)
         return take
 
 
 def store_matches(
     take: bpy.types.PropertyGroup,
-    choice: LibraryChoice,
+    found: FoundPoses,
     keyframes: Sequence[Keyframe],
     clip_frames: Array,
 ) -> None:
@@ -56,7 +56,7 @@ def store_matches(
 
     Args:
         take: The take.
-        choice: The result of matching.
+        found: What was found.
         keyframes: The matched keyframes, in order of frame.
         clip_frames: (F,) scene frame of every frame of the clip.
 
@@ -68,19 +68,13 @@ def store_matches(
     if take.keyframe_action is not None:
         take_over(actor, take.keyframe_action, HUMAN, posed)
         remove_keyframes(actor, take.keyframe_action, HUMAN, earlier)
-    matching, found = take.matching, choice.match
-    clear_choice(matching)
-    matching.reason = choice.reason[:1].upper() + choice.reason[1:]
-    for library, probability in choice.ranking:
-        chance = matching.ranking.add()
-        chance.name, chance.probability = library.title, probability
-    if found is not None:
-        matching.fit = found.fit
-        if found.floor_m is not None:
-            matching.floor_found = found.floor_m
-        known = {frame.index: frame.candidates for frame in found.frames}
-        free = [each for each in keyframes if not has_frame(posed, float(clip_frames[each.index]))]
-        _add_matches(take, free, known, clip_frames)
+    matching = take.matching
+    clear_found(matching)
+    matching.reason = found.reason[:1].upper() + found.reason[1:]
+    matching.fit, matching.floor_found = found.fit, found.floor_m
+    known = {frame.index: frame.candidates for frame in found.frames}
+    free = [each for each in keyframes if not has_frame(posed, float(clip_frames[each.index]))]
+    _add_matches(take, free, known, clip_frames)
     invalidate_keyed_frames()
 
 
@@ -103,9 +97,8 @@ def _add_matches(
         key_matches(take, frames, [keyframe.posture for keyframe in keyframes])
 
 
-def clear_choice(matching: bpy.types.PropertyGroup) -> None:
+def clear_found(matching: bpy.types.PropertyGroup) -> None:
     """Clear the results of matching; its settings stay."""
-    for name in ("ranking", "matches"):
-        getattr(matching, name).clear()
+    matching.matches.clear()
     for name in ("reason", "fit", "floor_found", "active_match"):
         matching.property_unset(name)

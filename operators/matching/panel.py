@@ -10,8 +10,6 @@ from ..shell.takes import active_take
 from .matches import state_of
 from .properties import DOUBTFUL, SURE
 
-WORTH_NAMING = 0.005
-"""Probability above which the second best library is named."""
 WELL = 0.85
 """Fit below which the footage probably shows something else."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
@@ -78,41 +76,21 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
         row.scale_y = 1.2
         if not draw_progress(row, context, "keymark.match_library"):
             row.operator("keymark.match_library", icon="VIEWZOOM")
-        _draw_choice(column, context, matching)
+        _draw_reason(column, context, matching)
         if len(matching.matches):
             _draw_matches(column, active_take(context.scene))
             _draw_candidates(column, active_take(context.scene))
 
 
-def _draw_choice(
+def _draw_reason(
     layout: bpy.types.UILayout, context: bpy.types.Context, matching: bpy.types.PropertyGroup
 ) -> None:
-    """Draw the best libraries with their probabilities; how much they explain, where that is doubtful."""
-    if not len(matching.ranking):
+    """Draw how much of the footage is explained."""
+    if not matching.reason:
         return
-    best, *others = matching.ranking
-    sure = best.probability >= SURE and matching.fit >= WELL
-    icon = "CHECKMARK" if sure else "QUESTION"
-    if not others:
-        draw_sentence(layout, context, matching.reason, icon)
-        if matching.fit < WELL:
-            draw_sentence(layout, context, label("It probably shows something else"), "BLANK1")
-        return
-    words = label("{best} {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
-    if others[0].probability >= WORTH_NAMING:
-        words = label(
-            "{best} {percent:.0f} %, {other} {less:.0f} %",
-            best=best.name,
-            percent=100.0 * best.probability,
-            other=others[0].name,
-            less=100.0 * others[0].probability,
-        )
-    draw_sentence(layout, context, words, icon)
-    if not len(matching.matches):
-        draw_sentence(layout, context, matching.reason, "BLANK1")
-    elif not sure:
-        explained = label("Explains {percent:.0f} % of the footage", percent=100.0 * matching.fit)
-        draw_sentence(layout, context, explained, "BLANK1")
+    draw_sentence(layout, context, matching.reason, "CHECKMARK" if matching.fit >= WELL else "QUESTION")
+    if matching.fit < WELL:
+        draw_sentence(layout, context, label("It probably shows something else"), "BLANK1")
 
 
 def _draw_matches(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:

@@ -1,4 +1,4 @@
-"""Properties of matching: settings, ranking of the libraries, and matches with their candidates."""
+"""Properties of matching: settings, and matches with their candidates."""
 
 from typing import TYPE_CHECKING
 
@@ -123,19 +123,6 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
         scene.frame_set(whole, subframe=self.frame - whole)
 
 
-class KEYMARK_PG_library_chance(bpy.types.PropertyGroup):
-    """Probability that the footage shows a library's motions."""
-
-    name: bpy.props.StringProperty(name="Library", description="The library's title")
-    probability: bpy.props.FloatProperty(
-        name="Probability",
-        description="Probability that the footage shows this library's motions, of all that were tried",
-        subtype="FACTOR",
-        min=0.0,
-        max=1.0,
-    )
-
-
 class KEYMARK_PG_matching(bpy.types.PropertyGroup):
     """Settings and results of matching a take."""
 
@@ -161,15 +148,12 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
         soft_min=-5.0,
         soft_max=5.0,
     )
-    ranking: bpy.props.CollectionProperty(type=KEYMARK_PG_library_chance)
-    reason: bpy.props.StringProperty(
-        name="Reason", description="Reason of the last matching for this library, or for none"
-    )
+    reason: bpy.props.StringProperty(name="Reason", description="How sure the last matching is")
     fit: bpy.props.FloatProperty(
         name="Fit",
         description="Share of the footage that the matches explain; negative before the first matching",
@@ -181,7 +165,7 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         name="Floor Found",
         description="Height of the floor in the last matching",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
     )
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(
@@ -194,5 +178,5 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_library_chance, KEYMARK_PG_matching)
+    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_matching)
 )

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...matching.match_take import take_to_match
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -16,6 +15,7 @@ from ...take.evidence_kinds import CONTOURS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
+from ...take.take_to_pose import take_to_pose
 from ..shoot import ShootTake
 from .cost_estimate import CostEstimate, estimate_cost
 from .findings import Findings
@@ -114,7 +114,7 @@ def _read(description: Description, settings: ConversionSettings, findings: Find
     with findings.catching():
         if settings.library is None:
             return read_described(description, settings.keyframes, settings=settings)
-        return take_to_match(description, settings.keyframes, settings)
+        return take_to_pose(description, settings.keyframes, settings)
     with findings.catching():
         without = replace(settings, keypoints=())
         return read_described(

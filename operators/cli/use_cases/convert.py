@@ -12,7 +12,7 @@ from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..conversion.matched_keyframes import match_summary
+from ..conversion.found_keyframes import found_summary
 from ..conversion.result import Conversion
 from ..usage import UsageError
 
@@ -38,7 +38,7 @@ def conversion_summary(conversion: Conversion) -> dict[str, Any]:
         "fps": motion.fps,
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "notes": list(conversion.notes),
-        **({} if conversion.choice is None else match_summary(conversion.take, conversion.choice)),
+        **({} if conversion.found is None else found_summary(conversion.take, conversion.found)),
     }
 
 
@@ -84,8 +84,8 @@ def _text(conversion: Conversion) -> str:
     motion = conversion.reconstruction.motion
     notes = [f"Note: {note}." for note in conversion.notes]
     count = f"{len(motion.keyframe_indices)} keyframes"
-    if conversion.choice is not None:
+    if conversion.found is not None:
         posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
-        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} matched keyframes"
+        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} found keyframes"
     lines = [f"{len(motion.time_s)} frames from {count} ({motion.method}):"]
     return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])

@@ -14,9 +14,9 @@ from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import write_library
-from keymark.core.matching import match_take as matching
 from keymark.core.matching.candidates import Candidate, MatchedFrame
-from keymark.core.matching.match_take import LibraryChoice
+from keymark.core.posing import pose_clip as posing
+from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.progress import Progress
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
@@ -49,13 +49,9 @@ def candidate(posture: Posture, name: str, confidence: float, mirrored: bool = F
     return Candidate(posture, name, mirrored, confidence)
 
 
-def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
-    """A match with the true postures at some frames, each of a confidence, and another one each may show."""
-    return SimpleNamespace(
-        library=library(motion),
-        fit=0.75,
-        floor_m=0.02,
-        postures=motion.posture,
+def found(motion: Motion, frames: dict[int, float]) -> FoundPoses:
+    """The true postures at some frames, each of a confidence, and another one each may show."""
+    return FoundPoses(
         frames=tuple(
             MatchedFrame(
                 index,
@@ -66,6 +62,11 @@ def found(motion: Motion, frames: dict[int, float]) -> SimpleNamespace:
             )
             for index, confidence in frames.items()
         ),
+        postures=motion.posture,
+        fit=0.75,
+        floor_m=0.02,
+        reason="it is",
+        library="waves",
     )
 
 
@@ -74,9 +75,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
     """The result of matching in this test, and a record of its arguments; the job takes three steps."""
     waves, other = library(wave_motion), library(wave_motion, "walking")
     asked = SimpleNamespace(
-        choice=LibraryChoice(
-            ((waves, 0.97), (other, 0.02)), found(wave_motion, {0: 0.9, 6: 0.3, 12: 0.7}), "it is"
-        ),
+        found=found(wave_motion, {0: 0.9, 6: 0.3, 12: 0.7}),
         takes=[],
         floors=[],
         error=None,
@@ -91,9 +90,9 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
         asked.meanwhile()
         if asked.error:
             raise asked.error
-        return asked.choice
+        return asked.found
 
-    monkeypatch.setattr(matching, "match_take", match)
+    monkeypatch.setattr(posing, "pose_clip", match)
     monkeypatch.setattr(registry_files, "libraries_to_match", lambda name: [waves, other])
     return asked
 
@@ -125,10 +124,6 @@ def test_matched_postures_are_keyed_and_kept(matched: Group, wave_motion: Motion
     assert (keyframes_of(matched), posed_frames(matched)) == ((1.0, 7.0, 13.0), ())
     assert shown(matched, 7).minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-5)
     state = matched.matching
-    assert [(chance.name, round(chance.probability, 3)) for chance in state.ranking] == [
-        ("Waves", 0.97),
-        ("Walking", 0.02),
-    ]
     assert (state.reason, state.fit, round(state.floor_found, 6)) == ("It is", 0.75, 0.02)
     match = state.matches[1]
     assert (match.frame, match.library, match.candidate.name) == (7.0, "waves", "Wave 6")
@@ -174,21 +169,11 @@ def test_matching_again_replaces_what_matching_gave(
     matched: Group, given: SimpleNamespace, wave_motion: Motion
 ) -> None:
     """Frames that are matched no longer are keyed no longer."""
-    given.choice = LibraryChoice(given.choice.ranking, found(wave_motion, {3: 0.9, 9: 0.9}), "so")
+    given.found = found(wave_motion, {3: 0.9, 9: 0.9})
     bpy.ops.keymark.match_library()
     take = active_take(bpy.context.scene)
     assert keyframes_of(take) == matched_frames(take) == (4.0, 10.0)
     assert len(bpy.data.actions) == 1
-
-
-def test_footage_that_fits_nothing_says_so(matched: Group, given: SimpleNamespace) -> None:
-    """No keyframe is invented, and those of the match before are gone with it."""
-    given.choice = LibraryChoice(given.choice.ranking, None, "none of the 2 libraries fits")
-    bpy.ops.keymark.match_library()
-    take = active_take(bpy.context.scene)
-    assert keyframes_of(take) == () and len(take.matching.matches) == 0
-    assert take.matching.reason == "None of the 2 libraries fits"
-    assert len(take.matching.ranking) == 2
 
 
 def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: SimpleNamespace) -> None:
