@@ -13,6 +13,7 @@ from ..finish.properties import KEYMARK_PG_finish
 from ..footage.properties import KEYMARK_PG_clip_state
 from ..footage.take_footage import camera_chosen, clip_chosen
 from ..keypoints.properties import KEYMARK_PG_follow
+from ..markers.ignored_properties import KEYMARK_PG_ignored_region
 from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
@@ -132,6 +133,13 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
     active_marker: bpy.props.IntProperty(
         name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
+    ignored_regions: bpy.props.CollectionProperty(type=KEYMARK_PG_ignored_region)
+    active_ignored: bpy.props.IntProperty(
+        name="Active Region",
+        description="The region without markers that is chosen in the list",
+        default=0,
+        min=0,
     )
     follow: bpy.props.PointerProperty(type=KEYMARK_PG_follow)
     keyframe_action: bpy.props.PointerProperty(
