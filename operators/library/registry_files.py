@@ -47,10 +47,7 @@ def libraries_to_match(name: str) -> Sequence[Library]:
     Raises:
         InputError: There is none.
     """
-    libraries = find_libraries(name, folders())
-    if not libraries:
-        raise InputError("there is no library to match with; import one, or install Keymark as a whole")
-    return libraries
+    return find_libraries(name, folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:
