@@ -14,7 +14,7 @@ from ..library.texts import EVERY_LIBRARY
 SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
-SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "actor")
+SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
 """Fields of `take.json` that takes may inherit."""
 SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
 """Fields that say how takes are converted."""

@@ -48,7 +48,7 @@ class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
     )
 

@@ -148,7 +148,7 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
         soft_min=-5.0,
         soft_max=5.0,
@@ -165,7 +165,7 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         name="Floor Found",
         description="Height of the floor in the last matching",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
     )
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(

@@ -102,14 +102,22 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
             "left out, for the clips differ: each tells its own; say so nearer to those that were filmed",
             "with another lens or from elsewhere",
         ]
-    camera["//matrix_world"] = [
-        "where the camera stood, in meters, as four rows. Blender's Python console tells that of a camera:",
-        "[list(row) for row in bpy.context.scene.camera.matrix_world]",
-        "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
-        "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",
-        f"With this lens a whole person fits the picture from D = {distance:.1f} on at H = {EYE_HEIGHT_M:g}.",
+    camera["//height_m"] = [
+        "height of the camera above the floor in meters; a phone in standing hands is at about",
+        f"{EYE_HEIGHT_M:g}. Blender finds it with any of the clips: Load Footage, then From Lines or",
+        "From the Performer in the step Footage.",
     ]
-    camera["matrix_world"] = None
+    camera["height_m"] = None
+    camera["//tilt_deg"] = [
+        "degrees by which it looked up, negative where it looked down, 0 where it was level; also roll_deg,",
+        "where it was turned about its view, counterclockwise for its operator.",
+    ]
+    camera["tilt_deg"] = None
+    camera["//distance_m"] = [
+        "from the camera to the world's origin, about where the performer is to stand in the result; with",
+        f"this lens a whole person fits the picture from {distance:.1f} on. It changes nothing else.",
+    ]
+    camera["distance_m"] = round(distance, 1)
     return camera
 
 

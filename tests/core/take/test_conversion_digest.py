@@ -73,6 +73,7 @@ def _turned_round(shoot: Path) -> dict[str, Any]:
         lambda shoot: edit("shoot.json", markers=_turned_round(shoot))(shoot),
         edit("day1/shoot.json", fps=25),
         edit("day1/take01.take.json", frame_start=7),
+        edit("day1/take01.take.json", ignored_regions=[{"box": [1, 2, 3, 4]}]),
         lengthen,
     ],
 )
