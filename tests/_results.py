@@ -46,7 +46,7 @@ def blend_is_of(folder: Path) -> bool:
 
 
 def finished_folders(folder: Path) -> list[Path]:
-    """Folders of results below a folder; what stands in hidden ones is not finished, and may be going away."""
+    """Folders of results below a folder; what stands in hidden ones is not finished."""
     records = (record.relative_to(folder) for record in folder.rglob("conversion.json"))
     return [
         folder / record.parent
