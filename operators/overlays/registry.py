@@ -39,6 +39,7 @@ OVERLAYS = (
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
     Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),
     Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
+    Overlay("Joints to Drag", "handles", "SpaceView3D"),
     Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
 """All overlays; those of one editor are drawn in this order."""

@@ -24,16 +24,20 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
         self.time_left = time_left
 
 
-def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
+def job_is_running(context: bpy.types.Context, job: str = "", besides: str = "") -> bool:
     """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
     Args:
         context: Its windows are searched.
         job: Only jobs whose operator's name begins so, as `keymark.reconstruct`; any by default.
+        besides: An operator that does not count, as `keymark.drag_joints`.
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
+    left_out = besides.replace("keymark.", OPERATOR_PREFIX)
     return any(
-        operator.bl_idname.startswith(wanted) and not is_browsing(operator, window)
+        operator.bl_idname.startswith(wanted)
+        and operator.bl_idname != left_out
+        and not is_browsing(operator, window)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
