@@ -6,9 +6,9 @@ from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import SAME_FRAME, invalidate_keyed_frames, keyframes_of
 from ..shell.messages import label, say
-from ..shell.requirements import actor, keyframes
+from ..shell.requirements import actor, idle, keyframes
 from ..shell.takes import active_take
-from .corrections import no_job, set_corrected, shown_pose
+from .corrections import set_corrected, shown_pose
 
 DIRECTIONS = (
     ("PREVIOUS", "Previous", "Copy the pose of the keyframe before this frame; the performer stays in place"),
@@ -22,7 +22,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     bl_idname = "keymark.copy_neighbor"
     bl_label = "Copy from Neighbor"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (actor, keyframes, no_job)
+    requirements = (actor, keyframes, idle)
 
     direction: bpy.props.EnumProperty(
         name="Neighbor", description="The keyframe whose pose is copied", items=DIRECTIONS

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..shell.job_progress import job_is_running
 from ..shell.messages import label
 from ..shell.panel import TakePanel
 from ..shell.takes import active_take
@@ -18,7 +19,8 @@ class KEYMARK_PT_keyframes_correct(TakePanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the operators; the button that flips names what is selected."""
         take, column = active_take(context.scene), self.column()
-        column.operator(DRAGGING, icon="EMPTY_ARROWS")
+        running = job_is_running(context, DRAGGING)
+        column.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
         row = column.row(align=True)
         row.operator("keymark.flip_depth", text=_flipped(take), translate=False, icon="MOD_MIRROR")
         row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")

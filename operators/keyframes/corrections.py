@@ -5,12 +5,11 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.body.human import HUMAN
-from ..bridge.actions import assign_action
-from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, keyframes_of
 from ..shell.keyframe_action import show_keyframes
 from ..shell.redraw import redraw_footage
 from ..shell.takes import footage_of
+from .key_pose import key_pose
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
@@ -18,12 +17,6 @@ if TYPE_CHECKING:
     from ...core.footage.camera import Camera
 
 DRAGGING = "keymark.drag_joints"
-
-
-def no_job(context: bpy.types.Context) -> str | None:
-    """No job of Keymark's runs; poses may be corrected while joints are dragged."""
-    running = job_is_running(context, besides=DRAGGING)
-    return "Another of Keymark's jobs is running" if running else None
 
 
 def shown_pose(take: bpy.types.PropertyGroup) -> "tuple[Body, Posture]":
@@ -48,25 +41,20 @@ def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
-def set_corrected(context: bpy.types.Context, take: bpy.types.PropertyGroup, posture: "Posture") -> bool:
+def set_corrected(context: bpy.types.Context, take: bpy.types.PropertyGroup, posture: "Posture") -> int:
     """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
 
-    A found keyframe counts as posed from then on, and found ones around it are improved.
+    A found keyframe counts as posed from then on.
 
     Returns:
-        Whether a keyframe was changed.
+        How many found keyframes around it were posed anew.
     """
-    from ..bridge.keyframes import store_pose
     from ..bridge.pose import write_posture
 
-    frame = context.scene.frame_current_final
     show_keyframes(take)
     write_posture(take.armature, posture)
     invalidate_keyed_frames()
-    keyed = take.keyframe_action is not None and has_frame(keyframes_of(take), frame)
-    if keyed:
-        store_pose(take.armature, take.keyframe_action, HUMAN, frame)
-        assign_action(take.armature, take.keyframe_action)
-        invalidate_keyed_frames()
     redraw_footage(context)
-    return keyed
+    if take.keyframe_action is None or not has_frame(keyframes_of(take), context.scene.frame_current_final):
+        return 0
+    return key_pose(context, take)

@@ -12,11 +12,13 @@ from ..keypoints.body_point_items import point_title
 from ..overlays import handles
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION
+from ..shell.job_progress import job_is_running
 from ..shell.messages import label
 from ..shell.redraw import redraw_editors, redraw_sidebars_soon
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import find_take
 from ..shell.view_under_mouse import WorldInRegion, view_under
+from .corrections import DRAGGING, shown_pose
 from .joint_drag import JointDrag
 
 GRAB_PX = 18.0
@@ -27,6 +29,12 @@ VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_G
 IDLE_KEYS = "Drag: Move Joint   |   Ctrl: In Depth   |   Shift: Precise   |   F: Flip Depth   |   Enter: Done"
 HOVER_KEYS = "{joint}   |   " + IDLE_KEYS
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
+
+
+def not_dragging(context: bpy.types.Context) -> str | None:
+    """Joints are not being dragged already."""
+    running = job_is_running(context, DRAGGING)
+    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):
@@ -43,7 +51,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether there is an actor, and no job runs."""
-        return all_met(cls, context, actor, idle)
+        return all_met(cls, context, actor, idle, not_dragging)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the joints, and wait for the mouse."""
@@ -63,6 +71,8 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         if take is None or actor(context) is not None:
             self.cancel(context)
             return {"CANCELLED"}
+        if self._drag is None and idle(context) is not None:
+            return {"PASS_THROUGH"}  # a job that was started meanwhile
         if self._drag is not None:
             return self._dragging(context, take, event)
         view = view_under(context, event.mouse_x, event.mouse_y)
@@ -122,7 +132,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         if joint is None:
             return
         from ..bridge.scene_frames import pose_of
-        from .corrections import shown_pose
 
         with reported(self):
             body, posture = shown_pose(take)

@@ -5,9 +5,9 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from ..shell.job_progress import job_is_running
 from ..shell.messages import label, say
-from ..shell.requirements import actor, camera, footage
+from ..shell.requirements import actor, camera, footage, idle
 from ..shell.takes import active_take
-from .corrections import DRAGGING, camera_now, no_job, set_corrected, shown_pose
+from .corrections import DRAGGING, camera_now, set_corrected, shown_pose
 from .limb_selection import TITLES, limb_selected, selected_limbs
 
 SELECTED = "SELECTED"
@@ -24,7 +24,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
     bl_idname = "keymark.flip_depth"
     bl_label = "Flip Depth"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, camera, actor, limb_chosen, no_job)
+    requirements = (footage, camera, actor, limb_chosen, idle)
 
     limb: bpy.props.EnumProperty(
         name="Part",

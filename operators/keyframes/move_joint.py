@@ -6,9 +6,9 @@ import numpy as np
 from ...core.body.human import HUMAN
 from ..keypoints.body_point_items import point_title
 from ..shell.base_operator import BaseOperator
-from ..shell.requirements import actor
+from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
-from .corrections import no_job, set_corrected, shown_pose
+from .corrections import set_corrected, shown_pose
 
 
 class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
@@ -17,7 +17,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     bl_idname = "keymark.move_joint"
     bl_label = "Move Joint"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (actor, no_job)
+    requirements = (actor, idle)
 
     joint: bpy.props.EnumProperty(
         name="Joint",

@@ -10,10 +10,10 @@ from ..keypoints.requirements import points_to_follow
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import label, say
-from ..shell.requirements import actor, camera, footage
+from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
-from .corrections import camera_now, no_job, set_corrected, shown_pose
+from .corrections import camera_now, set_corrected, shown_pose
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
@@ -40,7 +40,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     bl_idname = "keymark.turn_performer"
     bl_label = "Turn"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, camera, actor, no_job)
+    requirements = (footage, camera, actor, idle)
 
     facing: bpy.props.EnumProperty(name="Facing", description="Where the performer faces", items=FACINGS)
     sides: bpy.props.EnumProperty(
