@@ -27,7 +27,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         name="Height",
         description="The performer's body height",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=1.75,
         min=0.5,
         max=3.0,

@@ -1,11 +1,10 @@
 """Relocate a clip whose file was moved."""
 
-from pathlib import Path
-
 import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
+from ..shell.file_browser import chosen_file
 from ..shell.messages import say
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -42,7 +41,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)
-        clip, path = take.clip, Path(bpy.path.abspath(self.filepath))
+        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
         if clip.library is not None:
             raise InputError(
                 f"clip '{clip.name}' is linked from {clip.library.filepath}; "

@@ -41,6 +41,13 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
+    show_candidates: bpy.props.BoolProperty(
+        name="Candidates",
+        description="Draw what else a found keyframe may show as faint figures, in the colors and with the "
+        "numbers of the buttons that take them",
+        default=True,
+        update=_changed,
+    )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
         description="Draw the paths of chosen points: past solid, future dashed, diamonds at keyframes",

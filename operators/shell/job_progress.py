@@ -2,6 +2,7 @@
 
 import bpy
 
+from .file_browser import is_browsing
 from .messages import label
 
 OPERATOR_PREFIX = "KEYMARK_OT_"
@@ -24,7 +25,7 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
 
 
 def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
-    """Whether one of Keymark's jobs runs in any window.
+    """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
     Args:
         context: Its windows are searched.
@@ -32,7 +33,7 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
-        operator.bl_idname.startswith(wanted)
+        operator.bl_idname.startswith(wanted) and not is_browsing(operator, window)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )

@@ -15,9 +15,11 @@ from ..footage import camera_fields
 from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state
 from ..footage.take_footage import camera_chosen, clip_chosen
 from ..keypoints.properties import KEYMARK_PG_follow
+from ..markers.ignored_properties import KEYMARK_PG_ignored_region
 from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
+from ..shell.contradictions import KEYMARK_PG_contradiction
 from ..shell.takes import unique_name
 from ..turntable.properties import KEYMARK_PG_turntable
 
@@ -28,16 +30,21 @@ METHODS = (
 )
 
 
-def _is_actor(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return is_actor(candidate)
+def _is_actor(take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    """Whether an object may be the take's actor; deleted ones, which other takes still keep, may not."""
+    return is_actor(candidate) and candidate.name in take.id_data.objects
 
 
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Show the lengths of the chosen armature in the panel."""
+    """Show the lengths of the chosen armature in the panel, and animate it by what the take has."""
+    if not is_actor(take.armature):
+        return
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
+        from ..actor.restored_actor import reattach
         from ..actor.take_actor import show_lengths
         from ..bridge.actor_lengths import read_body
 
+        reattach(take)
         show_lengths(take, read_body(take.armature, HUMAN))
 
 
@@ -161,15 +168,28 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Height",
         description="The performer's body height, from which an actor of average proportions is built",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=1.75,
         min=0.5,
         max=3.0,
     )
     lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
+    rest_hips: bpy.props.FloatVectorProperty(
+        name="Hips at Rest",
+        description="Where the actor's hips are at rest in its own space, for one that is built anew",
+        size=3,
+        options={"HIDDEN"},
+    )
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
     active_marker: bpy.props.IntProperty(
         name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
+    ignored_regions: bpy.props.CollectionProperty(type=KEYMARK_PG_ignored_region)
+    active_ignored: bpy.props.IntProperty(
+        name="Active Region",
+        description="The region without markers that is chosen in the list",
+        default=0,
+        min=0,
     )
     follow: bpy.props.PointerProperty(type=KEYMARK_PG_follow)
     keyframe_action: bpy.props.PointerProperty(
@@ -186,6 +206,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
     matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
+    contradictions: bpy.props.CollectionProperty(type=KEYMARK_PG_contradiction)
     method: bpy.props.EnumProperty(
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )
