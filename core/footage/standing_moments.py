@@ -1,13 +1,13 @@
 """Moments in which the performer stands or walks upright, by keypoints or markers, to find the camera by.
 
-A body of known height that is upright in several places on the floor measures the room. Nobody has looked here
-whether it stands, so trunk and legs must lie in line and be as long as those of someone upright, and single
-moments are doubted.
+A body of known height that is upright in several places on the floor measures the room. Nobody has looked
+here whether it stands. So trunk and legs must lie in line and be as long as those of someone upright, and
+single moments are doubted.
 """
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
@@ -135,8 +135,8 @@ def _in_line(first: Array, second: Array) -> BoolArray:
 def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:
     """(F,) whether legs are as long relative to the trunk as when they are straight.
 
-    A camera that looks down on the performer and a detector with hips of its own change that ratio throughout the
-    clip; a median that differs more than they can is one of bent legs.
+    A camera that looks down on the performer and a detector with hips of its own change that ratio in the
+    whole clip; a median that differs more than they can is one of bent legs.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = np.log(np.linalg.norm(legs, axis=-1) / np.linalg.norm(trunk, axis=-1) / usual)
@@ -147,9 +147,10 @@ def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:
     return np.asarray(known & (np.abs(np.where(known, ratio, np.inf) - middle) < 0.5 * MOST_UNLIKE))
 
 
-def _apart(usable: BoolArray, fps: float) -> Array:
+def _apart(usable: BoolArray, fps: float) -> IndexArray:
     """Indices of usable frames, as many as differ from each other."""
-    step, chosen = max(1, round(APART_S * fps)), []
+    step = max(1, round(APART_S * fps))
+    chosen: list[int] = []
     for index in np.flatnonzero(usable):
         if not chosen or index - chosen[-1] >= step:
             chosen.append(int(index))
