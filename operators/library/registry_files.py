@@ -47,10 +47,7 @@ def all_libraries() -> Sequence[Library]:
     Raises:
         InputError: There is none.
     """
-    libraries = find_libraries(EVERY_LIBRARY, folders())
-    if not libraries:
-        raise InputError("there is no library of postures; import one, or install Keymark as a whole")
-    return libraries
+    return find_libraries(EVERY_LIBRARY, folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:

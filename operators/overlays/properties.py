@@ -54,6 +54,13 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=False,
         update=_changed,
     )
+    show_floor_grid: bpy.props.BoolProperty(
+        name="Floor Grid",
+        description="Draw the floor as a grid of meters over the footage, and the horizon; if the camera is "
+        "right, feet stand on it, and what is parallel on the floor is parallel in the grid",
+        default=False,
+        update=_changed,
+    )
     show_legend: bpy.props.BoolProperty(
         name="Legend",
         description="Explain lines and marks in a corner, and name the hidden markers",

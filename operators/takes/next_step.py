@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..footage.camera_fields import placement_is_guess
 from ..keypoints.evidence import has_contours, has_keypoints
 from ..overlays.timeline_figures import DOUBTED
 from ..shell.found_frames import doubtful_matches
@@ -17,6 +18,8 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: load the footage"
     if take.clip_state.missing:
         return "Next: find the clip's file"
+    if placement_is_guess(take):
+        return "Next: say where the camera stood"
     follow = take.follow
     if follow.use_markers and any(not marker.is_picked for marker in take.markers):
         return "Next: pick the markers' colors"

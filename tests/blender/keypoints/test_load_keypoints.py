@@ -233,6 +233,8 @@ def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: 
     """Keypoints are one way; whoever builds the actor at once follows contours alone."""
     bpy.ops.keymark.load_footage(filepath=str(plain_take.clip))
     scene = bpy.context.scene
+    assert next_step(active_take(scene)) == "Next: say where the camera stood"
+    bpy.ops.keymark.keep_camera()
     assert next_step(active_take(scene)) == "Next: choose what to follow"
     take = load(keypoint_file)
     assert next_step(take) == "Next: build the actor"
