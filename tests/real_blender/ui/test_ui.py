@@ -20,7 +20,7 @@ UNPOSED_MM = 200.0
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
-    *("character", "retargeted"),
+    *("drag_joints", "dragging", "dragged", "from_the_side", "corrected", "character", "retargeted"),
 )
 """Each leaves at least one picture of this name."""
 PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
