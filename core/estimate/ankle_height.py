@@ -30,8 +30,11 @@ def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) 
     soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)
     floor = np.percentile(soles, TOUCHING_PERCENT)
     flight = np.interp(np.arange(frames), index, np.maximum(soles - floor, 0.0))
-    rest = Posture.rest(body.skeleton)
-    pose = body.pose(rest)
+    return np.asarray(floor + standing_ankle_m(body) + flight)
+
+
+def standing_ankle_m(body: Body) -> float:
+    """Height of the ankles of someone who stands over the floor, in shoes [m]."""
+    pose = body.pose(Posture.rest(body.skeleton))
     ankle = body.points(pose)[body.skeleton.point_names.index("ankle.L"), 2]
-    standing = float(ankle - sole_heights_m(body, pose).min()) + SHOE_M
-    return np.asarray(floor + standing + flight)
+    return float(ankle - sole_heights_m(body, pose).min()) + SHOE_M

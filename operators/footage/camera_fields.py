@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 NO_GUESS = (0.0, 0.0, 0.0)
 """Height, tilt and roll of a take whose camera was not put anywhere by guess."""
+DECIMALS = 5
+"""Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0."""
 SAME = 1e-4
 """Difference from the guess [m, rad] that still counts as rounding."""
 
@@ -46,7 +48,7 @@ def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:
 
 def get_height(take: bpy.types.PropertyGroup) -> float:
     """Height of the take's camera above the floor [m]."""
-    return 0.0 if take.camera is None else read_placement(take.camera).height_m
+    return 0.0 if take.camera is None else round(read_placement(take.camera).height_m, DECIMALS)
 
 
 def set_height(take: bpy.types.PropertyGroup, value: float) -> None:
@@ -56,7 +58,7 @@ def set_height(take: bpy.types.PropertyGroup, value: float) -> None:
 
 def get_tilt(take: bpy.types.PropertyGroup) -> float:
     """Angle of the camera's view above the horizon [rad]."""
-    return 0.0 if take.camera is None else read_placement(take.camera).tilt_rad
+    return 0.0 if take.camera is None else round(read_placement(take.camera).tilt_rad, DECIMALS)
 
 
 def set_tilt(take: bpy.types.PropertyGroup, value: float) -> None:
@@ -66,7 +68,7 @@ def set_tilt(take: bpy.types.PropertyGroup, value: float) -> None:
 
 def get_roll(take: bpy.types.PropertyGroup) -> float:
     """Turn of the camera about its view [rad]."""
-    return 0.0 if take.camera is None else read_placement(take.camera).roll_rad
+    return 0.0 if take.camera is None else round(read_placement(take.camera).roll_rad, DECIMALS)
 
 
 def set_roll(take: bpy.types.PropertyGroup, value: float) -> None:

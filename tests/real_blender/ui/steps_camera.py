@@ -43,7 +43,10 @@ def _lines(person: Person) -> NDArray[np.float64]:
     """(5, 2, 2) ends of lines in the footage [px] that lie in the world as the person knows."""
     known = person.known.camera
     heading = keymark("core.footage.camera_placement").heading_rad(known.matrix_world)
-    ahead, right = np.array([-np.sin(heading), np.cos(heading), 0.0]), np.array([np.cos(heading), np.sin(heading), 0])
+    ahead, right = (
+        np.array([-np.sin(heading), np.cos(heading), 0.0]),
+        np.array([np.cos(heading), np.sin(heading), 0]),
+    )
     foot = known.matrix_world[:3, 3] * [1.0, 1.0, 0.0] + AHEAD_M * ahead
     up = np.array([0.0, 0.0, 1.0])
     stature = person.take.stature
@@ -74,5 +77,6 @@ def _expect_near(person: Person) -> None:
     known, take = placement.of(person.known.camera.matrix_world), person.take
     apart = np.degrees(take.camera_tilt - known.tilt_rad), take.camera_height - known.height_m
     expect(
-        abs(apart[0]) < TILT_DEGREES and abs(apart[1]) < HEIGHT_M, f"the camera found is {apart} from the true one"
+        abs(apart[0]) < TILT_DEGREES and abs(apart[1]) < HEIGHT_M,
+        f"the camera found is {apart} from the true one",
     )

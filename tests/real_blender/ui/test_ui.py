@@ -4,10 +4,12 @@ import json
 import shutil
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
+from keymark.core.footage.clips.clip import Clip
 from keymark.core.review.score import Score, read_truth, score_points
 from keymark.core.take.take_file import read_take
 
@@ -22,6 +24,9 @@ STEPS = (
 )
 """Each leaves at least one picture of this name."""
 PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
+MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
+PANEL = (8, 60, 60, 150)
+"""Left, top, right, bottom in pixels of the demonstration, beside the performer."""
 CLICKS_MM = 4.0
 """What a clicked point and a track in a single frame may change."""
 AGREEMENT_MM = 1.5
@@ -100,6 +105,29 @@ def test_plain_clothes_lead_to_a_motion(
     assert done.returncode == 0, done.stdout + done.stderr
     by_hand, by_command = (_score(file, take) for file in (folder / "motion.json", output / "motion.json"))
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=CLICKS_MM)
+
+
+def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, tmp_path: Path) -> None:
+    """Five clicks with mistakes among them; then a panel of a sleeve's color is left out in both ways."""
+    take = panelled_take(repository / "presets" / "demo" / "aerobic", tmp_path / "panelled")
+    folder = repository / "build" / "screenshots" / "markers"
+    run_script(blender_on_screen, "markers_session.py", take, folder, ",".join(map(str, PANEL)))
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in MARKER_STEPS if f"_{step}" not in pictures] == []
+
+
+def panelled_take(demo: Path, folder: Path) -> Path:
+    """The demonstration with a panel of the left sleeve's color on its wall."""
+    fields = json.loads((demo / "take.json").read_text(encoding="utf-8"))
+    (folder / "frames").mkdir(parents=True)
+    left, top, right, bottom = PANEL
+    for index, _, image in Clip.open(demo / "clip.mp4").frames():
+        image[top:bottom, left:right] = fields["markers"]["forearm.L"]["color_srgb"][::-1]
+        cv2.imwrite(str(folder / "frames" / f"{index + 1:04d}.png"), image)
+    shutil.copy(demo / "keyframes.json", folder)
+    fields["clip"] = "frames"
+    (folder / "take.json").write_text(json.dumps(fields), encoding="utf-8")
+    return folder
 
 
 def plain_take(demo: Path, folder: Path) -> Path:
