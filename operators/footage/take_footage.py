@@ -43,6 +43,7 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
         take.reading_key = take.review_key = ""
         take.proposals.clear()
         take.notes.clear()
+        take.notices.clear()
         clear_review(take)
         for sources in (take.follow.files, take.follow.tracks, take.follow.clicks):
             sources.clear()

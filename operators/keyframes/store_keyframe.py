@@ -8,7 +8,8 @@ from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import say
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 
@@ -40,15 +41,17 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         store_pose(armature_object, take.keyframe_action, HUMAN, frame)
         assign_action(armature_object, take.keyframe_action)
         invalidate_keyed_frames()
+        about = f"pose at {frame:g}"
+        give_notices(take, "keyframes", about)
         if read.furthest_m > NOTICEABLE_M:
-            say(
-                self,
-                "WARNING",
+            sentence = label(
                 "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
                 "can do, and its nearest posture will be used",
                 frame=frame,
                 beyond=1000.0 * read.furthest_m,
             )
+            give_notices(take, "keyframes", about, (sentence,), frame=frame)
+            self.report({"WARNING"}, sentence)
         elif was_matched:
             say(
                 self,

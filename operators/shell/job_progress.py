@@ -33,7 +33,7 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
-        operator.bl_idname.startswith(wanted) and not is_browsing(operator, window)
+        operator.bl_idname.startswith(wanted) and not is_browsing(operator, context.window_manager)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
