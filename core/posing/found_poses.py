@@ -5,12 +5,11 @@ from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
 from ..footage.reading import Reading
+from ..library.texts import COMPOSED
 from ..matching.candidates import MatchedFrame
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
 
-COMPOSED = "composed"
-"""Identifier that stands for a library where a posture is put together from the parts of several."""
 NEAR_FRAMES = 2
 """Found keyframes keep farther than this from posed ones."""
 
@@ -31,6 +30,8 @@ class FoundPoses:
     """Sentence for people: how sure it is, and what is doubtful."""
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
+    library: str = COMPOSED
+    """Identifier of the library that was matched, where only one was."""
     reading: Reading | None = None
     """The clip as read again with the postures telling where each marker is; None where the given reading
     holds."""
@@ -50,7 +51,7 @@ def with_found(take: Take, found: FoundPoses) -> Take:
             continue
         chosen = frame.candidates[0]
         posture = chosen.posture if index == frame.index else found.postures[index]
-        said = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
+        said = Matched(found.library, chosen.name, chosen.mirrored, chosen.confidence)
         keyframes[index] = Keyframe(index, posture, matched=said)
     return replace(take, keyframes=tuple(keyframes[index] for index in sorted(keyframes)))
 

@@ -62,10 +62,11 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
         styles = evidence.markers
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
-        if reading is None or not of_same_footage(
-            reading.key, reading_key(clip.path, clip.fps, styles, None)
-        ):
-            reading = yield from within("Following the performer", read_clip(clip, styles), 0.0, READ)
+        ignored = evidence.ignored_regions
+        key = reading_key(clip.path, clip.fps, styles, None, ignored)
+        if reading is None or not of_same_footage(reading.key, key):
+            job = read_clip(clip, styles, ignored=ignored)
+            reading = yield from within("Following the performer", job, 0.0, READ)
         segments = tuple(style.segment for style in styles)
         keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)

@@ -4,8 +4,10 @@ import bpy
 
 from ...core.body.human import HUMAN
 from ..bridge.actions import assign_action
+from ..matching.improve_neighbors import improve_neighbors
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
+from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
 from ..shell.messages import label, say
@@ -37,12 +39,14 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         frame = scene.frame_current_final
         switched = not shows_keyframes(take)
         straighten_unposed(take)
-        was_matched = frame in known_matches(take)
+        was_found = frame in known_matches(take)
         store_pose(armature_object, take.keyframe_action, HUMAN, frame)
         assign_action(armature_object, take.keyframe_action)
+        note_contradictions(take, frame, ())
         invalidate_keyed_frames()
         about = f"pose at {frame:g}"
         give_notices(take, "keyframes", about)
+        improved = improve_neighbors(context, take, frame)
         if read.furthest_m > NOTICEABLE_M:
             sentence = label(
                 "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
@@ -52,11 +56,19 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
             )
             give_notices(take, "keyframes", about, (sentence,), frame=frame)
             self.report({"WARNING"}, sentence)
-        elif was_matched:
+        elif improved:
             say(
                 self,
                 "INFO",
-                "Stored a keyframe at frame {frame:g}; it was matched, and counts as posed now",
+                "Stored a keyframe at frame {frame:g}; {improved} found ones around it were posed anew",
+                frame=frame,
+                improved=improved,
+            )
+        elif was_found:
+            say(
+                self,
+                "INFO",
+                "Stored a keyframe at frame {frame:g}; it was found, and counts as posed now",
                 frame=frame,
             )
         elif switched:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import bpy
 
 from .keyed_frames import keyframes_of
+from .placement_guess import placement_is_guess
 from .takes import find_take, has_lost_actor, present_actor
 
 _chosen: dict[tuple[str, str], tuple[bool, bool]] = {}
@@ -17,8 +18,8 @@ _chosen: dict[tuple[str, str], tuple[bool, bool]] = {}
 
 
 def _footage_is_behind(take: bpy.types.PropertyGroup) -> bool:
-    """Something is followed in a clip that is there."""
-    if take.clip is None or take.clip_state.missing or take.camera is None:
+    """Something is followed in a clip that is there, seen by a camera whose place is known."""
+    if take.clip is None or take.clip_state.missing or take.camera is None or placement_is_guess(take):
         return False
     follow = take.follow
     picked = any(marker.is_picked for marker in take.markers)

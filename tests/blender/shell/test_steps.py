@@ -22,6 +22,8 @@ def test_steps_fold_once_the_work_has_left_them_behind(tiny_take: Take) -> None:
     bpy.ops.keymark.add_marker()
     assert folded(take) == set()
     take.markers[0].color = (0.1, 0.5, 0.2)
+    assert folded(take) == set()
+    bpy.ops.keymark.keep_camera()
     assert folded(take) == {"footage"}
     bpy.ops.keymark.build_actor()
     assert folded(take) == {"footage"}
