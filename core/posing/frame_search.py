@@ -103,7 +103,9 @@ def _knowledge(lengths: tuple[tuple[str, float], ...], given: _Libraries) -> Kno
     return Knowledge(part_pools(given.libraries, given.body), likely)
 
 
-def search(known: Knowledge, shown: FrameShown, floor_m: float | None, count: int = MOST_STARTS) -> Hypotheses:
+def search(
+    known: Knowledge, shown: FrameShown, floor_m: float | None, count: int = MOST_STARTS
+) -> Hypotheses:
     """Look for the postures that a frame may show.
 
     Args:
@@ -138,7 +140,9 @@ def _starts(
         np.concatenate([each.torso for each in found]),
         np.concatenate([each.exchanged for each in found]),
     )
-    kept = distinct(points_from_hips(known.pools.body, every.posture), np.argsort(every.cost), DISTINCT_M, count)
+    kept = distinct(
+        points_from_hips(known.pools.body, every.posture), np.argsort(every.cost), DISTINCT_M, count
+    )
     return _chosen(every, kept), every.cost[kept], floor_m
 
 

@@ -50,7 +50,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
             go_to(neighbor)
             there = read_posture(take.armature, body).posture
-        set_corrected(context, take, Posture(HUMAN, here.translation, there.rotations, there.angles))
+        set_corrected(self, context, take, Posture(HUMAN, here.translation, there.rotations, there.angles))
         say(self, "INFO", "Pose of frame {frame:g}, at the place of this one", frame=neighbor)
         return None
 

@@ -7,6 +7,7 @@ import bpy
 from ...core.body.human import HUMAN
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, keyframes_of
 from ..shell.keyframe_action import show_keyframes
+from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.takes import footage_of
 from .key_pose import key_pose
@@ -41,13 +42,15 @@ def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
 
-def set_corrected(context: bpy.types.Context, take: bpy.types.PropertyGroup, posture: "Posture") -> int:
+def set_corrected(
+    operator: bpy.types.Operator,
+    context: bpy.types.Context,
+    take: bpy.types.PropertyGroup,
+    posture: "Posture",
+) -> None:
     """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
 
-    A found keyframe counts as posed from then on.
-
-    Returns:
-        How many found keyframes around it were posed anew.
+    A found keyframe counts as posed from then on, and the operator reports how many around it were improved.
     """
     from ..bridge.pose import write_posture
 
@@ -56,5 +59,7 @@ def set_corrected(context: bpy.types.Context, take: bpy.types.PropertyGroup, pos
     invalidate_keyed_frames()
     redraw_footage(context)
     if take.keyframe_action is None or not has_frame(keyframes_of(take), context.scene.frame_current_final):
-        return 0
-    return key_pose(context, take)
+        return
+    improved = key_pose(context, take)
+    if improved:
+        say(operator, "INFO", "{count} found keyframes around this one were posed anew", count=improved)

@@ -60,7 +60,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
                 "The selected part lies flat in the picture, or its joints allow no other way",
             )
             return {"CANCELLED"}
-        set_corrected(context, take, posture)
+        set_corrected(self, context, take, posture)
         self.report({"INFO"}, "; ".join(said))
         return None
 

@@ -47,7 +47,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         sight = np.array(self.sight, dtype=np.float64)
         sight /= max(float(np.linalg.norm(sight)), 1e-9)
         moved = dragged(body, posture, self.joint, np.array(self.place), sight, self.pushed)
-        set_corrected(context, take, moved)
+        set_corrected(self, context, take, moved)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint,))

@@ -69,7 +69,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         ways = [turned(body, posture, seen, Facing[self.facing], sides) for sides in wanted]
         fitted = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else None
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
-        set_corrected(context, take, chosen)
+        set_corrected(self, context, take, chosen)
         said = next(name for value, name, _ in FACINGS if value == self.facing)
         if fitted is None:
             say(self, "INFO", "Turned: {facing}; nothing seen in this frame to fit to", facing=label(said))

@@ -138,13 +138,24 @@ def _pick(person: Person, count: int, key: str = "") -> Steps[None]:
     yield from person.hands.click_button("keymark.pick_markers")
     expect(person.jobs(), "nothing waits for a click")
     for number in range(count):
-        expect(person.take.active_marker == number, f"marker {person.take.active_marker} is asked for")
+        expect_asked(person, number)
         yield from click_pixel(person, sleeve_pixel(person, number))
     if key:
         yield from person.hands.press(key)
         expect(not person.jobs(), f"{key} does not end the clicks")
     else:
         yield from person.wait_for_job()
+
+
+def expect_asked(person: Person, number: int) -> None:
+    """Expect that one of the performer's markers is asked for, with whose left or right it is."""
+    segment = person.known.markers[number].segment
+    request = keymark("operators.shell.footage_request").shown_request()
+    expect(request is not None, "nothing is asked for")
+    title = keymark("operators.markers.properties").segment_title(segment)
+    expect(title in request.title, f"{request.title!r} is asked for, not {title}")
+    side = {"L": "own left", "R": "own right"}.get(segment[-1], "")
+    expect(side in request.detail, f"the request for {segment} says {request.detail!r}")
 
 
 def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:

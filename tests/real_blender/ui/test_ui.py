@@ -4,12 +4,11 @@ import json
 import shutil
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
+from _panelled_take import PANEL, panelled_take
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
-from keymark.core.footage.clips.clip import Clip
 from keymark.core.review.score import Score, read_truth, score_points
 from keymark.core.take.take_file import read_take
 
@@ -20,7 +19,7 @@ UNPOSED_MM = 200.0
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
-    *("character", "retargeted"),
+    *("drag_joints", "dragging", "dragged", "from_the_side", "corrected", "character", "retargeted"),
 )
 """Each leaves at least one picture of this name."""
 PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
@@ -29,8 +28,6 @@ HURRIED_STEPS = ("posed_all", "corrected", "unposed")
 MOST_CLICKS = 25
 """From the clip to the motion: button and sleeve of each of five markers, and a few buttons more."""
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
-PANEL = (8, 60, 60, 150)
-"""Left, top, right, bottom in pixels of the demonstration, beside the performer."""
 CLICKS_MM = 4.0
 """What a clicked point and a track in a single frame may change."""
 AGREEMENT_MM = 1.5
@@ -130,20 +127,6 @@ def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, t
     run_script(blender_on_screen, "markers_session.py", take, folder, ",".join(map(str, PANEL)))
     pictures = " ".join(file.name for file in folder.glob("*.png"))
     assert [step for step in MARKER_STEPS if f"_{step}" not in pictures] == []
-
-
-def panelled_take(demo: Path, folder: Path) -> Path:
-    """The demonstration with a panel of the left sleeve's color on its wall."""
-    fields = json.loads((demo / "take.json").read_text(encoding="utf-8"))
-    (folder / "frames").mkdir(parents=True)
-    left, top, right, bottom = PANEL
-    for index, _, image in Clip.open(demo / "clip.mp4").frames():
-        image[top:bottom, left:right] = fields["markers"]["forearm.L"]["color_srgb"][::-1]
-        cv2.imwrite(str(folder / "frames" / f"{index + 1:04d}.png"), image)
-    shutil.copy(demo / "keyframes.json", folder)
-    fields["clip"] = "frames"
-    (folder / "take.json").write_text(json.dumps(fields), encoding="utf-8")
-    return folder
 
 
 def plain_take(demo: Path, folder: Path) -> Path:
