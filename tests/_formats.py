@@ -124,6 +124,7 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    settings["keyframes"] = None  # auto beside a library is refused
     settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
     placed = {"height_m": 1.0, "tilt_deg": -0.5, "roll_deg": 0.5, "distance_m": 4.0}
@@ -186,6 +187,7 @@ def _record() -> dict[str, Any]:
         "keyframes": [1, 5],
         "matched": [5],
     }
+    value |= {"doubtful": [5], "libraries": {"walking": "ef" * 16}}
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
     value["evidence"] = {
         "markers": ["trunk"],

@@ -104,10 +104,18 @@ class Uprights:
         """Both together; what may be off in common is taken to be the same of both."""
         if not len(self) or not len(other):
             return self if len(self) else other
-        names = ("lower_px", "upper_px", "lower_m", "length_m", "pixel_std", "length_std", "lean_std_rad")
-        joined = [np.concatenate([getattr(self, name), getattr(other, name)]) for name in names]
+
+        def joined(name: str) -> Array:
+            return np.concatenate([getattr(self, name), getattr(other, name)])
+
         return Uprights(
-            *joined,
+            joined("lower_px"),
+            joined("upper_px"),
+            joined("lower_m"),
+            joined("length_m"),
+            joined("pixel_std"),
+            joined("length_std"),
+            joined("lean_std_rad"),
             common_std=max(self.common_std, other.common_std),
             common_lean_rad=max(self.common_lean_rad, other.common_lean_rad),
             doubtful=self.doubtful or other.doubtful,

@@ -70,8 +70,8 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
 def read_poses(fields: Fields) -> Array:
     """Read the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
-    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image. Instead of
-    a matrix a still camera may have its height, tilt and roll.
+    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image. Instead
+    of a matrix a still camera may have its height, tilt and roll.
 
     Raises:
         InputError: A matrix is absent, of the wrong shape, or not a rotation with a translation; a number is

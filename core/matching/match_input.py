@@ -30,7 +30,7 @@ class MatchInput:
 
 
 def match_input(take: Take, reading: Reading, keyframe_count: int | None = None) -> MatchInput:
-    """Gather what a take has to find its postures by.
+    """Gather what a take has to find its postures by; pictures are not asked.
 
     Args:
         take: The take; posed keyframes constrain, those found earlier are not used.
@@ -40,10 +40,12 @@ def match_input(take: Take, reading: Reading, keyframe_count: int | None = None)
     Raises:
         InputError: Neither a marker nor a keypoint is seen.
     """
+    check_followed(take)
     keypoints = performer_keypoints(take, None, reading.tracks)
     if not (reading.tracks.visible.any() or keypoints.seen.any()):
-        raise InputError(_nothing_seen(take))
-    # Pictures are not asked: something is seen.
+        given = (("marker", take.markers), ("keypoint", take.keypoints))
+        missing = " and ".join(name for name, has in given if has)
+        raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
     speed = run(evidence_speed(reading.tracks, take.marker_segments, keypoints))
     keyframes = propose_keyframes(speed.values, keyframe_count)
     constraints = PosedConstraints.from_keyframes(take.body, take.keyframes)
@@ -51,14 +53,14 @@ def match_input(take: Take, reading: Reading, keyframe_count: int | None = None)
     return MatchInput(take.body, take.camera, evidence, keyframes, constraints)
 
 
-def _nothing_seen(take: Take) -> str:
-    """What postures cannot be found for the lack of."""
-    if take.markers or take.keypoints:
-        missing = " and ".join(
-            name for name, has in (("marker", take.markers), ("keypoint", take.keypoints)) if has
+def check_followed(take: Take) -> None:
+    """Refuse a take that has nothing to find postures by.
+
+    Raises:
+        InputError: It has neither markers nor keypoints.
+    """
+    if not (take.markers or take.keypoints):
+        raise InputError(
+            f"{take.file}: the take has neither markers nor keypoints, without which no posture can be "
+            "found; give it one of them, or pose its keyframes"
         )
-        return f"{take.clip}: no {missing} is seen in the footage, so no posture can be found"
-    return (
-        f"{take.file}: the take has neither markers nor keypoints, without which no posture can be found; "
-        "give it one of them, or pose its keyframes"
-    )

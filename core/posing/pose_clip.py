@@ -9,6 +9,7 @@ from ..errors import InputError
 from ..footage.reading import Reading
 from ..library.library import Library
 from ..library.texts import COMPOSED
+from ..matching.candidates import MatchedFrame
 from ..matching.library_match import prepare_library
 from ..matching.match_input import match_input
 from ..progress import Job
@@ -24,6 +25,7 @@ def pose_clip(
     floor_m: float | None = None,
     keyframe_count: int | None = None,
     between: tuple[int, int] | None = None,
+    frames: Sequence[int] | None = None,
 ) -> Job[FoundPoses]:
     """Find the postures of a clip that nobody posed.
 
@@ -34,6 +36,7 @@ def pose_clip(
         floor_m: Height of the floor in the world [m]; None where it is not known.
         keyframe_count: Number of frames to find keyframes at; 10 per 100 frames where None.
         between: First and last frame of the clip to look at, both posed; the whole clip where None.
+        frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
 
     Yields:
         Progress.
@@ -51,4 +54,14 @@ def pose_clip(
     cost = [prepare_library(given, library).coarse_pass.cost for library in usable]
     nearest = usable[int(np.argmin(cost))]
     found = yield from match_clip(take, reading, nearest, floor_m, keyframe_count)
-    return replace(found, library=COMPOSED)
+    at = found.frames if frames is None else tuple(_at(found, index) for index in sorted(set(frames)))
+    return replace(found, frames=at, library=COMPOSED)
+
+
+def _at(found: FoundPoses, index: int) -> MatchedFrame:
+    """The candidates of a frame, or its posture with what is known of the nearest frame's."""
+    near = min(found.frames, key=lambda frame: abs(frame.index - index))
+    if near.index == index:
+        return near
+    posture = replace(near.candidates[0], posture=found.postures[index])
+    return MatchedFrame(index, (posture,))

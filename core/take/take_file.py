@@ -96,8 +96,8 @@ def read_described(
     if not missing and keyframes is None and not os.path.exists(posed):
         named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
         raise InputError(
-            f"{posed}: no such file{named}; a take needs keyframes posed there, or a keyframe library to "
-            'match, as in "library": "auto"'
+            f"{posed}: no such file{named}; a take needs keyframes posed there, or found in its footage: "
+            '--keyframes auto, or "keyframes": "auto" in its description'
         )
     fps = fields.number("fps", 1.0, 1000.0, "frames per second")
     take = Take(

@@ -33,6 +33,10 @@ DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
 CORE_SHARE = 0.45
 """Thickness of the core of a hollow line, as a share of the line's."""
+CANDIDATE_COLORS = 8
+"""Colors of collections that Blender's themes have, with an icon each: those of a frame's candidates."""
+GHOST = 0.6
+"""Opacity of figures that are only offered."""
 LIMB = 2.4
 """Thickness of limbs relative to outlines."""
 METER, SMALLEST = 160.0, 0.35
@@ -72,6 +76,11 @@ def body_scale(pixels_per_meter: Array, scale: float) -> float:
     seen = pixels_per_meter[np.isfinite(pixels_per_meter)]
     meter = float(np.median(seen)) / scale if len(seen) else METER
     return float(np.clip(meter / METER, SMALLEST, 1.0))
+
+
+def candidate_icon(index: int) -> str:
+    """Icon in a candidate's color."""
+    return f"COLLECTION_COLOR_{index % CANDIDATE_COLORS + 1:02d}"
 
 
 def side_color(name: str) -> Color:

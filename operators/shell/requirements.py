@@ -88,9 +88,9 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
 
 
 def matches(context: bpy.types.Context) -> str | None:
-    """The take has frames matched with a library."""
+    """The take has found keyframes."""
     take = find_take(context.scene)
-    return None if take and len(take.matching.matches) else "Match a library first"
+    return None if take and len(take.matching.matches) else "Find keyframes first (Pose All)"
 
 
 def motion(context: bpy.types.Context) -> str | None:

@@ -3,9 +3,10 @@
 import bpy
 
 from ..keypoints.evidence import has_contours, has_keypoints
-from ..matching.matches import state_of
 from ..overlays.timeline_figures import DOUBTED
+from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import is_posed, keyframes_of, matched_frames, unposed_proposals
+from ..shell.placement_guess import placement_is_guess
 from ..shell.takes import has_lost_actor, present_actor
 
 FEWEST_KEYFRAMES = 2
@@ -17,6 +18,8 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
         return "Next: load the footage"
     if take.clip_state.missing:
         return "Next: find the clip's file"
+    if placement_is_guess(take):
+        return "Next: say where the camera stood"
     follow = take.follow
     if follow.use_markers and any(not marker.is_picked for marker in take.markers):
         return "Next: pick the markers' colors"
@@ -30,14 +33,14 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if not has_actor:
         return "Next: build the actor"
     if not len(take.proposals) and not keyframes_of(take):
-        return "Next: match a library, or pose"
+        return "Next: pose all keyframes" if followed else "Next: propose keyframes"
     if take.motion_action is None:
         if unposed_proposals(take) and not matched_frames(take):
-            return "Next: pose the proposed frames"
+            return "Next: pose all keyframes" if followed else "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
             return "Next: pose and store keyframes"
-        if _has_doubtful_matches(take):
-            return "Next: check matches, reconstruct"
+        if doubtful_matches(take):
+            return "Next: check doubtful ones, reconstruct"
         return "Next: reconstruct the motion"
     if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
         return _how_to_better(take)
@@ -60,12 +63,8 @@ def is_doubtful(take: bpy.types.PropertyGroup) -> bool:
 def _how_to_better(take: bpy.types.PropertyGroup) -> str:
     """What makes a doubtful motion better: the keyframes are what it lacks."""
     weak = [each.frame for each in take.review.weak_frames]
-    if _has_doubtful_matches(take):
+    if doubtful_matches(take):
         return "Next: check the doubtful poses"
     if any(not is_posed(take, frame) for frame in weak):
         return "Next: pose the weak frames"
     return "Next: reconstruct again" if weak else "Next: pose more keyframes"
-
-
-def _has_doubtful_matches(take: bpy.types.PropertyGroup) -> bool:
-    return any(match.is_doubtful and state_of(take, match) == "MATCHED" for match in take.matching.matches)

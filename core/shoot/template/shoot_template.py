@@ -4,6 +4,7 @@ from typing import Any
 
 from ...files.fields import listed
 from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
+from ...library.texts import EVERY_LIBRARY
 from ...take.evidence_kinds import MARKERS
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize
@@ -12,7 +13,6 @@ from .clip_survey import ClipSurvey
 USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The paper's five markers."""
 MOST_NAMED = 5
-AUTO = "auto"
 NO_MARKERS = [
     "left out, for no garments in strong colors were found; where some are worn, it must say which:",
     '"trunk": {"color_srgb": [red, green, blue]}, "forearm.L": ... inside braces',
@@ -46,7 +46,7 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
         "height_m": None,
     }
-    return fields | _library(survey)
+    return fields | _keyframes(survey)
 
 
 def clip_lines(survey: ClipSurvey) -> list[str]:
@@ -167,17 +167,18 @@ def _markers(survey: ClipSurvey) -> dict[str, Any]:
     return markers | {name: {"color_srgb": None} for name in USUAL_MARKERS}
 
 
-def _library(survey: ClipSurvey) -> dict[str, Any]:
+def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
     if not survey.unposed:
         return {}
     missing = "no clip has" if survey.unposed == len(survey.clips) else f"{survey.unposed} clips have no"
     return {
-        "//library": [
-            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): these are matched with a",
-            "keyframe library, auto for the likeliest or a name out of keymark library list. Posed keyframes",
-            "are more exact; with a library some are enough.",
+        "//keyframes": [
+            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): auto finds them in the",
+            "footage with all libraries. Where all clips show one kind of motion, library with a name out of",
+            "keymark library list, in place of this, matches that alone. Posed keyframes are more exact;",
+            "beside found ones a few are enough.",
         ],
-        "library": AUTO,
+        "keyframes": EVERY_LIBRARY,
         "//floor_m": "height of the floor where the matrix above says how high the camera stood",
         "floor_m": 0.0,
     }

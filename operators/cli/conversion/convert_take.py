@@ -91,7 +91,7 @@ def convert_take(
         description: The take's description.
         output: Folder for the results; it changes only when all of them are complete.
         console: Shows the progress.
-        settings: How; with a library only the keyframes that are named here count, else the take's own.
+        settings: How; where keyframes are found, only posed ones that are named here count beside them.
         debug: Whether to let Blender's messages through.
 
     Raises:
@@ -163,6 +163,7 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
         result,
         files=tuple(output / name for name in (*made, RECORD)),
         found=reconstructed.found,
+        libraries=prepared.libraries,
         conversion_notes=(
             *_unused_keyframes_note(prepared.description, settings),
             *(() if character is None else (*character.doubts, *character.notes)),
@@ -213,8 +214,8 @@ def _read_take(description: Description, settings: ConversionSettings, output: P
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
-    """A sentence where a take has keyframes that a conversion with a library does not use."""
+    """A sentence where a take has keyframes that a conversion which finds its own does not use."""
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
-    return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
+    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)

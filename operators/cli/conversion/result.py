@@ -8,6 +8,8 @@ import numpy as np
 
 from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.digest import content_digest
+from ....core.library.library import Library
+from ....core.library.library_file import library_digest
 from ....core.posing.contradiction_notes import contradiction_notes
 from ....core.posing.found_poses import FoundPoses
 from ....core.progress import run
@@ -31,6 +33,8 @@ class Conversion:
     """In the order of `RESULT_FILES`, then keyframes and record."""
     found: FoundPoses | None = None
     """What was found of keyframes, if that was asked for, and how well it fits."""
+    libraries: tuple[Library, ...] = ()
+    """Those that took part."""
     conversion_notes: tuple[str, ...] = ()
     """Sentences on unused keyframes and on files that are kept."""
 
@@ -77,4 +81,8 @@ def conversion_record(
         notes=conversion.notes,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
         evidence=used_evidence(conversion.reconstruction),
+        libraries={library.identifier: library_digest(library) for library in conversion.libraries},
+        doubtful=tuple(
+            index + motion.frame_start for index, said in sorted(found.items()) if said.is_doubtful
+        ),
     )

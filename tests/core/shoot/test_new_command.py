@@ -79,7 +79,7 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rate and size; a take with its own file is named; where all are posed, no library is asked for."""
+    """Rate and size; a take with its own file is named; where all are posed, nothing is to be found."""
     own = (folder / "day1" / "take03" / "take.json").read_bytes()
     assert new(folder, "--json") == 0
     said = json.loads(capsys.readouterr().out)
@@ -87,7 +87,7 @@ def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixtu
     assert said["file"] == str(folder / "shoot.json") and len(said["fill_in"]) == 8
     fields = written(folder)
     assert fields["fps"] == 30 and fields["camera"]["resolution"] == [160, 120] and fields["root"] is True
-    assert "library" not in fields and any("day1/take03" in line for line in fields["//clips"])
+    assert "keyframes" not in fields and any("day1/take03" in line for line in fields["//clips"])
     assert (folder / "day1" / "take03" / "take.json").read_bytes() == own
     assert any(line.startswith("red [2") for line in fields["markers"]["//seen"])
     layout = (folder / "shoot.json").read_text(encoding="utf-8").splitlines()
@@ -97,7 +97,7 @@ def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixtu
 def test_where_clips_differ_they_tell_themselves(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """The outlier and the unreadable clip are named; without keyframes a library is to be chosen."""
+    """The outlier and the unreadable clip are named; without keyframes these are to be found."""
     larger = [image.repeat(2, axis=0).repeat(2, axis=1) for image in drawn_frames(true_postures(3))]
     write_frames(folder / "larger.mp4", larger)
     (folder / "text.mp4").write_text("no video", encoding="utf-8")
@@ -109,7 +109,7 @@ def test_where_clips_differ_they_tell_themselves(
     lines = fields["//clips"]
     assert any("320 x 240 pixels: larger" in line for line in lines)
     assert any("text.mp4" in line and line.startswith("cannot be read") for line in lines)
-    assert fields["library"] == "auto" and fields["floor_m"] == 0.0
+    assert fields["keyframes"] == "auto" and fields["floor_m"] == 0.0
 
 
 def gray(images: Iterable[np.ndarray]) -> list[np.ndarray]:

@@ -92,6 +92,8 @@ def test_settings_libraries_and_version_change_the_digest(shoot: Path) -> None:
         digest(shoot, libraries=("a",)),
         digest(shoot, libraries=("a", "b")),
         digest(shoot, libraries=("a",), floor_m=0.1),
+        digest(shoot, library="auto", libraries=("a", "b")),
+        digest(shoot, library="auto", libraries=("a",)),
     ]
     assert len(set(digests)) == len(digests)
 

@@ -1,4 +1,4 @@
-"""The field `ignored_regions` of take.json and shoot.json: read, inherited, written, refused in a sentence."""
+"""The field `ignored_regions` of take.json and shoot.json: read, inherited, written, refused in sentences."""
 
 import json
 import shutil
