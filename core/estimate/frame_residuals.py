@@ -1,4 +1,4 @@
-"""How far markers and keypoints of one frame lie from where a posture has them, and which it does not explain."""
+"""How far what is seen of one frame lies from where a posture has it, and what it does not explain."""
 
 from dataclasses import dataclass
 

@@ -14,7 +14,7 @@ TOGETHER = 0.5
 
 
 def belief_costs(belief: FramePrior, posture: Posture) -> Array:
-    """(S,) cost of postures beside keyframes: Gaussian near them, at most what tells them from unrelated ones.
+    """(S,) cost of postures beside keyframes: Gaussian near them, bounded by what tells them from others.
 
     Far from all keyframes their belief is as wide as that of unrelated postures, and the cost vanishes.
     """

@@ -1,8 +1,8 @@
 """The postures of one frame, with no keyframe at all: a few distinct candidates, each with a confidence.
 
 What is seen of a frame does not tell a posture: several explain it alike. So the hypotheses of a search
-(`frame_search`) are gathered around the likeliest ones; each candidate is the mean of those near it, weighed by
-their probability and brought to the evidence again, which is nearer to the truth than the best single one.
+(`frame_search`) are gathered around the likeliest ones; each candidate is the mean of those near it, weighed
+by their probability and brought to the evidence again, which is nearer to the truth than the best single one.
 """
 
 from collections.abc import Sequence
@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..body.posture import Posture
 from ..body.limbs import TRUNK
+from ..body.posture import Posture
 from ..errors import InputError
+from ..estimate.single_frame import fit_frame
 from ..library.library import Library
 from ..matching.candidates import ABOUT_RIGHT_M, Candidate
 from ..prior.frame_prior import FramePrior
@@ -75,6 +76,19 @@ def find_frame_poses(
     return FramePoses(candidates, tuple(dict.fromkeys(named)))
 
 
+def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
+    """The posture that explains a frame nearest to a pose that somebody has set for it.
+
+    Args:
+        shown: The frame.
+        belief: About that pose, which is not doubted as a whole: no library is asked.
+    """
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=shown.points_of(False))
+    names = [shown.tracks.names[marker] for marker in fit.misplaced]
+    only = Candidate(fit.posture, "", False, 1.0)
+    return FramePoses((only,), (*names, *fit.misplaced_points))
+
+
 def _hypotheses(
     known: Knowledge, shown: FrameShown, floor_m: float | None, belief: FramePrior | None
 ) -> Hypotheses:
@@ -94,7 +108,7 @@ def _hypotheses(
 def _candidates(
     known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None
 ) -> tuple[Candidate, ...]:
-    """Distinct candidates, each the mean of the hypotheses near it; the one of keyframes as it is if it leads."""
+    """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
     body = known.pools.body
     points = points_from_hips(body, found.posture)
     weight = np.exp(-(found.cost - found.cost.min()) / TEMPERATURE)
