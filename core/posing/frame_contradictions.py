@@ -11,6 +11,7 @@ import numpy as np
 from ..body.limbs import limb_of
 from ..body.posture import Posture
 from ..estimate.frame_residuals import frame_residuals
+from ..observation.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
 from .frame_search import Hypotheses, Knowledge, search
 from .frame_shown import FrameShown
 from .known_postures import PARTS
@@ -56,7 +57,9 @@ def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[
     """Names of what a posture does not explain, and of what is seen on limbs that it contorts."""
     points = shown.points_of(False)
     off = frame_residuals(shown.evidence, shown.regions, points, posture, shown.frame)
-    names = [shown.tracks.names[marker] for marker in off.markers] + list(off.points)
+    names = [shown.tracks.names[marker] for marker in off.markers]
+    # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
+    names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
     bent = known.plausibility.contorted(known.pools.body.pose(Posture.stack([posture])))[0]
     parts = [part for part, is_bent in zip(PARTS, bent, strict=True) if is_bent]
     worn = zip(shown.tracks.names, shown.segments, shown.tracks.visible[0], strict=True)
