@@ -15,7 +15,6 @@ from ..footage.reading import Reading
 from ..library.library import Library
 from ..prior.evidence_speed import evidence_speed
 from ..prior.keyframe_proposals import propose_keyframes
-from ..prior.keyframes import Keyframe, Matched
 from ..progress import Job, Progress, run, stretch, within
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
@@ -32,6 +31,7 @@ from .library_match import (
     repeat_coarse_pass,
 )
 from .match_evidence import MatchEvidence
+from .matched_keyframes import with_matched
 from .posed_constraints import PosedConstraints
 
 MOST_TRIED = 5
@@ -52,8 +52,6 @@ WELL_EXPLAINED = 0.9
 """Explained share of the footage above which no marker is taken for mistaken."""
 BETTER_BY = 0.04
 """Gain in the explained share for which the second reading is kept."""
-NEAR_FRAMES = 2
-"""Matched keyframes keep farther than this from posed ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,9 +120,9 @@ def match_take(
         raise InputError("no keyframe library with a posture is given; at least one is needed to match with")
     keypoints = performer_keypoints(take, None, reading.tracks)
     if not (reading.tracks.visible.any() or keypoints.seen.any()):
-        raise InputError(_nothing_seen(take))
+        raise InputError(nothing_seen(take))
     with threadpool_limits(limits=1, user_api="blas"):
-        match_input = _match_input(take, reading, keypoints, keyframe_count)
+        match_input = read_match_input(take, reading, keypoints, keyframe_count)
         prepared = yield from stretch(_prepared(match_input, usable), 0.0, COARSE_SHARE * FIRST_ROUND_SHARE)
         first = _matches(match_input, prepared, floor_m)
         matches = yield from stretch(first, COARSE_SHARE * FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
@@ -133,7 +131,7 @@ def match_take(
             _read_again(take, reading, matches[0]), FIRST_ROUND_SHARE, FIRST_ROUND_SHARE
         )
         if better is not None:
-            match_input = _match_input(take, better, keypoints, keyframe_count)
+            match_input = read_match_input(take, better, keypoints, keyframe_count)
             found = [match.library for match in matches]
             repeated = [repeat_coarse_pass(match_input, one) for one in prepared if one.library in found]
             second = _matches(match_input, repeated, floor_m)
@@ -144,7 +142,7 @@ def match_take(
     return choice
 
 
-def _nothing_seen(take: Take) -> str:
+def nothing_seen(take: Take) -> str:
     """What a library cannot be matched for the lack of."""
     if take.markers or take.keypoints:
         missing = " and ".join(
@@ -157,9 +155,10 @@ def _nothing_seen(take: Take) -> str:
     )
 
 
-def _match_input(
+def read_match_input(
     take: Take, reading: Reading, keypoints: Keypoints, keyframe_count: int | None
 ) -> MatchInput:
+    """What a match needs of a take, with the frames proposed for keyframes."""
     # Pictures are not asked: something is seen.
     speed = run(evidence_speed(reading.tracks, take.marker_segments, keypoints))
     keyframes = propose_keyframes(speed.values, keyframe_count)
@@ -227,33 +226,8 @@ def _likely_libraries(prepared: Sequence[PreparedLibrary]) -> list[PreparedLibra
 
 
 def with_matches(take: Take, match: LibraryMatch) -> Take:
-    """The take with a match's keyframes: posed ones stay, matched ones near them move aside.
-
-    Beside a posed keyframe a matched one tells how the performer differs from the library
-    (`prior/performer_offset`).
-    """
-    posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
-    keyframes = {keyframe.index: keyframe for keyframe in take.keyframes if keyframe.matched is None}
-    for frame in match.frames:
-        index = _free_frame(frame.index, posed, match.postures.batch[0])
-        if index is None or index in keyframes:
-            continue
-        chosen = frame.candidates[0]
-        posture = chosen.posture if index == frame.index else match.postures[index]
-        said = Matched(match.library.identifier, chosen.name, chosen.mirrored, chosen.confidence)
-        keyframes[index] = Keyframe(index, posture, matched=said)
-    return replace(take, keyframes=tuple(keyframes[index] for index in sorted(keyframes)))
-
-
-def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
-    """The frame itself or, near a posed keyframe, the nearest one that is far enough; None without one."""
-    reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
-    free = [
-        index + step
-        for step in sorted(reach, key=abs)
-        if 0 <= index + step < frames and all(abs(index + step - other) > NEAR_FRAMES for other in posed)
-    ]
-    return free[0] if free else None
+    """The take with a match's keyframes, see `with_matched`."""
+    return with_matched(take, match.frames, match.postures, match.library.identifier)
 
 
 def _choice(libraries: Sequence[Library], ranked: Sequence[LibraryMatch]) -> LibraryChoice:

@@ -12,7 +12,8 @@ from keymark.core.estimate.notes import filter_notes, left_out_notes, match_note
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.matching.candidates import Candidate, MatchedFrame
 from keymark.core.matching.library_match import LibraryMatch
-from keymark.core.matching.match_take import NEAR_FRAMES, with_matches
+from keymark.core.matching.match_take import with_matches
+from keymark.core.matching.matched_keyframes import NEAR_FRAMES
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.take import Take
