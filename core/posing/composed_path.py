@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN
-from .composed_states import LEGS, FrameCosts, FrameStates, below_cost, standing_cost, student_cost
+from .composed_states import LEGS, FrameCosts, FrameStates, student_cost
 from .part_features import HEADINGS, StanceFeatures
 from .part_pools import LIMBS
 
@@ -91,34 +91,63 @@ def limb_paths(
     tempering: float,
 ) -> IndexArray:
     """(T, 4) the likeliest limbs on given stances at given places (T, 3)."""
-    tables: dict[str, list[SingleArray]] = {limb: [] for limb in LIMBS}
+    tables: list[dict[str, SingleArray]] = []
     for cost, own, place in zip(costs, stance, hips, strict=True):
-        rows, relative = np.array([own]), (place[None] - cost.location).astype(np.float32)
-        standing = []
-        for limb in LIMBS:
-            table = cost.limb_table(limb, rows, relative)[0]
-            if limb in LEGS and cost.floor_m is not None:
-                height = cost.sole_heights(limb, rows, relative)[0]
-                table = table + below_cost(height)
-                standing.append(table + standing_cost(height))
-            tables[limb].append(table)
-        if standing:  # the leg that stands with less trouble is asked to
-            more = [least.min() - tables[limb][-1].min() for limb, least in zip(LEGS, standing, strict=True)]
-            which = int(np.argmin(more))
-            if more[which] < 3.0:
-                tables[LEGS[which]][-1] = standing[which]
-    found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
-    for column, limb in enumerate(LIMBS):
+        relative = (place[None] - cost.location).astype(np.float32)
+        tables.append({limb: cost.limb_table(limb, np.array([own]), relative) for limb in LIMBS})
+    variances = [np.float32((LIMB_SPEED * step) ** 2 + LIMB_ROUGH_M**2) for step in np.diff(time_s)]
+    points = {}
+    for limb in LIMBS:
         turn, origin = stances.frame_of(limb, stance)
-        local = stances.limbs[limb].points  # (L, 2, 3)
-        points = np.einsum("tij,lqj->tlqi", turn, local) + origin[:, None, None]
-        steps = []
-        for index in range(1, len(stance)):
-            duration = float(time_s[index] - time_s[index - 1])
-            variance = np.float32((LIMB_SPEED * duration) ** 2 + LIMB_ROUGH_M**2)
-            steps.append(student_cost(_squared_distances(points[index - 1], points[index]) / variance, 3))
-        found[:, column] = cheapest_path([np.float32(tempering) * table for table in tables[limb]], steps)
+        points[limb] = np.einsum("tij,lqj->tlqi", turn, stances.limbs[limb].points) + origin[:, None, None]
+    found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
+
+    def steps(limb: str, rows: Sequence[IndexArray | slice]) -> list[SingleArray]:
+        """Costs of steps from some parts to some parts of the next frame."""
+        moved = zip(points[limb][:-1], points[limb][1:], rows[:-1], rows[1:], variances, strict=True)
+        return [
+            student_cost(_squared_distances(before[own], after[other]) / variance, 3)
+            for before, after, own, other, variance in moved
+        ]
+
+    weight = np.float32(tempering)
+    for column, limb in enumerate(LIMBS):
+        own_costs = [weight * table[limb][0] for table in tables]
+        found[:, column] = cheapest_path(own_costs, steps(limb, [slice(None)] * len(stance)))
+    if any(cost.floor_m is None for cost in costs):
+        return found
+    chosen = []
+    for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
+        relative = (place[None] - cost.location).astype(np.float32)
+        chosen.append(cost.leg_pairs(np.array([own]), relative, tables[row], found[row][None]))
+    rows = [[each[side].index[0] for each in chosen] for side in (0, 1)]
+    wholes = [weight * (a.cost[0][:, None] + b.cost[0] + pairs[0]) for a, b, pairs in chosen]
+    both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
+    for side, limb in enumerate(LEGS):
+        found[:, LIMBS.index(limb)] = [own[pick] for own, pick in zip(rows[side], both[side], strict=True)]
     return found
+
+
+def cheapest_pairs(
+    own: Sequence[SingleArray], first: Sequence[SingleArray], second: Sequence[SingleArray]
+) -> tuple[IndexArray, IndexArray]:
+    """The cheapest path of pairs: rows and columns (T,) of (J, K) costs, with steps of either on its own."""
+    total, sources = own[0], []
+    for one, other, cost in zip(first, second, own[1:], strict=True):
+        through = total[:, None, :] + one[:, :, None]  # (J, J', K)
+        row = through.argmin(axis=0)
+        nearer = through.min(axis=0)[:, :, None] + other  # (J', K, K')
+        column = nearer.argmin(axis=1)
+        sources.append((row, column))
+        total = nearer.min(axis=1) + cost
+    pick = np.unravel_index(int(total.argmin()), total.shape)
+    path = [(int(pick[0]), int(pick[1]))]
+    for row, column in reversed(sources):
+        after, beside = path[-1]
+        before = int(column[after, beside])
+        path.append((int(row[after, before]), before))
+    found = np.array(path[::-1], dtype=np.intp)
+    return found[:, 0], found[:, 1]
 
 
 def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:

@@ -5,14 +5,19 @@ torso and the sum of its limbs' own, so that the best of all compositions is fou
 floor asks both legs: one of them stands on it, or none does.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
+from ..body.center_of_mass import mass_weights
+from ..body.human import HUMAN
+from ..body.limbs import TRUNK, limb_of
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
-from .part_features import StanceFeatures
+from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
+from .part_features import StanceFeatures, limb_points
 from .part_pools import ARM, LIMBS
 
 MOST_STANCES = 500
@@ -23,13 +28,10 @@ MOST_STATES = 240
 """States kept of a frame."""
 MARGIN = 14.0
 """States whose cost exceeds the frame's least by more are dropped."""
-FLOOR_STD_M = 0.06
-"""Height of a sole that stands on the floor: feet are rigid here, shoes are not measured."""
-NO_CONTACT_COST = 3.0
-"""Cost of a frame in which neither foot is on the floor: jumps, steps, furniture."""
 DEPTH_STD_M = 0.02
 """How firmly a state keeps to its distance."""
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
+TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == TRUNK]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +88,7 @@ class FrameCosts:
         kept = lowest(cost, 2 * MOST_STATES, MARGIN)
         stance, depth, limbs = stance[kept], depth[kept], limbs[kept]
         places = self.places(stance, depth, limbs)
-        cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places))
+        cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places), paired=True)
         kept = lowest(cost, MOST_STATES, MARGIN)
         return FrameStates(stance[kept], places[kept] + self.location, cost[kept], limbs[kept])
 
@@ -182,25 +184,67 @@ class FrameCosts:
         return np.asarray(lowest_point + base[:, None])
 
     def whole_cost(
-        self, stance: IndexArray, places: SingleArray, torso: SingleArray
+        self, stance: IndexArray, places: SingleArray, torso: SingleArray, paired: bool = False
     ) -> tuple[SingleArray, IndexArray]:
-        """(N,) cost with the best limbs, and (N, 4) which these are."""
+        """(N,) cost with the best limbs, and (N, 4) which these are; legs balance the body where paired."""
         cost, limbs = np.array(torso), np.zeros((len(stance), len(LIMBS)), dtype=np.intp)
-        legs = []
+        tables = {}
         for column, limb in enumerate(LIMBS):
-            table = self.limb_table(limb, stance, places)
-            if limb in LEGS and self.floor_m is not None:
-                height = self.sole_heights(limb, stance, places)
-                table += below_cost(height)
-                legs.append((column, table, table + standing_cost(height)))
-                continue
-            limbs[:, column] = table.argmin(axis=1)
-            cost += soft_least(table)
-        if legs:
-            added, (left, right) = best_legs(legs[0][1:], legs[1][1:])
-            cost += added
-            limbs[:, legs[0][0]], limbs[:, legs[1][0]] = left, right
+            tables[limb] = self.limb_table(limb, stance, places)
+            limbs[:, column] = tables[limb].argmin(axis=1)
+            cost += soft_least(tables[limb])
+        if paired and self.floor_m is not None:
+            rows = np.arange(len(stance))
+            left, right, pairs = self.leg_pairs(stance, places, tables, limbs)
+            chance = np.exp(left.cost.min(axis=1, keepdims=True) - left.cost)[:, :, None]
+            chance = chance * np.exp(right.cost.min(axis=1, keepdims=True) - right.cost)[:, None]
+            cost -= np.log((chance * np.exp(-pairs)).sum(axis=(1, 2)) / chance.sum(axis=(1, 2)))
+            whole = left.cost[:, :, None] + right.cost[:, None] + pairs
+            best = np.unravel_index(whole.reshape(len(stance), -1).argmin(axis=1), whole.shape[1:])
+            for limb, choices, which in zip(LEGS, (left, right), best, strict=True):
+                limbs[:, LIMBS.index(limb)] = choices.index[rows, which]
         return cost, limbs
+
+    def leg_pairs(
+        self,
+        stance: IndexArray,
+        places: SingleArray,
+        tables: Mapping[str, SingleArray],
+        limbs: IndexArray,
+    ) -> tuple[LegChoices, LegChoices, SingleArray]:
+        """The likeliest legs of stances at places, with (N, C, C) costs of their pairs.
+
+        Args:
+            stance: (N,).
+            places: (N, 3) from the camera [m].
+            tables: (N, L) costs of each limb's parts.
+            limbs: (N, 4) the best limbs, of which arms count for the balance.
+        """
+        weights = mass_weights(HUMAN).astype(np.float32)
+        level = self.stances.features.points[stance, :, :2] * weights[:, None]
+        mass = level[:, TRUNK_POINTS].sum(axis=1)
+        choices = {}
+        for column, limb in enumerate(LIMBS):
+            turn, origin = self.stances.frame_of(limb, stance)
+            features = self.stances.limbs[limb]
+            own = weights[limb_points(limb)]
+            if limb not in LEGS:
+                points = features.points[limbs[:, column]] @ np.swapaxes(turn, -1, -2) + origin[:, None]
+                mass = mass + (points[..., :2] * own[:, None]).sum(axis=1)
+                continue
+            height = self.sole_heights(limb, stance, places)
+            index = likeliest(tables[limb] + below_cost(height), height)
+            points = np.einsum("nij,ncqj->ncqi", turn[:, :2], features.points[index])
+            sole = features.soles.mean(axis=1)[index]
+            choices[limb] = LegChoices(
+                index,
+                np.take_along_axis(tables[limb] + below_cost(height), index, axis=1),
+                np.take_along_axis(height, index, axis=1),
+                np.einsum("nij,ncj->nci", turn[:, :2], sole),
+                (points * own[:, None]).sum(axis=2),
+            )
+        left, right = (choices[limb] for limb in LEGS)
+        return left, right, pair_costs(left, right, mass)
 
     def _point_cost(self, observed: int, residual: SingleArray) -> SingleArray:
         return np.asarray(self.share * student_cost((residual**2).sum(axis=-1), 2))
@@ -233,28 +277,6 @@ class FrameCosts:
         return student_cost(np.asarray(squared / variance), 3)
 
 
-def best_legs(
-    left: tuple[SingleArray, SingleArray], right: tuple[SingleArray, SingleArray]
-) -> tuple[SingleArray, tuple[IndexArray, IndexArray]]:
-    """The best two legs of each stance: the left one stands, or the right one, or neither.
-
-    Args:
-        left: (N, L) costs of the left leg's parts, free and standing on the floor.
-        right: Of the right one.
-
-    Returns:
-        (N,) cost, and (N,) which parts.
-    """
-    index = [[table.argmin(axis=1) for table in leg] for leg in (left, right)]
-    least = [[soft_least(table) for table in leg] for leg in (left, right)]
-    options = np.stack(
-        [least[0][1] + least[1][0], least[0][0] + least[1][1], least[0][0] + least[1][0] + NO_CONTACT_COST]
-    )
-    which = options.argmin(axis=0)
-    chosen = np.where(which == 0, index[0][1], index[0][0]), np.where(which == 1, index[1][1], index[1][0])
-    return soft_least(options.T), chosen
-
-
 def soft_least(cost: SingleArray) -> SingleArray:
     """(N,) cost of any one of several (N, L): how many explain a frame counts, as well as how well one does.
 
@@ -262,18 +284,6 @@ def soft_least(cost: SingleArray) -> SingleArray:
     """
     least = cost.min(axis=1)
     return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
-
-
-def below_cost(height: SingleArray) -> SingleArray:
-    """Cost of soles below the floor."""
-    sunk = np.minimum(height, 0.0) / np.float32(FLOOR_STD_M)
-    return student_cost(sunk * sunk, 1)
-
-
-def standing_cost(height: SingleArray) -> SingleArray:
-    """Cost of soles above the floor that should stand on it."""
-    raised = np.maximum(height, 0.0) / np.float32(FLOOR_STD_M)
-    return student_cost(raised * raised, 1)
 
 
 def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:

@@ -105,6 +105,11 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
     )
 
 
+def limb_points(limb: str) -> list[int]:
+    """Indices of a limb's two principal points: elbow and wrist, or knee and ankle."""
+    return [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == limb]
+
+
 def _limb_features(pools: PartPools, evidence: MatchEvidence, limb: str) -> PartFeatures:
     kind, side = limb.split(".")
     pool: PartPool = pools.arms if kind == ARM else pools.legs
@@ -114,8 +119,7 @@ def _limb_features(pools: PartPools, evidence: MatchEvidence, limb: str) -> Part
     moments = marker_moments(body, evidence, posture)
     chest = body.offsets[HUMAN.joint_index("waist")] if kind == ARM else np.zeros(3)
     markers = observed[observed < evidence.marker_count]
-    names = ("elbow", "wrist") if kind == ARM else ("knee", "ankle")
-    points = [HUMAN.point_names.index(f"{name}.{side}") for name in names]
+    points = limb_points(limb)
     soles = np.zeros((len(pool), 0, 3))
     if kind != ARM:
         soles = sole_places(body, body.pose(posture))[:, ("L", "R").index(side)]
