@@ -14,6 +14,8 @@ from ..body.human import HUMAN
 from ..body.limbs import TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.soles import sole_places
+from ..body.skeleton import SIDES
+from ..library.posture_shape import ANKLE_OVER_SOLE
 from ..matching.marker_moments import marker_moments
 from ..matching.match_evidence import MatchEvidence
 from .part_pools import ARM, LIMBS, PartPool, PartPools
@@ -56,6 +58,8 @@ class StanceFeatures:
     """(H,)."""
     limbs: dict[str, PartFeatures]
     """Features of each limb's parts."""
+    ankle_height_m: float
+    """Height of the ankles over flat soles."""
 
     def frame_of(self, limb: str, stance: IndexArray) -> tuple[SingleArray, SingleArray]:
         """Turn (N, 3, 3) and place (N, 3) from the hips of what a limb hangs on."""
@@ -102,6 +106,7 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
         _single(turned(pose.origin[:, waist])),
         heading,
         limbs,
+        ANKLE_OVER_SOLE * float(np.mean([body.actor.segments_m[f"foot.{side}"] for side in SIDES])),
     )
 
 

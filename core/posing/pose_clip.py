@@ -74,15 +74,7 @@ def pose_clip(
         sampled = sampled_frames(tracks, np.concatenate([given.keyframes, given.constraints.frames]))
         if floor_m is None:
             floor_m = given.constraints.floor_m()
-        composing = compose_frames(
-            take.body,
-            take.camera,
-            given.evidence,
-            pools,
-            stances,
-            sampled,
-            0.0 if floor_m is None else floor_m,
-        )
+        composing = compose_frames(given, pools, stances, sampled, floor_m)
         found = yield from within("Composing postures", composing, 0.05, COMPOSED_SHARE)
         keyframes = tuple(
             Keyframe(int(frame), found.posture[row]) for row, frame in enumerate(map(int, sampled))
@@ -102,7 +94,7 @@ def pose_clip(
     frames = _candidates(given, pools, stances, sampled, found, fitted.posture, explained)
     fit = float(explained.mean())
     yield Progress("Done", 1.0)
-    return FoundPoses(frames, fitted.posture, fit, float(floor_m or 0.0), _reason(frames, fit))
+    return FoundPoses(frames, fitted.posture, fit, found.floor_m, _reason(frames, fit))
 
 
 def _explained(given: MatchInput, sampled: IndexArray, posture: Posture) -> Array:
