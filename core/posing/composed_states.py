@@ -17,7 +17,7 @@ from ..body.limbs import TRUNK, limb_of
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
-from .part_features import StanceFeatures, limb_points
+from .part_features import HEADINGS, StanceFeatures, limb_points
 from .part_pools import ARM, LIMBS
 
 MOST_STANCES = 500
@@ -149,7 +149,7 @@ class FrameCosts:
         """(N, L) cost of each of a limb's parts on stances at places from the camera; the floor is not in it."""
         features = self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
-        cost = np.broadcast_to(features.cost, (len(stance), len(features.cost))).copy()
+        cost = self.stances.limb_cost[limb][stance // HEADINGS]
         for column, observed in enumerate(features.observed):
             if self.likelihood.weight[observed] == 0.0:
                 continue
@@ -244,9 +244,10 @@ class FrameCosts:
                 (points * own[:, None]).sum(axis=2),
             )
         left, right = (choices[limb] for limb in LEGS)
-        if self.floor_m is None:
-            return left, right, np.zeros((*left.cost.shape, right.cost.shape[1]), dtype=np.float32)
-        return left, right, pair_costs(left, right, mass)
+        pairs = self.stances.legs_together[left.index[:, :, None], right.index[:, None]]
+        if self.floor_m is not None:
+            pairs = pairs + pair_costs(left, right, mass)
+        return left, right, pairs
 
     def _point_cost(self, observed: int, residual: SingleArray) -> SingleArray:
         return np.asarray(self.share * student_cost((residual**2).sum(axis=-1), 2))

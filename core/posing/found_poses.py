@@ -7,10 +7,8 @@ from ..body.posture import Posture
 from ..footage.reading import Reading
 from ..matching.candidates import MatchedFrame
 from ..matching.matched_keyframes import with_matched
+from ..prior.keyframes import COMPOSED as COMPOSED
 from ..take.take import Take
-
-COMPOSED = "composed"
-"""Identifier that stands for a library where a posture is put together from the parts of several."""
 
 
 @dataclass(frozen=True, eq=False)

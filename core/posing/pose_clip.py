@@ -8,6 +8,7 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..errors import InputError
+from ..estimate.ankle_height import found_ankle_m
 from ..estimate.whole_clip import estimate_whole_clip
 from ..footage.reading import Reading
 from ..library.library import Library
@@ -88,6 +89,9 @@ def pose_clip(
             tuple(map(int, sampled)),
             match_scale=np.ones(len(sampled)),
             keypoints=keypoints,
+            lower_ankle=found_ankle_m(
+                take.body, found.posture, sampled, tracks.frame_count, found.floor_m
+            ),
         )
         fitted = yield from within("Fitting the postures", fitting, COMPOSED_SHARE, FITTED_SHARE)
     explained = _explained(given, sampled, fitted.posture)

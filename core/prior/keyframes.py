@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from ..body.posture import Posture
 
+COMPOSED = "composed"
+"""Identifier that stands for a library where a posture is put together from the parts of several."""
+
 
 @dataclass(frozen=True)
 class Matched:
