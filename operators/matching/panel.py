@@ -130,7 +130,9 @@ def _draw_candidates(
         row = box.row(align=True)
         button = row.operator(
             "keymark.replace_match",
-            text=label("{number}  {candidate}", number=index + 1, candidate=candidate_title(candidate)),
+            text=label(
+                "{number}  {candidate}", number=index + 1, candidate=candidate_title(match, candidate)
+            ),
             translate=False,
             icon=candidate_icon(index),
             depress=index == match.chosen,
