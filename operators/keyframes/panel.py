@@ -2,7 +2,9 @@
 
 import bpy
 
+from ..matching.candidate_buttons import draw_candidates, draw_candidates_head
 from ..shell.contradictions import draw_contradictions
+from ..shell.found_frames import offered_at
 from ..shell.keyed_frames import (
     has_frame,
     keyframes_of,
@@ -53,7 +55,20 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
         if not draw_progress(posing, context, "keymark.fit_pose"):
             posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
         posing.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
-        posing.operator("keymark.store_keyframe", icon="KEY_HLT")
+        _draw_offered(column, context, take)
+        column.operator("keymark.store_keyframe", icon="KEY_HLT")
+
+
+def _draw_offered(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the poses that the frame may show, if it was fitted and is not keyed."""
+    offered = offered_at(take, context.scene.frame_current_final)
+    if offered is None:
+        return
+    box = layout.column(align=True)
+    draw_candidates_head(box, context, offered)
+    draw_candidates(box, offered, "keymark.show_offered")
 
 
 def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
