@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from ..errors import InputError
-from ..files.digest import digest
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..library.library import Library
@@ -19,7 +17,6 @@ from ..progress import Job, Progress, run, stretch, within
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.performer_keypoints import performer_keypoints
-from ..take.read_footage import read_footage
 from ..take.take import Take
 from ..take.take_file import read_described
 from .library_match import (
@@ -33,6 +30,7 @@ from .library_match import (
 from .match_evidence import MatchEvidence
 from .matched_keyframes import with_matched
 from .posed_constraints import PosedConstraints
+from .second_reading import BETTER_BY, second_reading
 
 MOST_TRIED = 5
 """Libraries matched in full at most, where the coarse pass leaves several."""
@@ -46,12 +44,6 @@ COARSE_SHARE = 0.3
 """Share of the work that the coarse pass is."""
 FIRST_ROUND_SHARE = 0.7
 """Share of the first round, where the footage is then read again."""
-ELSEWHERE_SIZES, ELSEWHERE_SHARE = 1.0, 0.15
-"""Distance of another region, in sizes, and the share of frames in which a mistaken marker has one."""
-WELL_EXPLAINED = 0.9
-"""Explained share of the footage above which no marker is taken for mistaken."""
-BETTER_BY = 0.04
-"""Gain in the explained share for which the second reading is kept."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,9 +119,9 @@ def match_take(
         first = _matches(match_input, prepared, floor_m)
         matches = yield from stretch(first, COARSE_SHARE * FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
         choice = _choice(usable, matches)
-        better = yield from stretch(
-            _read_again(take, reading, matches[0]), FIRST_ROUND_SHARE, FIRST_ROUND_SHARE
-        )
+        unposed = with_matches(replace(take, keyframes=()), matches[0])
+        again_read = second_reading(unposed, reading, matches[0].fit)
+        better = yield from stretch(again_read, FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
         if better is not None:
             match_input = read_match_input(take, better, keypoints, keyframe_count)
             found = [match.library for match in matches]
@@ -191,31 +183,6 @@ def _matches(
         part = match_library(match_input, one, floor)
         matches.append((yield from within(f"Matching {one.library.title}", part, *share)))
     return sorted(matches, key=lambda match: -match.log_evidence)
-
-
-def _read_again(take: Take, reading: Reading, match: LibraryMatch) -> Job[Reading | None]:
-    """The clip read again with each marker looked for where a match has it; None where nothing changes.
-
-    Without keyframes another thing of a marker's color may have been taken for it. A marker that is merely
-    lost in the second reading keeps its first: an arm may do something that the library does not.
-    """
-    if reading.detections is None or match.fit > WELL_EXPLAINED:
-        return None
-    matched = with_matches(replace(take, keyframes=()), match)
-    again = yield from read_footage(matched, reading)
-    first, second = reading.tracks, again.tracks
-    apart = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
-    elsewhere = (apart > ELSEWHERE_SIZES * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > ELSEWHERE_SHARE
-    if not elsewhere.any():
-        return None
-    names = ("centroid", "second_moment", "area", "quality", "clipped")
-    arrays: dict[str, Any] = {name: np.array(getattr(first, name)) for name in names}
-    for name, array in arrays.items():
-        array[:, elsewhere] = getattr(second, name)[:, elsewhere]
-    # The key names both readings, so that the mixture is recognized.
-    footage = again.key.rpartition("-")[0]
-    key = f"{footage}-{digest(reading.key, again.key, elsewhere)}" if footage else ""
-    return replace(again, tracks=replace(first, **arrays), key=key)
 
 
 def _likely_libraries(prepared: Sequence[PreparedLibrary]) -> list[PreparedLibrary]:

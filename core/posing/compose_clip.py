@@ -106,9 +106,7 @@ def frame_costs(
     return [FrameCosts(each, stances, floor_m) for each in likelihoods]
 
 
-def floor_height_m(
-    given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array
-) -> float:
+def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array) -> float:
     """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
     free, heights = [], []
