@@ -66,7 +66,14 @@ def compose_frames(
     evidence, camera = given.evidence, given.camera
     time_s = evidence.tracks.time_s[sampled]
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
-    rough = rough_depths(given.body, camera, evidence, sampled, time_s)
+    rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
+    if _posed_at_both_ends(given, sampled):  # the place is known, then, and what lies between is soon found
+        known = given.constraints
+        depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
+        rough = np.interp(sampled, known.frames, depths)
+        rounds = (NARROW,)
+    else:
+        rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
         floor_m = floor_height_m(given, stances, sampled, rough)
     yield 0.1
@@ -79,7 +86,8 @@ def compose_frames(
             costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, tempering)
     path: ComposedPath | None = None
     states: list[FrameStates] = []
-    for shares, begun, ended in ((WIDE, 0.1, 0.6), (NARROW, 0.6, 1.0)):
+    for turn, shares in enumerate(rounds):
+        begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
         states = yield from scaled(_states(costs, rough, shares), begun, 0.8 * ended + 0.2 * begun)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         found = best_path(stances, states, costs, time_s, tempering, step_m)
@@ -94,6 +102,10 @@ def compose_frames(
         path.hips,
     )
     return Composition(path, states, posture, floor_m)
+
+
+def _posed_at_both_ends(given: MatchInput, sampled: IndexArray) -> bool:
+    return {int(sampled[0]), int(sampled[-1])} <= set(map(int, given.constraints.frames))
 
 
 def frame_costs(

@@ -118,7 +118,7 @@ def limb_paths(
     for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
         relative = (place[None] - cost.location).astype(np.float32)
         chosen.append(cost.leg_pairs(np.array([own]), relative, tables[row], found[row][None]))
-    rows = [[each[side].index[0] for each in chosen] for side in (0, 1)]
+    rows = [[left.index[0] for left, _, _ in chosen], [right.index[0] for _, right, _ in chosen]]
     wholes = [weight * (a.cost[0][:, None] + b.cost[0] + pairs[0]) for a, b, pairs in chosen]
     both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
     for side, limb in enumerate(LEGS):

@@ -267,7 +267,8 @@ class FrameCosts:
         return [(a, a), (a, b), (b, b)]
 
     def _extent_cost(self, marker: int, entries: list[SingleArray], depth: SingleArray) -> SingleArray:
-        predicted = square_root(*entries)
+        xx, xy, yy = entries
+        predicted = square_root(xx, xy, yy)
         seen = self.likelihood.extent[marker].astype(np.float32)
         depth = np.maximum(depth, np.float32(0.1))
         variance = (
