@@ -45,6 +45,16 @@ def blend_is_of(folder: Path) -> bool:
     return digests == {read_record(folder).files["motion.blend"]}
 
 
+def finished_folders(folder: Path) -> list[Path]:
+    """Folders of results below a folder; what stands in hidden ones is not finished."""
+    records = (record.relative_to(folder) for record in folder.rglob("conversion.json"))
+    return [
+        folder / record.parent
+        for record in records
+        if not any(part.startswith(".keymark") for part in record.parts)
+    ]
+
+
 def hidden_files(folder: Path) -> list[str]:
     """The hidden files that killed processes have left."""
     return [name for name in tree(folder) if Path(name).name.startswith(".keymark-")]

@@ -38,7 +38,8 @@ SIZE_STD = 0.05
 """Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
 lie farther in or out than joints. All frames share it."""
 GROUND_STD_M = 0.04
-"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share it."""
+"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share
+it."""
 POINT_DEPTH_STD_M = 2.0
 """Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
 large that they count for nothing, since place and joints have errors of their own that determine them."""

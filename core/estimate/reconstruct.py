@@ -15,10 +15,10 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
+from ..library.texts import COMPOSED
 from ..observation.regions import RegionModel
 from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
-from ..prior.keyframes import COMPOSED
 from ..prior.performer_offset import with_offset
 from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
@@ -34,7 +34,7 @@ from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
 from .match_error import place_depth_std_m, undetermined_covariance
-from .notes import contour_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
@@ -148,7 +148,7 @@ def _reconstruct(
     left_out = len(take.keyframes) - len(worth)
     notes += reading.notes + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
-    notes += match_notes(take)
+    notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     if left_out or match_scale.any():  # else the prior is that of all keyframes

@@ -96,11 +96,14 @@ def find_libraries(name_or_path: str | Path, folders: Sequence[Path]) -> tuple[L
     """Find the library of an identifier, title or path; every valid one, by title, for `EVERY_LIBRARY`.
 
     Raises:
-        InputError: One is named and there is no such library, or it is invalid.
+        InputError: There is no such library, or none at all, or it is invalid.
     """
     if name_or_path != EVERY_LIBRARY:
         return (find_library(name_or_path, folders),)
-    return tuple(entry.library for entry in registered_libraries(folders) if entry.library is not None)
+    found = tuple(entry.library for entry in registered_libraries(folders) if entry.library is not None)
+    if not found:
+        raise InputError("there is no keyframe library; import one, or install Keymark as a whole")
+    return found
 
 
 def library_path(folder: Path, identifier: str) -> Path:

@@ -6,9 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..library.library import Library
 from ..prior.interpolation import interpolate
@@ -20,9 +18,8 @@ from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .hidden_markov_model import HiddenMarkovModel
 from .marker_moments import MarkerMoments, marker_moments
-from .match_evidence import MatchEvidence
+from .match_input import MatchInput
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales
-from .posed_constraints import PosedConstraints
 from .posture_sequences import PostureSequences, library_sequences
 from .refinement import ContinuousPath, Refinement
 from .sequence_table import SequenceTable
@@ -34,19 +31,6 @@ SAMPLES_PER_S = 15.0
 """Rate at which a clip is sampled: between samples this near a motion's posture is well known."""
 CORRELATION_S = 0.25
 """Time over which a performer's difference from the library stays the same: frames nearer count less each."""
-
-
-@dataclass(frozen=True, eq=False)
-class MatchInput:
-    """Everything of a take that a match needs."""
-
-    body: Body
-    camera: Camera
-    evidence: MatchEvidence
-    keyframes: IndexArray
-    """(K,) frames whose posture is asked for."""
-    constraints: PosedConstraints
-    """Of the posed keyframes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +46,6 @@ class LibraryMatch:
     """Height of the floor that the performer stands on."""
     postures: Posture
     """(F,) the match's posture in every frame of the clip."""
-    log_evidence: float
-    """Log evidence of an independent frame, up to a constant of the footage."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,11 +99,10 @@ def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: f
     first = yield from _solve(match_input, prepared, table, floor_m, tempering, unit, 0.0)
     noise_scales = first.refinement.noise_scales(first.refined)
     second = yield from _solve(match_input, prepared, table, floor_m, tempering, noise_scales, 0.45)
-    posteriors, evidence = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
+    posteriors, _ = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
     refined = second.refined
     postures = _every_frame(table, refined, sampled, tracks.frame_count)
     explained = _explained_share(second.refinement, refined, noise_scales)
-    log_evidence = evidence / (len(sampled) * tempering)
     nearest = table.nearest(refined.sequence, refined.values[:, 0])
     frames = []
     for row in map(int, np.searchsorted(sampled, match_input.keyframes)):
@@ -131,7 +112,7 @@ def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: f
         )
         frames.append(chosen)
     fit = float(explained.mean())
-    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures, log_evidence)
+    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures)
 
 
 @dataclass(frozen=True, eq=False)

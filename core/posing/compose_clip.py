@@ -1,4 +1,4 @@
-"""Postures of a clip put together from parts: what frames say, the path through them, the place of the whole."""
+"""Postures of a clip put together from parts: what frames say, the path through them, the place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,8 +12,9 @@ from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
 from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
 from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.library_match import CORRELATION_S, MatchInput
+from ..matching.library_match import CORRELATION_S
 from ..matching.match_evidence import MatchEvidence
+from ..matching.match_input import MatchInput
 from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
@@ -23,7 +24,7 @@ from .part_pools import LIMBS, PartPools
 from .posed_costs import PosedCosts
 
 PART_SCALE = 0.5
-"""Deviation of a composed body from the performer, relative to that of a whole posture of another performer."""
+"""Deviation of a composed body from the performer, relative to that of another performer's posture."""
 WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
 """Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
 NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)

@@ -17,7 +17,7 @@ from .part_pools import LIMBS
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
 TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
-"""Usual speed of shoulders and hips about the hips' middle [m/s], and what the pool and headings are rough by."""
+"""Usual speed of shoulders and hips about the hips' middle [m/s], and what pool and headings are rough by."""
 PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04
 """The same of the place."""
 LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09

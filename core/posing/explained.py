@@ -5,8 +5,8 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.posture import Posture
 from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.library_match import MatchInput
 from ..matching.marker_moments import marker_moments
+from ..matching.match_input import MatchInput
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
 
 CONTRADICTING = 3.0

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
 from ..footage.reading import Reading
+from ..library.texts import COMPOSED
 from ..matching.candidates import MatchedFrame
 from ..matching.matched_keyframes import with_matched
-from ..prior.keyframes import COMPOSED as COMPOSED
 from ..take.take import Take
 
 
@@ -27,6 +27,8 @@ class FoundPoses:
     """Sentence for people: how sure it is, and what is doubtful."""
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
+    library: str = COMPOSED
+    """Identifier of the library that was matched, where only one was."""
     reading: Reading | None = None
     """The clip as read again with the postures telling where each marker is; None where the given reading
     holds."""
@@ -35,8 +37,8 @@ class FoundPoses:
 
 
 def with_found(take: Take, found: FoundPoses) -> Take:
-    """The take with the found keyframes, see `with_matched`; those found earlier stay where none was sought."""
-    changed = with_matched(take, found.frames, found.postures, COMPOSED)
+    """The take with the found keyframes, see `with_matched`; earlier ones stay where none was sought."""
+    changed = with_matched(take, found.frames, found.postures, found.library)
     if found.between is None:
         return changed
     first, last = found.between

@@ -237,7 +237,7 @@ def _nearest(points: Array, among: Array) -> IndexArray:
 
 
 def _spread(points: Array, taken: Array | None, radius_m: float, most: int) -> IndexArray:
-    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) apart from one another and others."""
+    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) that lie apart."""
     if taken is None:
         first = int(_distance(points, points.mean(axis=0)).argmin())
         chosen, away = [first], _distance(points, points[first])

@@ -15,13 +15,11 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.ankle_height import found_ankle_m
 from ..estimate.whole_clip import estimate_whole_clip
-from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..library.library import Library
 from ..matching.candidates import MatchedFrame
 from ..matching.library_match import sampled_frames
-from ..matching.match_take import nothing_seen, read_match_input
-from ..matching.second_reading import BETTER_BY, second_reading
+from ..matching.match_input import MatchInput, match_input
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Job, Progress, stretch, within
@@ -30,10 +28,11 @@ from ..take.take import Take
 from .compose_clip import Composition, compose_frames
 from .composed_candidates import composed_candidates
 from .explained import contradicting, explained_shares
-from .found_poses import FoundPoses, with_found
+from .found_poses import FoundPoses
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, placed_in_clip, stretch_of
+from .second_reading import is_better, read_again
 
 COMPOSED_SHARE, FITTED_SHARE = 0.8, 0.98
 """Shares of the work after which postures are composed, and fitted to the footage."""
@@ -48,6 +47,7 @@ def pose_clip(
     floor_m: float | None = None,
     keyframe_count: int | None = None,
     between: tuple[int, int] | None = None,
+    frames: Sequence[int] | None = None,
 ) -> Job[FoundPoses]:
     """Find the postures of a clip that nobody posed.
 
@@ -58,6 +58,7 @@ def pose_clip(
         floor_m: Height of the floor in the world [m]; None where it is not known.
         keyframe_count: Number of frames to find keyframes at; 10 per 100 frames where None.
         between: First and last frame of the clip to look at, both posed; the whole clip where None.
+        frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
 
     Yields:
         Progress.
@@ -72,21 +73,18 @@ def pose_clip(
     usable = [library for library in libraries if library.postures]
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
-    keypoints = performer_keypoints(take, None, reading.tracks)
-    if not (reading.tracks.visible.any() or keypoints.seen.any()):
-        raise InputError(nothing_seen(take))
     with threadpool_limits(limits=1, user_api="blas"):
+        given = match_input(take, reading, keyframe_count)
         yield Progress("Learning the parts of postures", 0.0)
-        pools = part_pools(usable, take.body)
-        search = _Search(pools, floor_m, keyframe_count, between)
-        found = yield from stretch(search.poses(take, reading, keypoints), 0.05, 1.0)
-        unposed = with_found(replace(take, keyframes=()), found)
+        search = _Search(take, part_pools(usable, take.body), floor_m, between, frames)
+        found = yield from stretch(search.poses(given, reading), 0.05, 1.0)
         again = None
         if between is None:
-            again = yield from stretch(second_reading(unposed, reading, found.fit), 0.98, 0.98)
+            again = yield from stretch(read_again(take, reading, found), 0.98, 0.98)
         if again is not None:
-            second = yield from stretch(search.poses(take, again, keypoints), 0.05, 1.0)
-            if second.fit > found.fit + BETTER_BY:
+            repeated = search.poses(match_input(take, again, keyframe_count), again)
+            second = yield from stretch(repeated, 0.05, 1.0)
+            if is_better(second, found):
                 found = replace(second, reading=again)
     yield Progress("Done", 1.0)
     return found
@@ -96,17 +94,20 @@ def pose_clip(
 class _Search:
     """What is asked of a clip."""
 
+    take: Take
     pools: PartPools
     floor_m: float | None
-    keyframe_count: int | None
     between: tuple[int, int] | None
+    frames: Sequence[int] | None
 
-    def poses(self, take: Take, reading: Reading, keypoints: Keypoints) -> Job[FoundPoses]:
+    def poses(self, given: MatchInput, reading: Reading) -> Job[FoundPoses]:
         """The postures by one reading of the clip."""
-        given = read_match_input(take, reading, keypoints, self.keyframe_count)
+        take = self.take
+        if self.frames is not None:
+            given = replace(given, keyframes=np.unique(np.array(self.frames, dtype=np.intp)))
         floor_m = given.constraints.floor_m() if self.floor_m is None else self.floor_m
-        work = PosingInput(given, keypoints)
-        frames = given.evidence.tracks.frame_count
+        work = PosingInput(given, performer_keypoints(take, None, reading.tracks))
+        count = given.evidence.tracks.frame_count
         if self.between is not None:
             work = stretch_of(work, *self.between)
         given = work.given
@@ -122,7 +123,7 @@ class _Search:
         found = _candidates(self.pools, stances, work, sampled, composed, postures, explained)
         fit = float(explained.mean())
         if self.between is not None:
-            postures = placed_in_clip(postures, interpolate(take.keyframes, frames), work.first)
+            postures = placed_in_clip(postures, interpolate(take.keyframes, count), work.first)
         return FoundPoses(
             found,
             postures,

@@ -8,8 +8,8 @@ from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
-from ..matching.library_match import MatchInput
 from ..matching.match_evidence import MatchEvidence
+from ..matching.match_input import MatchInput
 from ..matching.posed_constraints import PosedConstraints
 
 
@@ -29,12 +29,13 @@ def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
     """The frames from a first to a last one, both included."""
     own, given = slice(first, last + 1), whole.given
     evidence = given.evidence
-    inside = [frame for frame in map(int, given.keyframes) if first < frame < last]
     posed = [
         (int(frame), posture)
         for frame, posture in zip(given.constraints.frames, given.constraints.postures, strict=True)
         if first <= frame <= last
     ]
+    held = [frame for frame, _ in posed]
+    inside = [frame for frame in map(int, given.keyframes) if first <= frame <= last and frame not in held]
     constraints = PosedConstraints(
         given.body,
         np.array([frame - first for frame, _ in posed], dtype=np.intp),

@@ -81,7 +81,9 @@ class FrameInFootage:
         time_s = (float(self.clip_frames[self.index]) - self.footage.first_frame) / self.footage.rate
         if not self.styles:
             return self.tracks.frame(self.index)
-        return regions_of_frame(self.footage.open(), time_s, self.styles, expected)
+        return regions_of_frame(
+            self.footage.open(), time_s, self.styles, expected, self.evidence.ignored_regions, self.index
+        )
 
     def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
         """The performer's keypoints in all frames, (F, N); none where no keypoints are followed.
@@ -119,7 +121,7 @@ def frame_in_footage(
     Raises:
         InputError: The clip is missing, or the current frame lies outside it.
     """
-    key = reading_key(footage.path, footage.rate, evidence.markers, None)
+    key = reading_key(footage.path, footage.rate, evidence.markers, None, evidence.ignored_regions)
     if reading is not None and of_same_footage(reading.key, key):
         frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
     else:

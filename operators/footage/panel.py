@@ -2,19 +2,29 @@
 
 import bpy
 
-from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
-from .take_footage import lens_is_guess
+from .camera_panel import draw_camera
 
 
-class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     """Clip, camera and the take's files."""
 
     bl_label = "Footage"
+    step = "footage"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How long the clip is."""
+        return label("{count} frames", count=take.clip.frame_duration) if take.clip is not None else ""
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the clip's file is missing."""
+        return bool(take.clip_state.missing)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw clip, camera and the take's files."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")
@@ -23,7 +33,7 @@ class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
         column.separator()
         column.prop(take, "camera")
         if take.camera is not None:
-            _draw_camera(column, context.scene, take)
+            draw_camera(column, context, take)
         column.separator()
         row = column.row(align=True)
         text = "Load Footage" if take.clip is None else "Replace Clip"
@@ -64,24 +74,6 @@ def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
     facts.label(text=f"{size}, {extent}", translate=False, icon="INFO")
     if state.variable_rate:
         column.label(text="Variable rate: keys lie between frames", icon="ERROR")
-
-
-def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """Draw the lens, whether it is a guess, and whether the camera moves."""
-    camera = take.camera
-    column.prop(camera.data, "lens")
-    column.prop(camera.data, "sensor_width")
-    if camera.name not in scene.objects:
-        column.label(text="Camera is not in the scene", icon="ERROR")
-    if lens_is_guess(take):
-        row = column.row(align=True)
-        text = label("Lens is a guess: {lens:.1f} mm", lens=take.guessed_lens_mm)
-        row.label(text=text, translate=False, icon="QUESTION")
-        row.operator("keymark.keep_lens", text="", icon="CHECKMARK")
-    if take.clip is not None and solver_constraint(scene, camera, take.clip):
-        column.label(text="Camera moves as the clip was solved", icon="CON_CAMERASOLVER")
-    elif may_move(camera):
-        column.label(text="Camera moves; its animation is used", icon="ANIM")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))

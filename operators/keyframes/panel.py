@@ -1,21 +1,43 @@
-"""The panels of step 4: the frames to pose, and the operators that pose."""
+"""The panels of step 4: posing all frames at once, the frames to pose, and the operators that pose one."""
 
 import bpy
 
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed_proposals
+from ..shell.contradictions import draw_contradictions
+from ..shell.keyed_frames import (
+    has_frame,
+    keyframes_of,
+    matched_frames,
+    posed_frames,
+    proposed_frames,
+    unposed_proposals,
+)
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
+PROMINENT = 1.6
+"""Height of the button that does the step's whole work."""
 
-class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
+
+class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
     bl_label = "Keyframes"
+    step = "keyframes"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the number of posed frames, the state of this frame, and the operators."""
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How many keyframes there are."""
+        return label("{count} keyed", count=len(keyframes_of(take))) if take.keyframe_action else ""
+
+    def draw_step(self, context: bpy.types.Context) -> None:
+        """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
+        everything = column.column()
+        everything.scale_y = PROMINENT
+        if not draw_progress(everything, context, "keymark.pose_all"):
+            everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
         if not len(take.proposals):
             _draw_propose(column, context)
         _draw_posed(column, take)
@@ -25,6 +47,7 @@ class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
         going.direction, going.skip_posed = "NEXT", True
         row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
         _draw_here(column, context.scene, take)
+        draw_contradictions(column, context, take)
         posing = column.column(align=True)
         posing.scale_y = 1.2
         if not draw_progress(posing, context, "keymark.fit_pose"):
@@ -40,11 +63,11 @@ def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 
 def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the numbers of proposed frames that are posed, of other posed frames, and of matched ones."""
+    """Draw the numbers of proposed frames that are posed, of other posed frames, and of found ones."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
-    matched = len(matched_frames(take))
-    if matched:
-        text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)
+    found = len(matched_frames(take))
+    if found:
+        text = label("{posed} posed, {found} found", posed=posed, found=found)
         layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
         return
     if not proposed:
@@ -61,7 +84,7 @@ def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> No
 
 
 def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """Draw whether this frame is posed, matched or proposed, or that the motion is shown instead."""
+    """Draw whether this frame is posed, found or proposed, or that the motion is shown instead."""
     frame = scene.frame_current
     data = take.armature.animation_data if take.armature is not None else None
     shown = data.action if data is not None else None
@@ -72,7 +95,7 @@ def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.typ
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        text = label("Frame {frame} is matched, not posed", frame=frame)
+        text = label("Frame {frame} is found, not posed", frame=frame)
         layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
         text = label("Frame {frame} is proposed, not posed yet", frame=frame)

@@ -41,16 +41,13 @@ def shipped_libraries() -> list[Library]:
     return list(find_libraries(EVERY_LIBRARY, [SHIPPED]))
 
 
-def libraries_to_match(name: str) -> Sequence[Library]:
-    """The library of an identifier, title or file; all registered ones for `EVERY_LIBRARY`.
+def all_libraries() -> Sequence[Library]:
+    """All registered libraries.
 
     Raises:
         InputError: There is none.
     """
-    libraries = find_libraries(name, folders())
-    if not libraries:
-        raise InputError("there is no library to match with; import one, or install Keymark as a whole")
-    return libraries
+    return find_libraries(EVERY_LIBRARY, folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:

@@ -1,4 +1,4 @@
-"""Edits of a take's matches: candidates stored and read, matched postures keyed on the actor."""
+"""Edits of a take's found keyframes: candidates stored, postures keyed on the actor."""
 
 from collections.abc import Sequence
 from math import pi
@@ -8,9 +8,9 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.heading import facing_rad
-from ...core.body.human import HUMAN
 from ...core.body.posture import Posture
 from ..bridge.actions import assign_action
+from ..bridge.candidate_posture import candidate_posture
 from ..bridge.matched_keyframes import write_matched
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
@@ -19,16 +19,19 @@ from .properties import PLACE_VALUES
 
 
 def add_match(take: bpy.types.PropertyGroup, frame: float, library: str) -> bpy.types.PropertyGroup:
-    """Add a match without candidates."""
-    match = take.matching.matches.add()
+    """Add a found keyframe without candidates, in order of frame; others may move in memory."""
+    matches = take.matching.matches
+    place = sum(match.frame < frame for match in matches)
+    match = matches.add()
     match.frame, match.library = frame, library
-    return match
+    matches.move(len(matches) - 1, place)
+    return matches[place]
 
 
 def add_candidate(
     match: bpy.types.PropertyGroup, posture: Posture, name: str, mirrored: bool, confidence: float
 ) -> None:
-    """Add a posture that a match's frame may show; the first one added is the one it has."""
+    """Add a posture that a found keyframe's frame may show; the first one added is the one it has."""
     candidate = match.candidates.add()
     candidate.name, candidate.mirrored, candidate.confidence = name, mirrored, confidence
     vector = posture.to_vector()
@@ -37,18 +40,13 @@ def add_candidate(
     candidate.turned = (apart + pi) % (2.0 * pi) - pi
 
 
-def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
-    """A candidate's posture, in the world."""
-    return Posture.from_vector(HUMAN, np.array([*candidate.place, *candidate.turns]))
-
-
 def _heading(posture: Posture) -> float:
     """The direction the hips face, about the vertical [rad]."""
     return facing_rad(posture.rotations[0] @ np.array([0.0, -1.0, 0.0]))
 
 
 def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence[Posture]) -> None:
-    """Key postures at scene frames (K,) as matched ones, and assign the keyframes to the actor."""
+    """Key postures at scene frames (K,) as found ones, and assign the keyframes to the actor."""
     actor = actor_of(take)
     take.keyframe_action = take.keyframe_action or new_keyframe_action(actor)
     write_matched(actor, take.keyframe_action, frames, postures)
@@ -58,5 +56,5 @@ def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence
 
 
 def key_candidate(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> None:
-    """Key the chosen candidate of a match at its frame."""
+    """Key the chosen candidate of a found keyframe at its frame."""
     key_matches(take, np.array([round(match.frame, 3)]), [candidate_posture(match.candidate)])

@@ -22,6 +22,7 @@ from ..markers.mask_previews import (
     preview_of,
     update_masks,
 )
+from ..shell.footage_request import shown_request
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
 from . import drawing
@@ -38,8 +39,8 @@ SHORTEST_NAMED = 0.25
 MESH = 24
 """Cells across the picture, which follow the lens distortion."""
 
-_drawn: dict[int, tuple[tuple[ColorMask, ...], gpu.types.GPUTexture]] = {}
-"""Cache of one: the masks that were drawn last, and their texture."""
+_drawn: dict[int, tuple[tuple[ColorMask, ...], float, gpu.types.GPUTexture]] = {}
+"""Cache of one: the masks that were drawn last, how dark all else was, and their texture."""
 
 
 def draw(context: bpy.types.Context) -> None:
@@ -57,17 +58,17 @@ def draw(context: bpy.types.Context) -> None:
 
 def draw_masks(preview: Preview, view: FootageView) -> None:
     """Draw the masks of a preview in the region of a view."""
-    _picture(_texture(preview), view)
+    draw_picture(_texture(preview), view)
     for mask in preview.masks:
         _outlines(mask, view)
     _names(preview.masks, view)
 
 
-def tinted(masks: Sequence[ColorMask]) -> SingleArray:
+def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleArray:
     """The masks as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
     rows, columns = masks[0].coverage.shape
     picture = np.zeros((rows, columns, 4), dtype=np.float32)
-    picture[..., 3] = DARKENING
+    picture[..., 3] = darkening
     for mask in masks:
         share = mask.coverage[..., None]
         picture = (1.0 - share) * picture + share * np.array([*mask.color, TINT], dtype=np.float32)
@@ -75,13 +76,14 @@ def tinted(masks: Sequence[ColorMask]) -> SingleArray:
 
 
 def _texture(preview: Preview) -> gpu.types.GPUTexture:
-    """The texture of a preview's masks; cached until the masks change."""
-    if 0 not in _drawn or _drawn[0][0] is not preview.masks:
-        _drawn[0] = (preview.masks, drawing.texture(tinted(preview.masks)))
-    return _drawn[0][1]
+    """The texture of a preview's masks, cached; what is still to be clicked on is not darkened."""
+    darkening = DARKENING if shown_request() is None else 0.0
+    if 0 not in _drawn or _drawn[0][0] is not preview.masks or _drawn[0][1] != darkening:
+        _drawn[0] = (preview.masks, darkening, drawing.texture(tinted(preview.masks, darkening)))
+    return _drawn[0][2]
 
 
-def _picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
+def draw_picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
     """Draw a texture over the footage, distorted as the view shows the footage."""
     cells = MESH if view.lens is not None else 1
     steps = np.linspace(0.0, 1.0, cells + 1)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
+from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import has_frame, is_posed, matched_frames
 from ..shell.lru_cache import LruCache
 from ..shell.messages import label
@@ -152,7 +153,8 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
         items += proposals(frames, _level(frames, shown_speed), done, timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
-        doubtful = {round(match.frame, 3) for match in take.matching.matches if match.is_doubtful}
+        found = take.matching.matches
+        doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
         sure = np.array([frame not in doubtful for frame in matched])
         items += matches(frames, _level(frames, shown_speed), sure, timeline)
     return items

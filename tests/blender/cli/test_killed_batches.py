@@ -14,7 +14,7 @@ from pathlib import Path
 
 import bpy
 import pytest
-from _results import blend_is_of, hidden_files, is_whole, same_in_every_run
+from _results import blend_is_of, finished_folders, hidden_files, is_whole, same_in_every_run
 from _shoot import write_shoot
 
 pytestmark = [
@@ -67,8 +67,8 @@ def to_the_end(shoot: Path, out: Path, *words: str) -> dict[str, bytes | None]:
 def results(out: Path) -> dict[str, bytes | None]:
     """The files of the takes' folders; the summary is left out, for it has times."""
     assert not hidden_files(out)
-    for record in out.rglob("conversion.json"):
-        assert is_whole(record.parent) and blend_is_of(record.parent)
+    for finished in finished_folders(out):
+        assert is_whole(finished) and blend_is_of(finished)
     lines = (out / "summary.jsonl").read_text(encoding="utf-8").splitlines()
     assert len(lines) == TAKES
     assert {json.loads(line)["status"] for line in lines} <= {"converted", "unchanged"}
@@ -113,8 +113,7 @@ def test_killed_batches_lose_nothing(shoot: Path) -> None:
             victims.append(victim)
             if victim == "batch" and chance.random() < 0.5:  # its workers live on a little
                 assert to_the_end(shoot, out, "--jobs", "2") == undisturbed
-        for record in out.rglob("conversion.json"):
-            is_whole(record.parent)
+        assert all(map(is_whole, finished_folders(out)))
         if death % TO_ITS_END == 0:
             assert to_the_end(shoot, out, "--jobs", str(chance.choice([1, 2, 3]))) == undisturbed
             shutil.rmtree(out)

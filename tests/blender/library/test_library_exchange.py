@@ -73,7 +73,7 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
     assert [(item.name, item.is_own, [p.name for p in item.postures]) for item in listed] == [
         ("small", True, ["A", "B"])
     ]
-    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["auto", "small"]
+    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["small"]
     before = (own / "small.json").stat().st_mtime_ns
     assert imported(library, tmp_path) == {"FINISHED"}
     assert (own / "small.json").stat().st_mtime_ns == before
@@ -213,7 +213,7 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
     imported(library, tmp_path)
     take.matching.library = "small"
     imported(replace(library, identifier="another", title="Another"), tmp_path)
-    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["auto", "another", "small"]
+    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["another", "small"]
     assert take.matching.library == "small"
 
 
@@ -223,7 +223,7 @@ def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
     bpy.ops.keymark.refresh_shelf()
     item = bpy.context.window_manager.keymark_shelf.libraries[0]
     assert "no valid JSON" in item.problem
-    assert [entry[0] for entry in registry.library_items(None, bpy.context)] == ["auto"]
+    assert [entry[0] for entry in registry.library_items(None, bpy.context)] == []
     bpy.ops.keymark.discard_library()
     assert list(own.iterdir()) == []
 

@@ -1,4 +1,4 @@
-"""A second reading of a clip, where another thing of a marker's color was taken for it."""
+"""A second reading of the clip, with the found postures telling where each marker is."""
 
 from dataclasses import replace
 from typing import Any
@@ -10,6 +10,7 @@ from ..footage.reading import Reading
 from ..progress import Job
 from ..take.read_footage import read_footage
 from ..take.take import Take
+from .found_poses import FoundPoses, with_found
 
 ELSEWHERE_SIZES, ELSEWHERE_SHARE = 1.0, 0.15
 """Distance of another region, in sizes, and the share of frames in which a mistaken marker has one."""
@@ -19,20 +20,15 @@ BETTER_BY = 0.04
 """Gain in the explained share for which the second reading is kept."""
 
 
-def second_reading(found: Take, reading: Reading, fit: float) -> Job[Reading | None]:
-    """The clip read again with each marker looked for where found keyframes have it; None where nothing changes.
+def read_again(take: Take, reading: Reading, found: FoundPoses) -> Job[Reading | None]:
+    """The clip read again with each marker looked for where it was found; None where nothing changes.
 
     Without keyframes another thing of a marker's color may have been taken for it. A marker that is merely
     lost in the second reading keeps its first: an arm may do something that no library does.
-
-    Args:
-        found: The take with found keyframes alone.
-        reading: The first reading.
-        fit: Share of the footage that they explain.
     """
-    if reading.detections is None or fit > WELL_EXPLAINED:
+    if reading.detections is None or found.fit > WELL_EXPLAINED:
         return None
-    again = yield from read_footage(found, reading)
+    again = yield from read_footage(with_found(replace(take, keyframes=()), found), reading)
     first, second = reading.tracks, again.tracks
     apart = np.linalg.norm(first.centroid - second.centroid, axis=-1)  # NaN where hidden in either
     elsewhere = (apart > ELSEWHERE_SIZES * np.sqrt(np.nan_to_num(second.area))).mean(axis=0) > ELSEWHERE_SHARE
@@ -46,3 +42,8 @@ def second_reading(found: Take, reading: Reading, fit: float) -> Job[Reading | N
     footage = again.key.rpartition("-")[0]
     key = f"{footage}-{digest(reading.key, again.key, elsewhere)}" if footage else ""
     return replace(again, tracks=replace(first, **arrays), key=key)
+
+
+def is_better(second: FoundPoses, first: FoundPoses) -> bool:
+    """Whether what was found in a second reading explains so much more that it is kept."""
+    return second.fit > first.fit + BETTER_BY
