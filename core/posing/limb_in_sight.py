@@ -152,6 +152,11 @@ def _weights(line: SightLine) -> Array:
     return np.asarray(np.eye(3) - (1.0 - DEPTH_SHARE) * along)
 
 
+def strain_of(posture: Posture, limb: LimbChain) -> float:
+    """How implausible a limb is as it stands; see `LimbInSight.strain`."""
+    return OUTSIDE * float(np.linalg.norm(limb_excess_rad(posture, limb))) + _effort(posture, limb)
+
+
 def _effort(posture: Posture, limb: LimbChain) -> float:
     lower, upper = posture.skeleton.limits[limb.dofs].T
     values = np.clip(posture.to_vector()[limb.dofs], lower, upper)
