@@ -13,7 +13,7 @@ AHEAD_M = 4.0
 """Distance of that part where the camera does not look down on it: a whole person fits the picture there."""
 PIECES = 4
 """Pieces of a meter, each straight, as a lens with distortion bends lines."""
-MARGIN = 0.25
+MARGIN = 0.1
 """Share of the picture's size beyond which nothing is drawn: distortion is not defined far outside."""
 HORIZON_DEGREES = 60.0
 HORIZON_PIECES = 48

@@ -32,6 +32,8 @@ COMMON_LEAN_RAD = float(np.radians(2.5))
 """Heads lie in front of ankles, and walkers lean forward."""
 IN_LINE = float(np.cos(np.radians(15.0)))
 """Cosine of the largest angle between trunk and legs."""
+PLUMB = float(np.cos(np.radians(30.0)))
+"""The same between the body and the picture's vertical: whoever lies is in line as well."""
 MOST_UNLIKE = 0.2
 """Largest logarithm of the ratio of legs to trunk, relative to that of someone upright in the same clip."""
 REGION_STD_PX = 1.0
@@ -54,8 +56,9 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     height = _heights(body)
     legs, trunk = hip - ankle, shoulder - hip
     usual = (height["hip"] - height["ankle"]) / (height["shoulder"] - height["hip"])
-    upright = _in_line(legs, trunk) & _in_line(trunk, head - shoulder) & _as_long(legs, trunk, usual)
-    chosen = _apart(upright & np.isfinite(head).all(axis=-1), fps)
+    straight = _along(legs, trunk, IN_LINE) & _along(trunk, head - shoulder, IN_LINE)
+    upright = straight & _along(head - ankle, np.array([0.0, -1.0]), PLUMB)
+    chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
     ones = np.ones(len(chosen))
     return Uprights(
@@ -91,6 +94,7 @@ def standing_regions(tracks: RegionTracks, segments: tuple[str, ...], body: Body
     size = np.linalg.norm(trunk - shins, axis=-1)
     # Shins lie in line where both are plumb; of someone who bends or sits the trunk comes nearer to them.
     level = np.abs(centroid[:, 1, 1] - centroid[:, 2, 1]) < MOST_UNLIKE * size
+    level &= _along(trunk - shins, np.array([0.0, -1.0]), PLUMB)
     tall = size > np.exp(-MOST_UNLIKE) * np.nanmax(np.where(whole, size, np.nan)) if whole.any() else whole
     chosen = _apart(whole & level & np.asarray(tall), fps)
     height = _heights(body)
@@ -125,11 +129,11 @@ def _middle(pixel: Array, part: str) -> Array:
     return np.asarray(0.5 * (pixel[:, left] + pixel[:, right]))
 
 
-def _in_line(first: Array, second: Array) -> BoolArray:
-    """(F,) whether two directions (F, 2) are about the same; not where one is unknown."""
+def _along(first: Array, second: Array, least: float) -> BoolArray:
+    """(F,) whether the cosine between directions (F, 2) is at least so large; not where one is unknown."""
     with np.errstate(invalid="ignore", divide="ignore"):
         cosine = (first * second).sum(-1) / (np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1))
-        return np.asarray(cosine > IN_LINE)
+        return np.asarray(cosine > least)
 
 
 def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:

@@ -39,6 +39,7 @@ REQUESTS = {
     "ACROSS": "Draw a level line at right angles to those",
     "HEIGHT": "Draw from between the performer's feet to the top of the head, or type another known height",
 }
+PERFORMER_REQUEST = "Click on the floor between the feet, then on the top of the head; type the body height"
 KEYS = "{request}   |   Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
 
 
@@ -74,7 +75,10 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
-        self._drawing = Drawing(self.kind, self.kind == HEIGHT, read_lines(take), stature_m=take.stature)
+        of_performer = self.kind == HEIGHT
+        self._drawing = Drawing(
+            self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
+        )
         show(self._drawing)
         self._place = event.mouse_x, event.mouse_y
         self._find(context)
@@ -136,20 +140,27 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
                 drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
             except KeymarkError as error:
                 self.report({"WARNING"}, str(error))
-        request = label(KEYS, request=label(REQUESTS[drawing.kind]))
+        wanted = (
+            PERFORMER_REQUEST if drawing.of_performer and drawing.kind == HEIGHT else REQUESTS[drawing.kind]
+        )
+        request = label(KEYS, request=label(wanted))
         context.workspace.status_text_set(request)
         redraw_footage(context)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
+        """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
         take, lines = active_take(context.scene), self._drawing.complete
-        before = read_lines(take)
+        before = read_lines(take), take.stature
+        stature = self._drawing.stature_m
         self.cancel(context)
-        if not lines and not before:
+        if not lines and not before[0]:
             return {"CANCELLED"}
         store_lines(take, lines)
+        take.stature = stature
         done = self.execute(context) if lines else {"FINISHED"}
         if "CANCELLED" in done:
-            store_lines(take, before)
+            store_lines(take, before[0])
+            take.stature = before[1]
         return done
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -6,7 +6,7 @@ from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.messages import label
 from ..shell.panel import draw_sentence
-from .camera_fields import placement_is_guess
+from ..shell.placement_guess import placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
 from .take_footage import lens_is_guess
 
@@ -48,9 +48,9 @@ def _draw_tools(
         _draw_guess(column, label("Height and tilt are a guess"), "keymark.keep_camera")
     buttons = column.column(align=True)
     buttons.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
-    row = buttons.row(align=True)
-    row.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
-    row.operator("keymark.camera_from_walk", text="", icon="ARMATURE_DATA")
+    buttons.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
+    if len(take.follow.files) or len(take.markers):
+        buttons.operator("keymark.camera_from_walk", text="From the Walk", icon="ARMATURE_DATA")
     for index, sentence in enumerate(take.camera_findings.splitlines()):
         draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
 

@@ -23,6 +23,9 @@ NEAR_PX = 12.0
 CLICKED_PX = 6.0
 """Length below which a line is not drawn yet: its other end follows at the next click."""
 
+LOWEST_M, TALLEST_M = 0.5, 3.0
+"""Limits of a performer's height."""
+
 Pixel = tuple[float, float]
 
 
@@ -57,6 +60,9 @@ class Drawing:
     fit: "CameraFit | None" = None
     """What the lines say of the camera; None before there is any."""
     stature_m: float = 0.0
+    """The performer's height [m]."""
+    of_performer: bool = False
+    """Whether a length that is typed is the performer's height."""
 
     def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
         """Take the end of a line that is near, or begin a new line.
@@ -134,10 +140,18 @@ class Drawing:
             return False
         self.typed = self.typed[:-1] if letter == "\b" else self.typed + letter
         try:
-            self.lines[self.last].length = float(self.typed)
-        except ValueError:
-            self.lines[self.last].length = 0.0
+            length = float(self.typed)
+        except ValueError:  # nothing yet, or a point alone
+            length = 0.0
+        if not self.of_performer:
+            self.lines[self.last].length = length
+        elif LOWEST_M <= length <= TALLEST_M:
+            self.stature_m = length
         return True
+
+    def length_of(self, line: DrawnLine) -> float:
+        """Known length of a line of that kind [m]."""
+        return line.length or self.stature_m
 
     @property
     def complete(self) -> list[DrawnLine]:

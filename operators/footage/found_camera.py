@@ -82,10 +82,10 @@ def values(fit: "CameraFit") -> str:
 def deviations(fit: "CameraFit") -> str:
     """The deviations alone, of what the picture determines."""
     shown = {
-        "height": label("height ± {std:.2f} m", std=fit.std["height"]),
-        "tilt": label("tilt ± {std:.1f}°", std=np.degrees(fit.std["tilt"])),
-        "roll": label("roll ± {std:.1f}°", std=np.degrees(fit.std["roll"])),
-        "lens": label("lens ± {std:.1f} mm", std=fit.std["lens"]),
+        "height": label("height ±\N{NO-BREAK SPACE}{std:.2f} m", std=fit.std["height"]),
+        "tilt": label("tilt ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["tilt"])),
+        "roll": label("roll ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["roll"])),
+        "lens": label("lens ±\N{NO-BREAK SPACE}{std:.1f} mm", std=fit.std["lens"]),
     }
     return label("Found: {parts}", parts=", ".join(shown[name] for name in shown if name not in fit.kept))
 

@@ -6,7 +6,8 @@ from ...core.body.human import HUMAN
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import say
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 from .key_pose import key_pose
@@ -36,16 +37,18 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         switched = not shows_keyframes(take)
         straighten_unposed(take)
         was_found = frame in known_matches(take)
+        about = f"pose at {frame:g}"
+        give_notices(take, "keyframes", about)
         improved = key_pose(context, take)
         if read.furthest_m > NOTICEABLE_M:
-            say(
-                self,
-                "WARNING",
+            sentence = label(
                 "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
                 "can do, and its nearest posture will be used",
                 frame=frame,
                 beyond=1000.0 * read.furthest_m,
             )
+            give_notices(take, "keyframes", about, (sentence,), frame=frame)
+            self.report({"WARNING"}, sentence)
         elif improved:
             say(
                 self,

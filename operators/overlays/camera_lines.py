@@ -20,6 +20,7 @@ COLORS: dict[str, drawing.Color] = {
 END_PX = 4.0
 """Half the side of the square at an end."""
 MARGIN_PX, ROW_PX = 14.0, 18.0
+BESIDE_PX = 8.0
 ELSEWHERE = 0.45
 """Opacity of a performer's height that was drawn in another frame."""
 
@@ -34,6 +35,10 @@ def draw(context: bpy.types.Context) -> None:
         return
     for number, line in enumerate(tool.lines):
         _draw_line(view, line, number == tool.last, context.scene.frame_current)
+        if line.kind == "HEIGHT":
+            x, y = view.to_region(np.array(line.ends, dtype=np.float64)).mean(axis=0)
+            words = label("{length:.2f} m", length=tool.length_of(line))
+            drawing.text(words, float(x) + BESIDE_PX * drawing.ui_scale(), float(y), COLORS[line.kind])
     _draw_found(context, view, tool)
 
 
@@ -44,9 +49,6 @@ def _draw_line(view: FootageView, line: DrawnLine, active: bool, frame: int) -> 
     drawing.lines(ends[None], color, width=2.5 if active else 1.5, halo=0.8 * there)
     half = END_PX * drawing.ui_scale() * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     drawing.polygons(ends[:, None] + half, color)
-    if line.kind == "HEIGHT" and line.length > 0.0:
-        x, y = ends.mean(axis=0)
-        drawing.text(label("{length:.2f} m", length=line.length), float(x) + 8.0, float(y), color)
 
 
 def _draw_found(context: bpy.types.Context, view: FootageView, tool: Drawing) -> None:

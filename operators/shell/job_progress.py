@@ -37,7 +37,7 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     return any(
         operator.bl_idname.startswith(wanted)
         and (job or operator.bl_idname not in TOOLS)
-        and not is_browsing(operator, window)
+        and not is_browsing(operator, context.window_manager)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
