@@ -114,8 +114,6 @@ def limb_paths(
     for column, limb in enumerate(LIMBS):
         own_costs = [weight * table[limb][0] for table in tables]
         found[:, column] = cheapest_path(own_costs, steps(limb, [slice(None)] * len(stance)))
-    if any(cost.floor_m is None for cost in costs):
-        return found
     chosen = []
     for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
         relative = (place[None] - cost.location).astype(np.float32)

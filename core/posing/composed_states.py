@@ -17,12 +17,12 @@ from ..body.limbs import TRUNK, limb_of
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
-from .part_features import StanceFeatures, limb_points
+from .part_features import HEADINGS, StanceFeatures, limb_points
 from .part_pools import ARM, LIMBS
 
 MOST_STANCES = 500
 """Stances that limbs are hung on, by how well their torsos fit."""
-MOST_NEAR = 120
+MOST_NEAR = 90
 """Of these the ones that are tried at all distances."""
 MOST_STATES = 240
 """States kept of a frame."""
@@ -149,7 +149,7 @@ class FrameCosts:
         """(N, L) cost of each of a limb's parts on stances at places from the camera; the floor is not in it."""
         features = self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
-        cost = np.broadcast_to(features.cost, (len(stance), len(features.cost))).copy()
+        cost = self.stances.limb_cost[limb][stance // HEADINGS]
         for column, observed in enumerate(features.observed):
             if self.likelihood.weight[observed] == 0.0:
                 continue
@@ -174,14 +174,13 @@ class FrameCosts:
                 cost += self._extent_cost(observed, entries, away)
         return cost
 
-    def sole_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
-        """(N, L) height of the sole of each of a leg's parts over the floor [m]."""
+    def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N, L) height of each of a leg's feet over the floor [m], by its ankle, 0 where it lies flat."""
         turn, origin = self.stances.frame_of(limb, stance)
-        soles = self.stances.limbs[limb].soles
-        up = turn[:, 2]  # (N, 3)
-        lowest_point = np.minimum(up @ soles[:, 0].T, up @ soles[:, 1].T)
+        ankle = self.stances.limbs[limb].points[:, 1]
         base = origin[:, 2] + places[:, 2] + self.location[2] - np.float32(self.floor_m or 0.0)
-        return np.asarray(lowest_point + base[:, None])
+        above = turn[:, 2] @ ankle.T + base[:, None]
+        return np.asarray(above - np.float32(self.stances.ankle_height_m))
 
     def whole_cost(
         self, stance: IndexArray, places: SingleArray, torso: SingleArray, paired: bool = False
@@ -232,19 +231,23 @@ class FrameCosts:
                 points = features.points[limbs[:, column]] @ np.swapaxes(turn, -1, -2) + origin[:, None]
                 mass = mass + (points[..., :2] * own[:, None]).sum(axis=1)
                 continue
-            height = self.sole_heights(limb, stance, places)
-            index = likeliest(tables[limb] + below_cost(height), height)
+            height = self.foot_heights(limb, stance, places)
+            table = tables[limb] if self.floor_m is None else tables[limb] + below_cost(height)
+            index = likeliest(table, height)
             points = np.einsum("nij,ncqj->ncqi", turn[:, :2], features.points[index])
             sole = features.soles.mean(axis=1)[index]
             choices[limb] = LegChoices(
                 index,
-                np.take_along_axis(tables[limb] + below_cost(height), index, axis=1),
+                np.take_along_axis(table, index, axis=1),
                 np.take_along_axis(height, index, axis=1),
                 np.einsum("nij,ncj->nci", turn[:, :2], sole),
                 (points * own[:, None]).sum(axis=2),
             )
         left, right = (choices[limb] for limb in LEGS)
-        return left, right, pair_costs(left, right, mass)
+        pairs = self.stances.legs_together[left.index[:, :, None], right.index[:, None]]
+        if self.floor_m is not None:
+            pairs = pairs + pair_costs(left, right, mass)
+        return left, right, pairs
 
     def _point_cost(self, observed: int, residual: SingleArray) -> SingleArray:
         return np.asarray(self.share * student_cost((residual**2).sum(axis=-1), 2))

@@ -12,8 +12,10 @@ from ..matching.noise_scales import DEGREES_OF_FREEDOM
 
 MOST_PAIRED = 12
 """Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""
-FLOOR_STD_M = 0.06
-"""Height of a sole that stands on the floor: feet are rigid here, shoes are not measured."""
+FLOOR_STD_M = 0.05
+"""Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters."""
+HEEL_M = 0.05
+"""A heel that is off the floor by this much is nothing unusual."""
 BALANCE_STD_M = 0.12
 """Horizontal distance of the center of mass from the feet that stand: a foot's length, and a step under way."""
 BALANCE_DEGREES = 3.0
@@ -31,9 +33,9 @@ class LegChoices:
     index: IndexArray
     """(N, C) which parts."""
     cost: SingleArray
-    """(N, C) of what is seen of them, and of soles below the floor."""
+    """(N, C) of what is seen of them, and of feet below the floor."""
     height: SingleArray
-    """(N, C) of the sole above the floor [m]."""
+    """(N, C) of the foot above the floor [m]."""
     foot: SingleArray
     """(N, C, 2) where the foot is, from the hips [m]."""
     mass: SingleArray
@@ -71,13 +73,13 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
 
 
 def below_cost(height: SingleArray) -> SingleArray:
-    """Cost of soles below the floor."""
+    """Cost of feet below the floor."""
     return _floor_cost(np.minimum(height, 0.0))
 
 
 def standing_cost(height: SingleArray) -> SingleArray:
-    """Cost of soles above the floor that should stand on it."""
-    return _floor_cost(np.maximum(height, 0.0))
+    """Cost of feet above the floor that should stand on it."""
+    return _floor_cost(np.maximum(height - np.float32(HEEL_M), 0.0))
 
 
 def _floor_cost(height: SingleArray) -> SingleArray:

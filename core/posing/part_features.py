@@ -14,6 +14,7 @@ from ..body.human import HUMAN
 from ..body.limbs import TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.soles import sole_places
+from ..estimate.ankle_height import standing_ankle_m
 from ..matching.marker_moments import marker_moments
 from ..matching.match_evidence import MatchEvidence
 from .part_pools import ARM, LIMBS, PartPool, PartPools
@@ -56,6 +57,12 @@ class StanceFeatures:
     """(H,)."""
     limbs: dict[str, PartFeatures]
     """Features of each limb's parts."""
+    limb_cost: dict[str, SingleArray]
+    """(T, L) how unusual each part of a limb is with each torso."""
+    legs_together: SingleArray
+    """(L, L) how unusual a left and a right leg are together."""
+    ankle_height_m: float
+    """Height of the ankles over flat soles."""
 
     def frame_of(self, limb: str, stance: IndexArray) -> tuple[SingleArray, SingleArray]:
         """Turn (N, 3, 3) and place (N, 3) from the hips of what a limb hangs on."""
@@ -102,6 +109,9 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
         _single(turned(pose.origin[:, waist])),
         heading,
         limbs,
+        {limb: _single(pools.limb_cost[limb]) for limb in LIMBS},
+        _single(pools.legs_together),
+        standing_ankle_m(body),
     )
 
 

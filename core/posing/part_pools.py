@@ -4,7 +4,7 @@ Given where the torso is, limbs move nearly independently: an arm from one postu
 postures that no library has. Left and right limbs share one pool, mirrored.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -48,7 +48,12 @@ UNUSUAL_M = 0.15
 """Distance from the nearest known part that is as usual as the known part."""
 UNUSUAL_DEGREES = 3.0
 """Of the Student's t by which parts farther off are rarer: a prior must forgive."""
-TORSO_RANGE_DEG = {"pelvis": ((-25.0, 70.0), (-25.0, 25.0)), "waist": None, "neck": None}
+KERNEL_M = 0.08
+"""Distance within which parts go with the same other parts: what performers differ by."""
+TOGETHER_SHARE = 0.5
+"""Weight of which parts libraries show together; the rest is for any other combination."""
+MOST_TOGETHER = 20.0
+"""Largest factor by which legs are likelier together than by themselves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +83,10 @@ class PartPools:
     legs: PartPool
     names: tuple[tuple[str, bool], ...]
     """Name of each source posture, and whether it is mirrored."""
+    limb_cost: Mapping[str, Array]
+    """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
+    legs_together: Array
+    """(L, L) the same of two legs, left and right, beyond what either is by itself."""
 
     def composed(
         self, torso: IndexArray, limbs: dict[str, IndexArray], heading_rad: Array, hips: Array
@@ -128,7 +137,33 @@ def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     names += [(name, not flipped) for name, flipped in names]
     facing = yawed_at(everyone, -headings_rad(everyone), np.zeros((len(names), 3)))
     samples = _samples(np.random.default_rng(0))
-    return PartPools(body, *(_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG)), tuple(names))
+    torsos, arms, legs = (_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG))
+    # Sources are postures and then their mirror images: the right limb of one is the left limb of the other.
+    other_side = np.roll(np.arange(len(names)), len(names) // 2)
+    near = _nearness(body, torsos, facing)
+    limb_cost, seen = {}, {}
+    for limb in LIMBS:
+        kind, side = limb.split(".")
+        pool = arms if kind == ARM else legs
+        own = _nearness(body, pool, facing)
+        seen[limb] = own / own.sum(axis=0)
+        seen[limb] = seen[limb] if side == "L" else seen[limb][:, other_side]
+        together = near @ seen[limb].T
+        together /= together.sum(axis=1, keepdims=True)
+        alone = np.exp(-pool.cost)
+        limb_cost[limb] = -np.log((1.0 - TOGETHER_SHARE) * alone + TOGETHER_SHARE * together)
+    both = seen["leg.L"] @ seen["leg.R"].T / len(names)
+    apart = np.outer(both.sum(axis=1), both.sum(axis=0))
+    ratio = both / np.maximum(apart, 1e-12)
+    usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, MOST_TOGETHER))
+    return PartPools(body, torsos, arms, legs, tuple(names), limb_cost, usual)
+
+
+def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
+    """(N, S) nearness of each part to that of each of S known postures."""
+    points, parts = (part_points(body, pool.kind, each) for each in (known, pool.posture))
+    apart = np.array([_distance(points, each) for each in parts])
+    return np.asarray(np.exp(-0.5 * (apart / KERNEL_M) ** 2) + 1e-9)
 
 
 def part_points(body: Body, kind: str, posture: Posture) -> Array:
