@@ -8,9 +8,9 @@ held against the direction in which a line through its middle would run in the p
 upright thing's upper end against where it would be over the lower one. Least squares find the most probable
 camera, given what is believed of any camera beforehand: that needs no special cases.
 
-What the picture does not determine keeps its value, as little as leaves the rest determined: with a standard
-deviation of at most `DETERMINED` of what is believed beforehand. Stated deviations know that what was kept may
-be wrong.
+What the picture does not determine keeps its value, as little as leaves the rest determined, which is to have
+a standard deviation of at most `DETERMINED` of what is believed beforehand. Stated deviations know that what
+was kept may be wrong.
 """
 
 from dataclasses import dataclass, replace
@@ -107,8 +107,8 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
 def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
     """Indices of the parameters to keep: the fewest that leave the others determined.
 
-    What a picture says of two together, as of height and tilt by someone who stands in one place, holds for the
-    one once the other is kept.
+    What a picture says of two together, as of height and tilt by someone who stands in one place, holds for
+    the one once the other is kept.
     """
     count = len(PARAMETERS)
     kept = [index for index in range(count) if believed_std[index] <= KNOWN_LENS_STD]
