@@ -9,7 +9,6 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from keyframing import exact_postures
@@ -18,7 +17,6 @@ from takes import chosen_takes, load_project, write_results
 load_project()
 
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
@@ -27,13 +25,12 @@ from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.match_clip import match_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
-from keymark.core.review.score import Score, read_truth  # noqa: E402
+from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take import evidence_kinds as kinds  # noqa: E402
 from keymark.core.take.evidence import with_evidence  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
-from keymark.core.take.take_file import read_take  # noqa: E402
-from trials import Trial  # noqa: E402
+from trials import KEYPOINTS, Trial, read_unposed, with_keypoints  # noqa: E402
 
 FITTING: dict[str, str] = {
     "walk": "walking",
@@ -54,8 +51,6 @@ FITTING: dict[str, str] = {
 ON_THE_FLOOR = 0.0
 RAISED = ("real_balance",)
 """Takes whose performer stands on something other than the floor z = 0; their floor is not given."""
-KEYPOINTS = "keypoints_mediapipe.json"
-"""File of a detector's keypoints in a take's folder, for `--keypoints`."""
 COMBINATIONS: dict[str, tuple[str, ...]] = {
     "markers": (kinds.MARKERS, kinds.CONTOURS),
     "and keypoints": kinds.EVIDENCE,
@@ -86,15 +81,6 @@ class Measured:
     """The motion with the first and the last frame posed, and the library."""
     matching_ms: float
     """Process time of matching per frame, reading excluded."""
-
-
-def read_unposed(folder: Path) -> Trial:
-    """A take read without its keyframes, which then do not guide the tracking of markers either."""
-    take = replace(read_take(folder), keyframes=())
-    reading = run(read_footage(take))
-    return Trial(
-        take, reading, read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count), ()
-    )
 
 
 def matched(name: str, take: Take, reading: Reading, library: Library) -> tuple[FoundPoses, float]:
@@ -145,13 +131,6 @@ def compare(name: str, trial: Trial, library: Library) -> dict[str, tuple[Score,
         points = take.body.points(take.body.pose(match.postures))
         found[title] = held.score(points), estimated(held)
     return found
-
-
-def with_keypoints(trial: Trial, folder: Path) -> Trial:
-    """The same take with the keypoints in its folder."""
-    take, tracks = trial.take, trial.reading.tracks
-    people = read_keypoints(folder / KEYPOINTS, tracks.frame_count, tracks.size, take.fps, take.frame_start)
-    return replace(trial, take=replace(take, keypoints=(people,)))
 
 
 def keypoint_table(results: dict[str, dict[str, tuple[Score, Score]]]) -> str:

@@ -1,6 +1,6 @@
 """One take to test methods on: its markers are tracked once, and results are compared with its truth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from takes import load_project
@@ -10,15 +10,19 @@ load_project()
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 
+KEYPOINTS = "keypoints_mediapipe.json"
+"""File of a detector's keypoints in a take's folder."""
 INTERPOLATIONS = {
     "linear": interpolate_linearly,
     "auto-clamped": interpolate_auto_clamped,
@@ -71,3 +75,19 @@ def read_trial(folder: Path, keyframes: Path | None = None) -> Trial:
     reading = run(reconstruct(take, "interpolation")).reading
     truth = read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count)
     return Trial(take, reading, truth, take.keyframe_indices)
+
+
+def read_unposed(folder: Path) -> Trial:
+    """A take read without its keyframes, which then do not guide the tracking of markers either."""
+    take = replace(read_take(folder), keyframes=())
+    reading = run(read_footage(take))
+    return Trial(
+        take, reading, read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count), ()
+    )
+
+
+def with_keypoints(trial: Trial, folder: Path) -> Trial:
+    """The same take with the keypoints in its folder."""
+    take, tracks = trial.take, trial.reading.tracks
+    people = read_keypoints(folder / KEYPOINTS, tracks.frame_count, tracks.size, take.fps, take.frame_start)
+    return replace(trial, take=replace(take, keypoints=(people,)))

@@ -72,14 +72,13 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, what to follow: add the usual five markers and pick each color by one click on the footage.
+    """Step 2, what to follow: pick the usual five markers, each by one click on the footage in frame 1.
 
     In plain clothes `bpy.ops.keymark.load_keypoints(filepath=...)` takes its place.
     """
-    bpy.ops.keymark.add_usual_markers()
-    for number, marker in enumerate(take.markers):
-        take.active_marker = number
-        bpy.ops.keymark.pick_marker_color(pixel=SLEEVES[marker.segment])
+    clicks = [{"name": segment, "loc": pixel, "time": 1.0} for segment, pixel in SLEEVES.items()]
+    bpy.ops.keymark.pick_markers(clicks=clicks)
+    for marker in take.markers:
         print(f"{marker.name}: found in {marker.found} of {marker.sampled} frames")
 
 

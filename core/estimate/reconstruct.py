@@ -14,6 +14,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
+from ..library.texts import COMPOSED
 from ..observation.regions import RegionModel
 from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
@@ -25,6 +26,7 @@ from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
+from .ankle_height import found_ankle_m
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
@@ -206,8 +208,17 @@ def _whole_clip(
         earlier=earlier,
         match_scale=match_scale,
         keypoints=keypoints,
+        lower_ankle=_found_ankle(take, prior),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
+
+
+def _found_ankle(take: Take, prior: Posture) -> Array | None:
+    """(F,) height of the lower ankle by keyframes put together from parts; None where there are others."""
+    if not all(key.matched is not None and key.matched.library == COMPOSED for key in take.keyframes):
+        return None
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    return found_ankle_m(take.body, prior[index], index, prior.batch[0])
 
 
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:

@@ -20,17 +20,13 @@ from ..observation.regions import RegionModel
 from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
+from .frame_descent import descend
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
-from .terms.term import NormalEquations, total_cost
 
-TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
-LARGEST_STEP = 0.4
-"""Largest change of a posture's unknown in one step [m, rad]."""
-CONVERGED = 2e-3
 CALIBRATED_FROM = 5
 """Fewest keyframes that calibrate: their placements are better than average ones."""
 EXPECTED_RADIUS_M = 0.9
@@ -92,12 +88,12 @@ def fit_frame(
     fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
     if points is None or not points.seen.any():
         return fit
-    mirrored = _exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
+    mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
     other = _Descent(evidence, observed, belief, frame, noise, mirrored).fit()
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
-def _exchanged(
+def exchanged(
     points: ObservedKeypoints, names: tuple[str, ...], sources: tuple[str, ...]
 ) -> ObservedKeypoints:
     """The keypoints with left and right exchanged; a point without a mirror image stays."""
@@ -175,29 +171,7 @@ class _Descent:
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
-        start = replace(
-            self.state,
-            variation=np.zeros_like(self.state.variation),
-        )
-        best, least = start, total_cost(self.terms, start)
-        for temperature in TEMPERATURES:
-            equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
-            for term in self.terms:
-                term.add_to(equations, self.state, temperature)
-            step = equations.matrix.factorize().solve(-equations.gradient)
-            self.state, moved = self.state.stepped(step, LARGEST_STEP)
-            if temperature > 1.0:
-                continue
-            costs = total_cost(self.terms, self.state)
-            better = costs < least
-            best = replace(
-                best,
-                variation=np.where(better[:, None], self.state.variation, best.variation),
-                bias=np.where(better[:, None], self.state.bias, best.bias),
-            )
-            least = np.minimum(costs, least)
-            if moved < CONVERGED:
-                break
+        best, least = descend(self.state, self.terms)
         chosen = int(np.argmin(least))
         posture = best.posture[chosen]
         residual = self._distances(posture)

@@ -6,17 +6,16 @@ in the frame of the joint that carries it, so that it fits any trunk.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import headings_rad, yawed_at
+from ..body.heading import headings_rad, yaw_rotation, yawed_at
 from ..body.kinematics import Body, Pose
 from ..body.limbs import TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.posture import Posture
-from ..body.soles import lower_sole_m
 from ..errors import InputError
 from ..library.library import Library
 from ..library.transfer import transferred
@@ -57,37 +56,16 @@ class KnownPostures:
 
 
 def known_postures(body: Body, libraries: Sequence[Library]) -> KnownPostures:
-    """The postures of some libraries on a body; those of the last few bodies are kept.
+    """The postures of some libraries on a body.
 
     Raises:
         InputError: No library has a posture.
     """
-    return _known_postures(tuple(sorted(body.actor.segments_m.items())), _Held(body, tuple(libraries)))
-
-
-@dataclass(frozen=True)
-class _Held:
-    """Libraries to compare by identity, with the body that its lengths stand for."""
-
-    body: Body
-    libraries: tuple[Library, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Held) and all(
-            one is two for one, two in zip(self.libraries, other.libraries, strict=False)
-        ) and len(self.libraries) == len(other.libraries)
-
-    def __hash__(self) -> int:
-        return hash(tuple(map(id, self.libraries)))
-
-
-@lru_cache(maxsize=4)
-def _known_postures(lengths: tuple[tuple[str, float], ...], held: _Held) -> KnownPostures:
     batches, names, numbers = [], [], []
-    for number, library in enumerate(held.libraries):
+    for number, library in enumerate(libraries):
         if library.postures:
             own = Posture.stack([each.posture for each in library.postures])
-            batches.append(transferred(own, library.actor, held.body))
+            batches.append(transferred(own, library.actor, body))
             names += [each.name for each in library.postures]
             numbers += [number] * len(library.postures)
     if not names:
@@ -98,7 +76,7 @@ def _known_postures(lengths: tuple[tuple[str, float], ...], held: _Held) -> Know
     hips[:, 2] = both.translation[:, 2]
     ahead = yawed_at(both, -headings_rad(both), hips)
     flags = (False,) * len(names) + (True,) * len(names)
-    return KnownPostures(held.body, ahead, (*names, *names), flags, np.array(numbers * 2, dtype=np.intp))
+    return KnownPostures(body, ahead, (*names, *names), flags, np.array(numbers * 2, dtype=np.intp))
 
 
 def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
@@ -121,15 +99,8 @@ def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
 
 
 def _heading_turn(pose: Pose) -> Array:
-    from ..body.heading import yaw_rotation
-
     return yaw_rotation(headings_rad(pose.posture))
 
 
 def _flat(points: Array) -> Array:
     return np.asarray(points.reshape(len(points), -1) / np.sqrt(points.shape[1]))
-
-
-def soles_m(body: Body, posture: Posture) -> Array:
-    """(N,) height of the lower sole [m]."""
-    return lower_sole_m(body, posture)

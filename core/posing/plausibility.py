@@ -5,17 +5,17 @@ goes where limbs go. What is usual is learned from the libraries themselves: eac
 of all others.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.special import logsumexp
 
 from ..arrays import Array, BoolArray
-from ..body.kinematics import Pose
-from .known_postures import PARTS, KnownPostures, part_shapes
+from ..body.kinematics import Body, Pose
+from ..library.library import Library
+from .known_postures import PARTS, KnownPostures, known_postures, part_shapes
 
 KERNEL_M = 0.05
 """Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
@@ -30,8 +30,6 @@ UNUSUAL_SHARE = 0.002
 plausible."""
 MARGIN = 2.0
 """Cost by which an unknown motion may be more unusual than that: an e-fold density less in two directions."""
-
-_KEPT: WeakKeyDictionary[KnownPostures, "Plausibility"] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +65,13 @@ class Plausibility:
         return found
 
 
-def plausibility_of(known: KnownPostures) -> Plausibility:
-    """The density of known postures; kept for as long as these are."""
-    if known not in _KEPT:
-        _KEPT[known] = Plausibility(known)
-    return _KEPT[known]
+def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
+    """The density of the postures of some libraries on a body.
+
+    Raises:
+        InputError: No library has a posture.
+    """
+    return Plausibility(known_postures(body, libraries))
 
 
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:

@@ -61,7 +61,7 @@ class FramePrior:
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
     """(D,) standard deviation [m, rad] of the difference between postures a time apart."""
     share = 1.0 - np.exp(-abs(time_s) / CORRELATION_TIME_S)
-    std = share * _unrelated_std(skeleton)
+    std = share * unrelated_std(skeleton)
     std[:3] = np.maximum(std[:3], SPEED_M_PER_S * abs(time_s))
     return np.maximum(std, 1e-3)
 
@@ -105,7 +105,7 @@ def _extrapolated(keyframes: Sequence[Keyframe], index: int) -> Posture:
 
 def prior_from_pose(posture: Posture) -> FramePrior:
     """Prior from a pose that the animator has set roughly for the frame."""
-    return FramePrior(posture, ROUGH_POSE_SHARE * _unrelated_std(posture.skeleton), Posture.stack([posture]))
+    return FramePrior(posture, ROUGH_POSE_SHARE * unrelated_std(posture.skeleton), Posture.stack([posture]))
 
 
 def prior_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> FramePrior:
@@ -115,14 +115,15 @@ def prior_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M)
         posture: A body that stands there.
         depth_std_m: Standard deviation of the points' depths [m]; less where the place was measured.
     """
-    std = _unrelated_std(posture.skeleton)
+    std = unrelated_std(posture.skeleton)
     std[:3] = UNKNOWN_PLACE_M
     std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
     around = yawed_in_place(posture, HEADINGS_RAD)
     return FramePrior(posture, std, around, depth_std_m, grounded=around[:1])
 
 
-def _unrelated_std(skeleton: Skeleton) -> Array:
+def unrelated_std(skeleton: Skeleton) -> Array:
+    """(D,) standard deviation [m, rad] between postures of one person at two unrelated moments."""
     return np.array(
         [
             UNRELATED_STD["pelvis.location" if ".location" in name else name.split(".")[0]]

@@ -5,6 +5,7 @@ import bpy
 from ...core.body.actor import Actor
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, idle
 from ..shell.takes import active_take
 from .properties import panel_lengths
@@ -25,6 +26,7 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
 
         take = active_take(context.scene)
         set_lengths(take.armature, Body(Actor(panel_lengths(take.lengths))))
+        give_notices(take, "actor", "lengths")
         say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
 
 

@@ -5,16 +5,28 @@ import bpy
 from ..bridge.actor_bones import is_actor
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, has_lost_actor, kept_actions
 from .properties import MIDDLE, SIDED, length_property
 
 
-class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     """The armature, and the operators that build or measure it."""
 
     bl_label = "Actor"
+    step = "actor"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How tall the actor is."""
+        return "" if take.armature is None else label("{height:.4g} m", height=take.stature)
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the actor is gone, or none of Keymark's."""
+        return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw height, operators and armature."""
         take, column = active_take(context.scene), self.column()
         if has_lost_actor(take):

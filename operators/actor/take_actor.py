@@ -9,6 +9,7 @@ from ...core.errors import InputError
 from ..bridge.actor_bones import hips_at_rest
 from ..bridge.resize import set_lengths
 from ..keypoints.evidence import scene_evidence
+from ..shell.notices import give_notices
 from ..shell.results import reading_of
 from ..shell.takes import footage_of, has_lost_actor
 from .properties import length_names, length_property
@@ -51,6 +52,7 @@ def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
     """Set the lengths in the panel to a body's."""
     segments = body.actor.segments_m
     take.rest_hips = hips_at_rest(take.armature)
+    give_notices(take, "actor", "lengths")  # of other lengths
     lengths = take.lengths
     pairs = [(f"{part}.L", f"{part}.R") for part in {name.split(".")[0] for name in segments if "." in name}]
     lengths.symmetric = all(

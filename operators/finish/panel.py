@@ -5,15 +5,28 @@ import bpy
 from ..bridge.export_formats import FORMATS
 from ..shell.messages import label
 from ..shell.panel import TakePanel
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 
-class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     """The final Action."""
 
     bl_label = "Finish"
+    step = "finish"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How many keys the final Action has."""
+        done = take.finish.action is not None
+        return label("{count} keys", count=take.finish.keys_after) if done else ""
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the motion is newer than the final Action."""
+        return bool(take.finish.outdated)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw the button, the options, and the result."""
         take, column = active_take(context.scene), self.column()
         settings = take.finish

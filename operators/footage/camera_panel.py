@@ -6,7 +6,7 @@ from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.messages import label
 from ..shell.panel import draw_sentence
-from .camera_fields import placement_is_guess
+from ..shell.placement_guess import placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
 from .take_footage import lens_is_guess
 

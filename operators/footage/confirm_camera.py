@@ -3,8 +3,9 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
+from ..shell.placement_guess import placement_is_guess
 from ..shell.takes import active_take, find_take
-from .camera_fields import confirm_placement, placement_is_guess
+from .camera_fields import confirm_placement
 
 
 def guessed_placement(context: bpy.types.Context) -> str | None:

@@ -4,7 +4,8 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import say
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .occluding_objects import occluding_objects
@@ -87,14 +88,16 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
                 lens=take.guessed_lens_mm,
             )
         occluding = occluding_objects(context, take)
-        if occluding:
-            say(
-                self,
-                "WARNING",
-                "In front of the footage: {names}; to see the performer, select what hides them and "
-                "press H (Alt H brings it back)",
-                names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
-            )
+        if not occluding:
+            give_notices(take, "footage", "view")
+            return
+        sentence = label(
+            "In front of the footage: {names}; to see the performer, select what hides them and "
+            "press H (Alt H brings it back)",
+            names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
+        )
+        give_notices(take, "footage", "view", (sentence,), occluding)
+        self.report({"WARNING"}, sentence)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

@@ -3,17 +3,28 @@
 import bpy
 
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
 from .camera_panel import draw_camera
 
 
-class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     """Clip, camera and the take's files."""
 
     bl_label = "Footage"
+    step = "footage"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How long the clip is."""
+        return label("{count} frames", count=take.clip.frame_duration) if take.clip is not None else ""
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the clip's file is missing."""
+        return bool(take.clip_state.missing)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw clip, camera and the take's files."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")

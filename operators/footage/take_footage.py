@@ -10,9 +10,9 @@ from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from ..bridge.attach_footage import attach_footage, is_guess
 from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
+from ..shell.placement_guess import NO_GUESS, as_numbers
 from ..shell.results import clear_review
 from ..shell.takes import find_take, footage_of
-from .camera_fields import NO_GUESS, as_numbers
 from .camera_view import fit_beside_sidebar, look_through
 
 GENERIC_STEM = "clip"
@@ -48,6 +48,7 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
         take.reading_key = take.review_key = ""
         take.proposals.clear()
         take.notes.clear()
+        take.notices.clear()
         clear_review(take)
         take.camera_findings = ""
         for drawn in (take.camera_lines, take.follow.files, take.follow.tracks, take.follow.clicks):

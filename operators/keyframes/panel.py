@@ -3,21 +3,35 @@
 import bpy
 
 from ..shell.contradictions import draw_contradictions
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed_proposals
+from ..shell.keyed_frames import (
+    has_frame,
+    keyframes_of,
+    matched_frames,
+    posed_frames,
+    proposed_frames,
+    unposed_proposals,
+)
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 PROMINENT = 1.6
 """Height of the button that does the step's whole work."""
 
 
-class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
     bl_label = "Keyframes"
+    step = "keyframes"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How many keyframes there are."""
+        return label("{count} keyed", count=len(keyframes_of(take))) if take.keyframe_action else ""
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
         everything = column.column()

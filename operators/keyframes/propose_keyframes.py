@@ -10,6 +10,7 @@ from ..bridge.scene_frames import scene_frames
 from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -84,6 +85,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         for frame in result.frames:
             take.proposals.add().frame = frame
         say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
+        give_notices(take, "keyframes", "proposals", (result.note,) if result.note else ())
         if result.note:
             self.report({"WARNING"}, result.note[:1].upper() + result.note[1:])
 

@@ -255,6 +255,8 @@ def _draw_file(
     people = reading.people
     here = people_at(people, clip_index(take))
     layout.label(text=seen_label(here), translate=False, icon="INFO")
+    for note in people.notes:
+        draw_sentence(layout, context, note[:1].upper() + note[1:], "ERROR")
     if people.most_people > 1:
         row = layout.row(align=True)
         text = count_label(len(here.pixel), "1 person here", "{count} people here")

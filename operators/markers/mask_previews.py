@@ -54,29 +54,41 @@ class Preview:
 
 
 _previews: dict[Key, Preview] = {}
+_picked: dict[str, Preview] = {}
+"""Preview of colors that are being picked and are not the take's yet, by the take's identifier."""
 
 
 def keep_preview(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> None:
     """Cache the learned colors of a take's markers."""
-    groups = check.groups
-    labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
-    colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
     _previews.pop(key := _key(take), None)
-    _previews[key] = Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
+    _previews[key] = _preview(styles, check)
     while len(_previews) > MOST_PREVIEWS:
         del _previews[next(iter(_previews))]
 
 
+def show_picked(identifier: str, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> None:
+    """Let colors that are being picked be the preview of the take with an identifier, until `end_picked`."""
+    _picked[identifier] = _preview(styles, check)
+
+
+def end_picked() -> None:
+    """Let the takes' own markers be their previews again."""
+    _picked.clear()
+
+
 def preview_of(take: bpy.types.PropertyGroup) -> Preview | None:
     """Return the preview of a take's markers as they are now; None if they were not checked."""
-    return _previews.get(_key(take)) if take.clip is not None else None
+    if take.clip is None:
+        return None
+    return _picked.get(take.identifier) or _previews.get(_key(take))
 
 
 def clear_previews() -> None:
     """Drop all previews, and close their files."""
     _previews.clear()
+    _picked.clear()
 
 
 def update_masks(scene: bpy.types.Scene) -> Preview | None:
@@ -144,6 +156,13 @@ def _masks(preview: Preview, footage: Footage, ignored: Image | None) -> tuple[C
         ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
         for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)
     )
+
+
+def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview:
+    groups = check.groups
+    labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
+    colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
+    return Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
 
 
 def _key(take: bpy.types.PropertyGroup) -> Key:

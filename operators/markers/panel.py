@@ -29,14 +29,14 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
         status = row.row()
         status.alignment = "RIGHT"
         take = active_take(context.scene)
-        if not item.is_picked:
-            status.label(text="Not Picked")
-        elif not item.has_readout(take):
-            status.label(text="Not Checked", icon="QUESTION")
-        else:
+        if item.is_picked and not item.has_readout(take):
+            status.label(text="", icon="QUESTION")
+        elif item.is_picked:
             status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")
-        here = next((row for row, marker in enumerate(take.markers) if marker == item), -1)
-        row.operator("keymark.pick_marker_color", text="", icon="EYEDROPPER", emboss=False).row = here
+        here = next((index for index, marker in enumerate(take.markers) if marker == item), -1)
+        pick = row.row()
+        pick.emboss = "NONE" if item.is_picked else "NORMAL"
+        pick.operator("keymark.pick_marker_color", text="", icon="EYEDROPPER").row = here
 
 
 class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):

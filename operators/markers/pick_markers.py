@@ -19,8 +19,8 @@ from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
 from .marker_readouts import check_unchanged, find_markers, write_readouts
 from .marker_requests import request_for
-from .marker_styles import Rgb, picked_styles, set_marker_color, styles_with_colors
-from .mask_previews import keep_preview, preview_of, show_masks, update_masks, update_shown_masks
+from .marker_styles import Rgb, set_marker_color, styles_with_colors
+from .mask_previews import end_picked, show_masks, show_picked, update_masks, update_shown_masks
 from .new_markers import USUAL_SEGMENTS, append_marker
 
 if TYPE_CHECKING:
@@ -30,17 +30,6 @@ if TYPE_CHECKING:
     from ...core.progress import Job
 
 KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: Done   |   Esc: Cancel"
-
-
-@dataclass(frozen=True)
-class Before:
-    """The markers before the first click."""
-
-    markers: tuple[tuple[tuple[float, ...] | None, int], ...]
-    """Color, None for none, and number of sampled frames of each."""
-    active: int
-    masks: bool
-    """Whether masks were shown."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,30 +61,28 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    _before: Any = None
-    """The markers before; Blender would evaluate a type named here."""
+    _masks_before: bool | None = None
+    """Whether masks were shown before; None in a script."""
     _asked: Any = ()
-    """Names of the markers that are asked for, in order."""
+    """Names and segments of the markers that are asked for, in order; Blender would evaluate a type."""
     _here: int = 0
     """Which of them is asked for now."""
     _colors: Any = None
-    """Picked colors by the markers' names, in the order of the clicks; None in a script."""
+    """Picked colors by the markers' names, in the order of the clicks; None in a script. The scene stays as
+    it was until all are picked: going to another frame is a step of undo."""
     _looking: Generator[Any, None, Any] | None = None
     """The search for the colors picked so far, whose masks are then shown."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Add the usual five to an empty list, and ask for the first marker without a color."""
+        """Ask for the markers without a color, for all where each has one, or for the usual five."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
-        markers = tuple(
-            (tuple(marker.color) if marker.is_picked else None, int(marker.sampled))
-            for marker in take.markers
-        )
-        self._before = Before(markers, int(take.active_marker), context.window_manager.keymark_show_masks)
-        _list_usual(take)
-        unpicked = [marker.name for marker in take.markers if not marker.is_picked]
-        self._asked, self._here, self._colors = unpicked or [marker.name for marker in take.markers], 0, {}
+        markers = [marker for marker in take.markers if not marker.is_picked] or list(take.markers)
+        usual = [(segment, segment) for segment in USUAL_SEGMENTS]
+        self._asked = [(marker.name, marker.segment) for marker in markers] or usual
+        self._here, self._colors = 0, {}
+        self._masks_before = bool(context.window_manager.keymark_show_masks)
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
         context.window_manager.keymark_progress.show("", 0.0)
         return self.wait_for_clicks(context)
@@ -110,30 +97,23 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return self.take_event(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        """The next marker, which becomes the active one."""
-        take = active_take(context.scene)
-        row = next(row for row, marker in enumerate(take.markers) if marker.name == self._asked[self._here])
-        take.active_marker = row
-        keys = label(KEYS, number=self._here + 1, count=len(self._asked))
-        return request_for(take.markers[row].segment), keys
+        """The next marker."""
+        keys = label(KEYS, number=len(self._colors) + 1, count=len(self._asked))
+        return request_for(self._asked[self._here][1]), keys
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
-        """Give the marker its color; the last click ends it."""
+        """Take the marker's color from the pixel; the last click ends it."""
         from ..bridge.footage_color import footage_color
 
-        take, name = active_take(context.scene), self._asked[self._here]
+        name = self._asked[self._here][0]
         with reported(self):
-            self._colors.pop(name, None)  # the order is that of the clicks
-            self._colors[name] = footage_color(footage_of(context.scene, take), pixel)
-            set_marker_color(_marker(take, name), self._colors[name])
+            color = footage_color(footage_of(context.scene, active_take(context.scene)), pixel)
+            self._colors[name] = color
             click = self.clicks.add()
             click.name, click.loc, click.time = name, pixel, context.scene.frame_current
-            self._stop_looking()
-            if all(other in self._colors for other in self._asked):
+            if len(self._colors) == len(self._asked):
                 return self.done(context)
-            self._looking = find_markers(
-                footage_of(context.scene, take), picked_styles(take), ignored_regions(take)
-            )
+            self._begin_to_look(context)
             self.go_on(context)
         self.ask(context)
         return {"RUNNING_MODAL"}
@@ -142,22 +122,20 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         """Ask for the next marker that was not clicked on."""
         count = len(self._asked)
         after = [(self._here + step) % count for step in range(1, count + 1)]
-        self._here = next((one for one in after if self._asked[one] not in self._colors), self._here)
+        self._here = next((one for one in after if self._asked[one][0] not in self._colors), self._here)
 
     def go_back(self, context: bpy.types.Context) -> None:
         """Take the last click back, and ask for its marker once more."""
         if not self._colors:
             return
-        self._stop_looking()
         name, _ = self._colors.popitem()
-        while len(self.clicks) and self.clicks[len(self.clicks) - 1].name == name:
-            self.clicks.remove(len(self.clicks) - 1)
-        take = active_take(context.scene)
-        row = next(row for row, marker in enumerate(take.markers) if marker.name == name)
-        listed = row < len(self._before.markers)
-        _set_color(take.markers[row], self._before.markers[row][0] if listed else None)
-        self._here = self._asked.index(name)
-        show_masks(context, bool(self._colors) and preview_of(take) is not None)
+        self.clicks.remove(len(self.clicks) - 1)
+        self._here = [asked for asked, _ in self._asked].index(name)
+        if self._colors:
+            self._begin_to_look(context)
+        else:
+            self._stop_looking()
+            show_masks(context, False)
 
     def done(self, context: bpy.types.Context) -> set[str]:
         """Look for all markers with a color; without a click nothing has happened."""
@@ -166,7 +144,8 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
             return {"CANCELLED"}
         self._stop_looking()
         stop_asking(context)
-        self._remove_timer(context)
+        context.window_manager.event_timer_remove(self._timer)
+        self._timer = None
         with reported(self):
             self.begin(context)
             return {"RUNNING_MODAL"}
@@ -174,20 +153,12 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore list, colors and masks, and close the job; Blender calls this as well."""
+        """Restore masks, and close the job; Blender calls this as well."""
         self._stop_looking()
+        end_picked()
         stop_asking(context)
-        if self._before is not None:
-            take = active_take(context.scene)
-            while len(take.markers) > len(self._before.markers):
-                take.markers.remove(len(take.markers) - 1)
-            for marker, (color, _) in zip(take.markers, self._before.markers, strict=True):
-                _set_color(marker, color)
-            for marker, (_, sampled) in zip(take.markers, self._before.markers, strict=True):
-                marker.sampled = sampled
-            take.active_marker = self._before.active
-            show_masks(context, self._before.masks)
-            self._before = None
+        if self._masks_before is not None:
+            show_masks(context, self._masks_before)
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
@@ -221,6 +192,17 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
             self.report({"WARNING"}, sentence)
         say(self, "INFO", "{count} markers are picked", count=len(result.colors))
 
+    def _begin_to_look(self, context: bpy.types.Context) -> None:
+        """Begin to look for the colors picked so far."""
+        self._stop_looking()
+        take = active_take(context.scene)
+        styles = styles_with_colors(take, self._colors)
+        self._looking = _seen(
+            take.identifier,
+            styles,
+            find_markers(footage_of(context.scene, take), styles, ignored_regions(take)),
+        )
+
     def _look(self, context: bpy.types.Context) -> None:
         """Go on looking for the colors picked so far; at the end show their masks."""
         if self._looking is None:
@@ -231,9 +213,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
                 while monotonic() < until:
                     next(self._looking)
                 return
-            except StopIteration as stop:
-                take = active_take(context.scene)
-                keep_preview(take, picked_styles(take), stop.value)
+            except StopIteration:
                 update_masks(context.scene)
                 show_masks(context, True)
         self._looking = None
@@ -243,10 +223,10 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
             self._looking.close()
             self._looking = None
 
-    def _remove_timer(self, context: bpy.types.Context) -> None:
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
+
+def _seen(identifier: str, styles: "tuple[MarkerStyle, ...]", search: "Job[MarkerCheck]") -> "Job[None]":
+    """Look for markers, then let what was found be the preview of the take with an identifier."""
+    show_picked(identifier, styles, (yield from search))
 
 
 def _list_usual(take: bpy.types.PropertyGroup) -> None:
@@ -259,14 +239,6 @@ def _list_usual(take: bpy.types.PropertyGroup) -> None:
 
 def _marker(take: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGroup:
     return next(marker for marker in take.markers if marker.name == name)
-
-
-def _set_color(marker: bpy.types.PropertyGroup, color: tuple[float, ...] | None) -> None:
-    """Set a marker's color, None for none."""
-    if color is None:
-        marker.property_unset("color")
-    else:
-        marker.color = color
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_markers,))

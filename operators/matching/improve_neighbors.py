@@ -1,14 +1,12 @@
 """Posing the found keyframes around a corrected one anew, with what the correction tells."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ...core.arrays import Array
 from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..keypoints.evidence import followed_markers
@@ -19,22 +17,6 @@ from .matches import undecided_matches
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
-    from ...core.prior.keyframes import Keyframe
-    from ...core.take.take import Take
-
-FARTHEST_S = 1.0
-"""Time on either side of a corrected keyframe beyond which found ones stay as they are: what a body does a
-second later follows from its posture no more, and the animator waits."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """A part of a clip that is posed anew; all are indices of its frames."""
-
-    first: int
-    last: int
-    changed: tuple[int, ...]
-    """Found keyframes that are posed anew, in order."""
 
 
 def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup, frame: float) -> int:
@@ -77,6 +59,7 @@ def _pose_anew(
     scene: bpy.types.Scene, settings: bpy.types.PropertyGroup, reading: "Reading", frame: float
 ) -> int:
     from ...core.posing.pose_clip import pose_clip
+    from ...core.posing.section import section_around, take_around
     from ...core.prior.keyframes import Keyframe, Matched
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import all_libraries
@@ -89,7 +72,7 @@ def _pose_anew(
     section = section_around(reading.tracks.time_s, corrected, known.keyframes)
     if not section.changed:
         return 0
-    take = _held(known, section)
+    take = take_around(known, section)
     matching = settings.matching
     floor_m = float(matching.floor_found) if matching.is_property_set("floor_found") else None
     between = section.first, section.last
@@ -105,46 +88,6 @@ def _pose_anew(
     write_found(settings, SceneClip(take, reading, frames, notes), keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)
-
-
-def section_around(time_s: Array, corrected: int, keyframes: "Collection[Keyframe]") -> Section:
-    """The part of a clip around a corrected keyframe that is posed anew.
-
-    On either side it reaches to the next keyframe that the animator decided on, or else to the first found
-    one beyond `FARTHEST_S`, or else to the clip's end; but always beyond one found keyframe, and nowhere
-    without one.
-
-    Args:
-        time_s: (F,) times of the clip's frames [s].
-        corrected: Index of the corrected keyframe.
-        keyframes: All keyframes, those with `matched` found.
-    """
-    ends, changed = [], []
-    for side, end in ((-1, 0), (1, len(time_s) - 1)):
-        outward = sorted(
-            (each for each in keyframes if side * (each.index - corrected) > 0),
-            key=lambda each: abs(each.index - corrected),
-        )
-        near: list[int] = []
-        for each in outward:
-            far = abs(float(time_s[each.index] - time_s[corrected])) > FARTHEST_S
-            if each.matched is None or (far and near):
-                end = each.index
-                break
-            near.append(each.index)
-        ends.append(end if near else corrected)
-        changed += near
-    return Section(ends[0], ends[1], tuple(sorted(changed)))
-
-
-def _held(known: "Take", section: Section) -> "Take":
-    """The take with all keyframes that hold: decided ones, and found ones that bound the section."""
-    kept = []
-    for keyframe in known.keyframes:
-        bounds = keyframe.index in (section.first, section.last) and keyframe.index not in section.changed
-        if keyframe.matched is None or bounds:
-            kept.append(replace(keyframe, matched=None))
-    return replace(known, keyframes=tuple(kept))
 
 
 @contextmanager

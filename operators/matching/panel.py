@@ -1,7 +1,5 @@
 """Panels of found keyframes: the list with the candidates of a frame, and matching a named library."""
 
-from math import degrees
-
 import bpy
 
 from ..overlays.style import candidate_icon
@@ -10,11 +8,11 @@ from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
+from .candidate_titles import candidate_title
 
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
 FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
-NOTICEABLE_TURN_DEG = 15.0
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
 
@@ -132,7 +130,7 @@ def _draw_candidates(
         row = box.row(align=True)
         button = row.operator(
             "keymark.replace_match",
-            text=_candidate_label(index, candidate),
+            text=label("{number}  {candidate}", number=index + 1, candidate=candidate_title(candidate)),
             translate=False,
             icon=candidate_icon(index),
             depress=index == match.chosen,
@@ -149,18 +147,6 @@ def _draw_candidates(
     accept.enabled = state_of(take, match) == "FOUND"
     accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
-
-
-def _candidate_label(index: int, candidate: bpy.types.PropertyGroup) -> str:
-    """A candidate's number and name, after its turn: several often differ by that alone."""
-    said, angle = {"number": index + 1, "posture": candidate.name}, degrees(candidate.turned)
-    if abs(angle) < NOTICEABLE_TURN_DEG:
-        return label("{number}  {posture}", **said)
-    if abs(angle) > 180.0 - NOTICEABLE_TURN_DEG:
-        return label("{number}  Turned round: {posture}", **said)
-    if angle > 0.0:
-        return label("{number}  {angle:.0f}° left: {posture}", angle=angle, **said)
-    return label("{number}  {angle:.0f}° right: {posture}", angle=-angle, **said)
 
 
 class KEYMARK_PT_matching(TakePanel, bpy.types.Panel):

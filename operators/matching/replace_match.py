@@ -4,9 +4,10 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import actor, idle, matches
-from ..shell.takes import active_take
+from ..shell.takes import active_take, find_take
+from .candidate_titles import candidate_title
 from .improve_neighbors import improve_neighbors
 from .matches import chosen_match
 
@@ -25,6 +26,21 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         default=0,
         min=0,
     )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
+        take = find_take(context.scene)
+        matching = take.matching if take is not None else None
+        if matching is None or matching.active_match >= len(matching.matches):
+            return str(cls.__doc__)
+        candidates = matching.matches[matching.active_match].candidates
+        if properties.candidate >= len(candidates):
+            return str(cls.__doc__)
+        said = candidate_title(candidates[properties.candidate])
+        return label(
+            "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said
+        )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key the candidate, and go to its frame."""

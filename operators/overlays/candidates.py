@@ -24,8 +24,8 @@ from .viewport import world_view
 
 TALL_M = 1.7
 """Height of a figure by which lines get thinner where it is small [m]."""
-ABOVE_HEAD = 6.0
-"""Distance of a figure's number from the top of its head [px]."""
+ABOVE = 6.0
+"""Distance of a figure's number from the point that it stands above [px]."""
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -89,7 +89,7 @@ def over_footage(
 
 
 def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
-    """The figures of all candidates but the chosen one, each with its number above the head.
+    """The figures of all candidates but the chosen one, each with its number where it differs most from that.
 
     Args:
         positions: (N, 13, 2) region pixels of the candidates' points, NaN where not seen.
@@ -110,8 +110,9 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
             Stroke(lines, color, width, GHOST * style.halo),
             Stroke(lines[is_right], style.color(CORE), CORE_SHARE * width),
         ]
-        head = figure[names.index("head")]
-        if np.isfinite(head).all():
-            above = float(head[1]) + ABOVE_HEAD * scale
-            items.append(Label(str(index + 1), float(head[0]), above, (*color[:3], 1.0), "middle"))
+        apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
+        x, y = figure[int(apart.argmax())]
+        if apart.max() >= 0.0:
+            above = float(y) + ABOVE * scale
+            items.append(Label(str(index + 1), float(x), above, (*color[:3], 1.0), "middle"))
     return items

@@ -49,6 +49,7 @@ OVERLAYS = (
     Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
     Overlay("Requests in the Viewport", "request", "SpaceView3D"),
     Overlay("Requests in the Clip Editor", "request", "SpaceClipEditor"),
+    Overlay("Joints to Drag", "handles", "SpaceView3D"),
     Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
 """All overlays; those of one editor are drawn in this order."""

@@ -10,8 +10,8 @@ from . import drawing
 from .figures import segments
 
 TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0
-TOP_GAP, NEAR_GAP = 44.0, 18.0
-"""Distance of the title from the region's top, and of the words from the mouse [unscaled px]."""
+TOP_GAP, NEAR_GAP = 84.0, 18.0
+"""Distances of the title from the region's top, where headers lie, and of the words from the mouse."""
 CORNERS = 48
 """Of the brush's circle."""
 

@@ -51,8 +51,8 @@ def chosen_file(operator: bpy.types.Operator, wanted: str) -> Path:
     return path
 
 
-def is_browsing(operator: bpy.types.Operator, window: bpy.types.Window) -> bool:
-    """Whether a modal operator of a window waits for its file browser alone."""
-    spaces = (area.spaces.active for area in window.screen.areas if area.type == "FILE_BROWSER")
-    asking = (space.active_operator for space in spaces)
+def is_browsing(operator: bpy.types.Operator, manager: bpy.types.WindowManager) -> bool:
+    """Whether a modal operator waits for its file browser alone, in whichever window that is."""
+    areas = (area for window in manager.windows for area in window.screen.areas)
+    asking = (area.spaces.active.active_operator for area in areas if area.type == "FILE_BROWSER")
     return any(each is not None and each.as_pointer() == operator.as_pointer() for each in asking)

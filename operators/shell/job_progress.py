@@ -6,6 +6,8 @@ from .file_browser import is_browsing
 from .messages import label
 
 OPERATOR_PREFIX = "KEYMARK_OT_"
+TOOLS = ("KEYMARK_OT_drag_joints",)
+"""Modal operators that wait for the mouse in a view, and let everything else go on meanwhile."""
 EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
 """Time and share done of a job before which the time left is not estimated."""
 
@@ -29,11 +31,13 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
 
     Args:
         context: Its windows are searched.
-        job: Only jobs whose operator's name begins so, as `keymark.reconstruct`; any by default.
+        job: Only operators whose name begins so, as `keymark.reconstruct`; any but `TOOLS` by default.
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
-        operator.bl_idname.startswith(wanted) and not is_browsing(operator, window)
+        operator.bl_idname.startswith(wanted)
+        and (job or operator.bl_idname not in TOOLS)
+        and not is_browsing(operator, context.window_manager)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )

@@ -9,6 +9,7 @@ from textwrap import wrap
 import bpy
 
 from .job_progress import job_is_running
+from .steps import is_open
 from .takes import find_take
 
 ESCAPE_UNITS = 2.9
@@ -39,12 +40,17 @@ class SubPanel(SidebarPanel):
 
 
 class TakePanel(SubPanel):
-    """A panel of the active take; hidden without a take."""
+    """A panel of the active take; hidden without a take, and in a step that is folded."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a take."""
-        return find_take(context.scene) is not None
+        """Whether there is a take, and the step that the panel is in, if it is in one, is open."""
+        take = find_take(context.scene)
+        if take is None:
+            return False
+        parent = bpy.types.Panel.bl_rna_get_subclass_py(cls.bl_parent_id)
+        step = getattr(parent, "step", "")
+        return not step or is_open(take, step)
 
 
 class RowList:
@@ -93,6 +99,11 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     return True
 
 
+def unscaled_width(context: bpy.types.Context) -> float:
+    """Width of the sidebar that is drawn, at a UI scale of 1 [px]."""
+    return float(context.region.width / (context.preferences.system.ui_scale or 1.0))
+
+
 def draw_sentence(
     layout: bpy.types.UILayout,
     context: bpy.types.Context,
@@ -109,8 +120,7 @@ def draw_sentence(
         icon: Icon before the first line.
         most_lines: Number of lines after which the sentence is cut off with dots.
     """
-    scale = context.preferences.system.ui_scale
-    letters = max(20, int((context.region.width / scale - MARGIN_PX) / LETTER_PX))
+    letters = max(20, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     lines = layout.column(align=True)
     lines.scale_y = 0.8
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")

@@ -2,11 +2,11 @@
 
 import bpy
 
-from ..footage.camera_fields import placement_is_guess
 from ..keypoints.evidence import has_contours, has_keypoints
 from ..overlays.timeline_figures import DOUBTED
 from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import is_posed, keyframes_of, matched_frames, unposed_proposals
+from ..shell.placement_guess import placement_is_guess
 from ..shell.takes import has_lost_actor, present_actor
 
 FEWEST_KEYFRAMES = 2

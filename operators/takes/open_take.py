@@ -6,6 +6,7 @@ from ..footage.take_footage import VIDEOS, look_through_camera, show_range
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_path
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import idle, object_mode_possible
 from ..shell.takes import active_take
 
@@ -49,6 +50,7 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
         add_take_to_scene(context, opened)
         look_through_camera(context, active_take(context.scene))
         show_range(context)
+        give_notices(active_take(context.scene), "footage", "files", opened.notes)
         for note in opened.notes:
             self.report({"WARNING"}, note)
         count = len(opened.take.keyframes)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..footage.fitted_view import keep_beside_sidebar
 from ..library import registry
 from ..shell.job_progress import job_is_running
 from ..shell.panel import RowList, SidebarPanel, draw_progress
@@ -88,6 +89,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the takes, and the running job or the next step."""
         registry.refresh_if_empty()
+        keep_beside_sidebar(context)
         layout, take = self.layout, find_take(context.scene)
         if is_newer(context.scene):
             box = layout.box().column(align=True)

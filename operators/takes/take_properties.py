@@ -20,6 +20,7 @@ from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
 from ..shell.contradictions import KEYMARK_PG_contradiction
+from ..shell.notices import KEYMARK_PG_notice
 from ..shell.takes import unique_name
 from ..turntable.properties import KEYMARK_PG_turntable
 
@@ -221,6 +222,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         default=True,
     )
     notes: bpy.props.CollectionProperty(type=KEYMARK_PG_note)
+    notices: bpy.props.CollectionProperty(type=KEYMARK_PG_notice)
     reading_key: bpy.props.StringProperty(
         name="Reading", description="Key of the cached reading of the clip", options={"HIDDEN"}
     )

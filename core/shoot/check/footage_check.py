@@ -11,7 +11,8 @@ from ...footage.clips.image_sequence import ImageSequence
 from ...footage.clips.packets import read_packets
 from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.clips.video_file import VideoFile
-from ...footage.ignored_region_fields import IGNORED_REGIONS
+from ...footage.ignored_region_fields import IGNORED_REGIONS, ignored_region_fields
+from ...footage.ignored_regions import IgnoredRegion
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
 from ...take.clip_check import check_size
@@ -94,13 +95,22 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     findings.problem(*(f"{take.clip}: marker {sentence}" for sentence in missing))
     for readout in check.readouts:
         findings.warn(*(warning for warning in readout.warnings if warning not in missing))
-        if readout.still_boxes:
-            said = [{"box": [round(value) for value in box]} for box in readout.still_boxes]
-            findings.warn(
-                f"{take.file.name} leaves the still areas with the color of {readout.name} out by "
-                f'"{IGNORED_REGIONS}": {json.dumps(said)}'
-            )
+    _propose_to_ignore(take, check, findings)
     return check.readouts
+
+
+def _propose_to_ignore(take: Take, check: MarkerCheck, findings: Findings) -> None:
+    """Say what take.json must hold for the still areas of the markers' colors to be left out."""
+    names = [readout.name for readout in check.readouts if readout.still_boxes]
+    if not names:
+        return
+    boxes = dict.fromkeys(box for readout in check.readouts for box in readout.still_boxes)
+    every = [*take.ignored_regions, *(IgnoredRegion(box=box) for box in boxes)]
+    field = json.dumps(ignored_region_fields(every, take.frame_start))
+    findings.warn(
+        f"still areas have the color of {' and '.join(names)}; they are left out where {take.file.name} says "
+        f'"{IGNORED_REGIONS}": {field}'
+    )
 
 
 def _check_light(samples: ClipSamples, findings: Findings) -> bool:

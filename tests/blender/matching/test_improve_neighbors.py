@@ -3,14 +3,11 @@
 from types import SimpleNamespace
 
 import bpy
-import numpy as np
 import pytest
 from _found import shown
 from _scene_state import differences, scene_state
-from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.prior.keyframes import Keyframe, Matched
-from keymark.operators.matching.improve_neighbors import FARTHEST_S, improve_neighbors, section_around
+from keymark.operators.matching.improve_neighbors import improve_neighbors
 from keymark.operators.shell import results
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
@@ -19,35 +16,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 Group = bpy.types.PropertyGroup
 FPS = 25.0
-
-
-def keyframes(posed: tuple[int, ...], found: tuple[int, ...], posture: Posture) -> list[Keyframe]:
-    """Keyframes at frames of a clip, posed and found."""
-    said = Matched("composed", "Wave", False, 0.5)
-    return [Keyframe(index, posture, matched=None if index in posed else said) for index in (*posed, *found)]
-
-
-@pytest.mark.parametrize(
-    ("posed", "found", "section"),
-    [
-        ((50,), (40, 60), (0, 99, (40, 60))),
-        ((30, 50, 70), (20, 40, 60, 80), (30, 70, (40, 60))),
-        ((50,), (10, 20, 30, 40, 60), (20, 99, (30, 40, 60))),
-        ((50, 60), (5, 15, 70), (5, 50, (15,))),
-        ((50,), (), (50, 50, ())),
-    ],
-)
-def test_a_section_ends_where_something_holds(
-    posed: tuple[int, ...],
-    found: tuple[int, ...],
-    section: tuple[int, int, tuple[int, ...]],
-    wave_motion: object,
-) -> None:
-    """At a decided keyframe, at the first found one a second away, or at the clip's end."""
-    time_s = np.arange(100) / FPS
-    assert FARTHEST_S == 1.0
-    around = section_around(time_s, 50, keyframes(posed, found, wave_motion.posture[0]))
-    assert (around.first, around.last, around.changed) == section
 
 
 def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, given: SimpleNamespace) -> None:

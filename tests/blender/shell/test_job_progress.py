@@ -22,3 +22,14 @@ def test_an_open_file_browser_is_no_running_job(browsed: int | None, runs: bool)
     assert job_is_running(context) is runs
     assert job_is_running(context, "keymark.load_footage") is runs
     assert not job_is_running(context, "keymark.reconstruct")
+
+
+def test_dragging_joints_lets_other_operators_go_on() -> None:
+    """It waits for the mouse in the view; only who asks for it by name hears of it."""
+    modal = [_operator("KEYMARK_OT_drag_joints", 7)]
+    window = SimpleNamespace(modal_operators=modal, screen=SimpleNamespace(areas=[]))
+    context = SimpleNamespace(window_manager=SimpleNamespace(windows=[window]))
+    assert not job_is_running(context)
+    assert job_is_running(context, "keymark.drag_joints")
+    modal.append(_operator("KEYMARK_OT_reconstruct", 8))
+    assert job_is_running(context)

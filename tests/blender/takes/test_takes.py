@@ -188,6 +188,8 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
         said.append(next_step(take))
         return words in said[-1]
 
+    assert says("where the camera stood")
+    bpy.ops.keymark.keep_camera()
     assert says("choose what to follow")
     bpy.ops.keymark.add_marker()
     assert says("pick the markers' colors")

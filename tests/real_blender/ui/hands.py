@@ -22,6 +22,8 @@ class Hands:
         self.x = self.y = 0
         self.clicks = 0
         """Presses of the left mouse button so far."""
+        self.keys = 0
+        """Presses of keys so far; written text counts letter by letter."""
         self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
         """Where the mouse last saw what, by area, kind of text and text."""
 
@@ -55,6 +57,7 @@ class Hands:
     def press(self, key: str, text: str | None = None, **modifiers: bool) -> Steps[None]:
         """Press and release a key or a mouse button where the mouse is."""
         self.clicks += key == "LEFTMOUSE"
+        self.keys += key != "LEFTMOUSE"
         for value in ("PRESS", "RELEASE"):
             typed = {"unicode": text} if text is not None and value == "PRESS" else {}
             self.window.event_simulate(type=key, value=value, x=self.x, y=self.y, **typed, **modifiers)

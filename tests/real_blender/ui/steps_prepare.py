@@ -77,30 +77,27 @@ def look_through_camera(person: Person) -> Steps[None]:
 
 
 def markers(person: Person) -> Steps[None]:
-    """Add the five markers, and pick each one's color from the footage."""
+    """Pick the usual five markers from the footage, by a button and five clicks."""
+    yield from person.changes_nothing("cancelling the clicks", lambda: _pick(person, 2, "ESC"))
+    before = person.hands.clicks
+    yield from person.undoable("picking the markers", lambda: _pick(person, len(person.known.markers)))
+    print(f"{person.hands.clicks - before} clicks to pick the markers")
     names = [style.segment for style in person.known.markers]
-    yield from person.undoable(
-        "adding the markers", lambda: person.hands.click_button("keymark.add_usual_markers")
-    )
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
-    yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
-    for number, marker in enumerate(person.take.markers):
-        person.take.active_marker = number
-        person.step_done(f"Choose {marker.name}")
-        pixel = sleeve_pixel(person, number)
-        if number == 0:
-            yield from person.undoable("picking a color", lambda pixel=pixel: _pick(person, pixel))
-        else:
-            yield from _pick(person, pixel)
+    check_colors(person)
+    expect(bpy.context.window_manager.keymark_show_masks, "picking does not show the masks")
+    yield from person.look("markers")
+    yield from person.hands.click_button("keymark.show_masks")
+
+
+def check_colors(person: Person) -> None:
+    """Expect every marker to have nearly the color of its sleeve."""
     apart = [
         np.abs(255.0 * np.array(marker.color) - style.color_srgb).max()
         for marker, style in zip(person.take.markers, person.known.markers, strict=True)
     ]
     expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
-    expect(bpy.context.window_manager.keymark_show_masks, "picking does not show the masks")
-    yield from person.look("markers")
-    yield from person.hands.click_button("keymark.show_masks")
 
 
 def actor(person: Person) -> Steps[None]:
@@ -138,11 +135,29 @@ def browse(person: Person, command: str, file: Path, key: str) -> Steps[None]:
     yield from turns(3)
 
 
-def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
-    """The eyedropper's button, then a click on a pixel of the footage."""
-    yield from person.hands.click_button("keymark.pick_marker_color")
-    yield from click_pixel(person, pixel)
-    yield from person.wait_for_job()
+def _pick(person: Person, count: int, key: str = "") -> Steps[None]:
+    """The button, a click on each of the first markers as it is asked for, and a key."""
+    yield from person.hands.click_button("keymark.pick_markers")
+    expect(person.jobs(), "nothing waits for a click")
+    for number in range(count):
+        expect_asked(person, number)
+        yield from click_pixel(person, sleeve_pixel(person, number))
+    if key:
+        yield from person.hands.press(key)
+        expect(not person.jobs(), f"{key} does not end the clicks")
+    else:
+        yield from person.wait_for_job()
+
+
+def expect_asked(person: Person, number: int) -> None:
+    """Expect that one of the performer's markers is asked for, with whose left or right it is."""
+    segment = person.known.markers[number].segment
+    request = keymark("operators.shell.footage_request").shown_request()
+    expect(request is not None, "nothing is asked for")
+    title = keymark("operators.markers.properties").segment_title(segment)
+    expect(title in request.title, f"{request.title!r} is asked for, not {title}")
+    side = {"L": "own left", "R": "own right"}.get(segment[-1], "")
+    expect(side in request.detail, f"the request for {segment} says {request.detail!r}")
 
 
 def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
@@ -152,13 +167,6 @@ def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     expect(view is not None, "the viewport does not show the footage")
     x, y = view.to_region(pixel)
     yield from person.hands.click(region.x + x, region.y + y)
-
-
-def _cancel_eyedropper(person: Person) -> Steps[None]:
-    yield from person.hands.click_button("keymark.pick_marker_color")
-    expect(person.jobs(), "the eyedropper does not wait for a click")
-    yield from person.hands.press("ESC")
-    expect(not person.jobs(), "Esc does not cancel the eyedropper")
 
 
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:

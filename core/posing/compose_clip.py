@@ -1,0 +1,164 @@
+"""Postures of a clip put together from parts: what frames say, the path through them, the place of the whole."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..estimate.performer_placement import place_standing
+from ..footage.camera import Camera
+from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
+from ..matching.frame_likelihood import frame_likelihoods
+from ..matching.library_match import CORRELATION_S, MatchInput
+from ..matching.match_evidence import MatchEvidence
+from ..matching.noise_scales import NoiseScales
+from ..progress import Part, scaled
+from .composed_path import ComposedPath, best_path
+from .composed_states import LEGS, FrameCosts, FrameStates
+from .part_features import HEADINGS, StanceFeatures
+from .part_pools import LIMBS, PartPools
+from .posed_costs import PosedCosts
+
+PART_SCALE = 0.5
+"""Deviation of a composed body from the performer, relative to that of a whole posture of another performer."""
+WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
+"""Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
+NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
+"""Distances tried about the first path."""
+SMOOTH_S = 0.6
+"""Time over which the rough distance is smoothed."""
+MOST_PLACED = 16
+"""Frames in which the performer is placed by size."""
+FLOOR_STD_M = 0.06
+
+
+@dataclass(frozen=True, eq=False)
+class Composition:
+    """Postures of T frames, put together from parts."""
+
+    path: ComposedPath
+    states: list[FrameStates]
+    posture: Posture
+    """(T,)."""
+    floor_m: float
+    """Height of the floor."""
+
+
+def compose_frames(
+    given: MatchInput,
+    pools: PartPools,
+    stances: StanceFeatures,
+    sampled: IndexArray,
+    floor_m: float | None,
+) -> Part[Composition]:
+    """Compose the postures of some frames.
+
+    Args:
+        given: The take.
+        pools: All parts.
+        stances: Their stances.
+        sampled: (T,) which frames.
+        floor_m: Height of the floor; None where it is not known.
+    """
+    evidence, camera = given.evidence, given.camera
+    time_s = evidence.tracks.time_s[sampled]
+    tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+    rough = rough_depths(given.body, camera, evidence, sampled, time_s)
+    if floor_m is None:
+        floor_m = floor_height_m(given, stances, sampled, rough)
+    yield 0.1
+    costs = frame_costs(given, stances, sampled, floor_m)
+    posed = given.constraints
+    for index, frame in enumerate(posed.frames):
+        row = int(np.searchsorted(sampled, frame))
+        if row < len(sampled) and sampled[row] == frame:
+            hips, points = posed.hips[index], posed.points[index]
+            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, tempering)
+    path: ComposedPath | None = None
+    states: list[FrameStates] = []
+    for shares, begun, ended in ((WIDE, 0.1, 0.6), (NARROW, 0.6, 1.0)):
+        states = yield from scaled(_states(costs, rough, shares), begun, 0.8 * ended + 0.2 * begun)
+        step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
+        found = best_path(stances, states, costs, time_s, tempering, step_m)
+        path = yield from scaled(found, 0.8 * ended + 0.2 * begun, ended)
+        depth = np.array([camera.depth(place, int(f)) for place, f in zip(path.hips, sampled, strict=True)])
+        rough = _smoothed(depth, time_s)
+    assert path is not None
+    posture = pools.composed(
+        path.stance // HEADINGS,
+        {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)},
+        stances.heading_rad[path.stance % HEADINGS],
+        path.hips,
+    )
+    return Composition(path, states, posture, floor_m)
+
+
+def frame_costs(
+    given: MatchInput, stances: StanceFeatures, frames: IndexArray, floor_m: float | None
+) -> list[FrameCosts]:
+    """What some frames say of stances and limbs."""
+    unit = NoiseScales.of(given.evidence)
+    scales = replace(unit, centroid=unit.centroid * PART_SCALE)
+    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, floor_m, FLOOR_STD_M, scales)
+    return [FrameCosts(each, stances, floor_m) for each in likelihoods]
+
+
+def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array) -> float:
+    """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
+    rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
+    free, heights = [], []
+    for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):
+        if not cost.likelihood.visible.any():
+            continue
+        states = cost.states(rough[row] * np.array(WIDE))
+        best = states.chosen(np.array([int(states.cost.argmin())]))
+        relative = best.hips - cost.location
+        feet = [
+            float(cost.foot_heights(limb, best.stance, relative)[0, best.limbs[0, LIMBS.index(limb)]])
+            for limb in LEGS
+        ]
+        heights.append(min(feet))
+        free.append((row, float(states.cost.min())))
+    found = float(np.median(heights)) if heights else 0.0
+    if abs(found) < WORLD_FLOOR_M:
+        return 0.0
+    seen = np.array([row for row, _ in free])
+    grounded = frame_costs(given, stances, sampled[seen], 0.0)
+    added = [
+        float(cost.states(rough[row] * np.array(WIDE)).cost.min()) - least
+        for (row, least), cost in zip(free, grounded, strict=True)
+    ]
+    return 0.0 if np.mean(added) < FLOOR_COST_MARGIN else found
+
+
+def _states(costs: Sequence[FrameCosts], rough: Array, shares: Sequence[float]) -> Part[list[FrameStates]]:
+    found = []
+    for index, (cost, depth) in enumerate(zip(costs, rough, strict=True)):
+        found.append(cost.states(depth * np.array(shares)))
+        yield index / len(costs)
+    return found
+
+
+def rough_depths(
+    body: Body, camera: Camera, evidence: MatchEvidence, frames: IndexArray, time_s: Array
+) -> Array:
+    """(T,) distances of the hips along the camera's axis by sizes in the picture [m], smoothed."""
+    depths = np.full(len(frames), np.nan)
+    seen = evidence.visible[frames].any(axis=1)
+    for row in np.flatnonzero(seen)[:: max(1, seen.sum() // MOST_PLACED)]:
+        frame = int(frames[row])
+        regions, keypoints = evidence.tracks.frame(frame), evidence.keypoints.frame(frame)
+        placed = place_standing(body, camera, frame, regions, evidence.segments, keypoints)
+        depths[row] = float(camera.depth(placed.translation, frame))
+    known = np.isfinite(depths)
+    return _smoothed(np.interp(time_s, time_s[known], depths[known]), time_s)
+
+
+def _smoothed(values: Array, time_s: Array) -> Array:
+    """Running medians over `SMOOTH_S` and then means."""
+    near = np.abs(time_s[:, None] - time_s) < SMOOTH_S
+    median = np.array([np.median(values[own]) for own in near])
+    return np.array([median[own].mean() for own in near])

@@ -1,0 +1,84 @@
+"""Candidates of a frame among its composed states, and the confidence in each."""
+
+import numpy as np
+
+from ..arrays import Array, SingleArray
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..matching.candidates import (
+    ABOUT_RIGHT_M,
+    DISTINCT_M,
+    MOST_CANDIDATES,
+    Candidate,
+    MatchedFrame,
+    confidence,
+)
+from .composed_states import FrameStates
+from .part_features import HEADINGS, StanceFeatures
+from .part_pools import LIMBS, PartPools
+
+MOST_STATES = 60
+"""Candidates are chosen among this many of the most probable states."""
+
+
+def composed(pools: PartPools, stances: StanceFeatures, states: FrameStates) -> Posture:
+    """(K,) the postures of a frame's states, with the best limbs of each."""
+    return pools.composed(
+        states.stance // HEADINGS,
+        {limb: states.limbs[:, column] for column, limb in enumerate(LIMBS)},
+        stances.heading_rad[states.stance % HEADINGS],
+        states.hips.astype(float),
+    )
+
+
+def composed_candidates(
+    pools: PartPools,
+    stances: StanceFeatures,
+    states: FrameStates,
+    posterior: SingleArray,
+    index: int,
+    chosen: Posture,
+    torso: int,
+    explained: float,
+) -> MatchedFrame:
+    """The chosen posture of a frame and distinct ones beside it, the likelier first.
+
+    Args:
+        pools: All parts.
+        stances: Their stances.
+        states: The frame's states.
+        posterior: (K,) their probabilities given the whole clip.
+        index: The frame's index in the clip.
+        chosen: The posture as fitted to the footage.
+        torso: Its torso in the pool.
+        explained: Share of the frame that it explains, 0 to 1.
+    """
+    likely = np.argsort(-posterior, kind="stable")[:MOST_STATES]
+    some = states.chosen(likely)
+    postures = composed(pools, stances, some)
+    everyone = Posture.concatenate([Posture.stack([chosen]), postures])
+    shape = _shape(pools.body, everyone)
+    weight = np.concatenate([[0.0], posterior[likely] / max(float(posterior[likely].sum()), 1e-12)])
+    kept: list[int] = []
+    for rank in range(len(shape)):
+        if all(_mean_distance(shape[rank], shape[other]) > DISTINCT_M for other in kept):
+            kept.append(rank)
+        if len(kept) == MOST_CANDIDATES:
+            break
+    found = []
+    for rank in kept:
+        near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+        own = torso if rank == 0 else int(some.stance[rank - 1]) // HEADINGS
+        name, flipped = pools.names[pools.torsos.source[own]]
+        share = float(weight[near].sum())
+        found.append(Candidate(everyone[rank], name, flipped, confidence(share, explained)))
+    return MatchedFrame(index, tuple(found))
+
+
+def _shape(body: Body, postures: Posture) -> Array:
+    """(N, P, 3) points relative to the hips [m]."""
+    return np.asarray(body.points(body.pose(postures)) - postures.translation[:, None])
+
+
+def _mean_distance(first: Array, second: Array) -> float:
+    return float(np.linalg.norm(first - second, axis=-1).mean())
