@@ -24,7 +24,8 @@ class FoundPoses:
     floor_m: float
     """Height of the floor that the performer stands on [m]."""
     reason: str
-    """Sentence for people: how sure it is, and what is doubtful."""
+    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
+    say."""
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED
