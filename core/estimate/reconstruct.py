@@ -9,11 +9,13 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.skeleton import SIDES
 from ..errors import InputError
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
+from ..library.texts import COMPOSED
 from ..observation.regions import RegionModel
 from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
@@ -25,12 +27,13 @@ from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
+from .ankle_height import found_ankle_m
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
-from .match_error import undetermined_covariance
+from .match_error import place_depth_std_m, undetermined_covariance
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
@@ -206,8 +209,17 @@ def _whole_clip(
         earlier=earlier,
         match_scale=match_scale,
         keypoints=keypoints,
+        lower_ankle=_found_ankle(take, prior),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
+
+
+def _found_ankle(take: Take, prior: Posture) -> Array | None:
+    """(F,) height of the lower ankle by keyframes put together from parts; None where there are others."""
+    if not all(key.matched is not None and key.matched.library == COMPOSED for key in take.keyframes):
+        return None
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    return found_ankle_m(take.body, prior[index], index, prior.batch[0])
 
 
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
@@ -235,7 +247,12 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
-    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
+    place_std_m: Array | float = 0.0
+    if _found_ankle(take, result.posture) is not None:
+        ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+        lower = motion.points[:, ankles, 2].min(axis=1)
+        place_std_m = place_depth_std_m(motion.points, lower, take.camera)
+    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 

@@ -1,17 +1,14 @@
 """Postures found in footage without posing, with the candidates of every proposed frame."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
 from ..footage.reading import Reading
 from ..library.texts import COMPOSED
 from ..matching.candidates import MatchedFrame
-from ..prior.keyframes import Keyframe, Matched
+from ..matching.matched_keyframes import with_matched
 from ..take.take import Take
-
-NEAR_FRAMES = 2
-"""Found keyframes keep farther than this from posed ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +24,8 @@ class FoundPoses:
     floor_m: float
     """Height of the floor that the performer stands on [m]."""
     reason: str
-    """Sentence for people: how sure it is, and what is doubtful."""
+    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
+    say."""
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED
@@ -35,33 +33,16 @@ class FoundPoses:
     reading: Reading | None = None
     """The clip as read again with the postures telling where each marker is; None where the given reading
     holds."""
+    between: tuple[int, int] | None = None
+    """First and last frame that were looked at; None for the whole clip."""
 
 
 def with_found(take: Take, found: FoundPoses) -> Take:
-    """The take with the found keyframes: posed ones stay, found ones near them move aside.
-
-    Beside a posed keyframe a found one tells how the performer differs from the postures it was made of
-    (`prior/performer_offset`).
-    """
-    posed = [keyframe.index for keyframe in take.keyframes if keyframe.matched is None]
-    keyframes = {keyframe.index: keyframe for keyframe in take.keyframes if keyframe.matched is None}
-    for frame in found.frames:
-        index = _free_frame(frame.index, posed, found.postures.batch[0])
-        if index is None or index in keyframes:
-            continue
-        chosen = frame.candidates[0]
-        posture = chosen.posture if index == frame.index else found.postures[index]
-        said = Matched(found.library, chosen.name, chosen.mirrored, chosen.confidence)
-        keyframes[index] = Keyframe(index, posture, matched=said)
-    return replace(take, keyframes=tuple(keyframes[index] for index in sorted(keyframes)))
-
-
-def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
-    """The frame itself or, near a posed keyframe, the nearest one that is far enough; None without one."""
-    reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
-    free = [
-        index + step
-        for step in sorted(reach, key=abs)
-        if 0 <= index + step < frames and all(abs(index + step - other) > NEAR_FRAMES for other in posed)
-    ]
-    return free[0] if free else None
+    """The take with the found keyframes, see `with_matched`; earlier ones stay where none was sought."""
+    changed = with_matched(take, found.frames, found.postures, found.library)
+    if found.between is None:
+        return changed
+    first, last = found.between
+    here = {key.index: key for key in changed.keyframes}
+    kept = {key.index: key for key in take.keyframes if not first <= key.index <= last}
+    return replace(take, keyframes=tuple(each for _, each in sorted((here | kept).items())))
