@@ -1,7 +1,8 @@
 """Still areas: where a marker's color stays in the same pixels all over a clip, while the marker moves.
 
 A wall panel does so, and a poster, and a chair. They are told only where it is sure that they are no marker:
-only one marker has the color, and something else of it moves about the picture at the same time.
+only one marker has the color, something else of it moves at the same time, and their outlines rest, as
+that of a garment on somebody who breathes does not.
 """
 
 from collections.abc import Sequence
@@ -9,10 +10,10 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from ..arrays import BoolArray, Image
-from .association import Candidates
+from ..arrays import Array, BoolArray, Image
+from .association import STILL_STEP_PX, Candidates
 from .clips.clip_samples import ClipSamples
-from .colors.color_model import ColorModel
+from .colors.color_model import BACKGROUND, ColorModel
 from .ignored_regions import IgnoredPixels, PixelBox, is_ignored
 from .marker_warnings import SMALL_PX
 from .segmentation.working_image import halvings, smooth
@@ -23,8 +24,10 @@ FEWEST_SAMPLES = 8
 """Sampled frames from which on that is no chance."""
 ELSEWHERE = 0.5
 """Share of the sampled frames in which the marker must be seen elsewhere."""
-MOVES = 0.5
-"""Median distance of the marker from its usual place, in its own size, from which on it moves about."""
+SELDOM = 0.25
+"""Share of the sampled frames below which a pixel has the color by the marker that passes."""
+MOVES_PX = 2.0 * STILL_STEP_PX
+"""Median distance of a moving marker from its usual place, in pixels of the measuring grid."""
 LEAST_SHARE = 0.1
 """Least area of a still area that is worth a word, relative to the marker's."""
 MARGIN = 2
@@ -68,11 +71,11 @@ def still_areas(
     for index in range(count):
         mask = ignored.mask(index)
         if mask is not None:
-            labels[index][is_ignored(mask)] = len(groups)
+            labels[index][is_ignored(mask)] = BACKGROUND
     for color, group in enumerate(groups):
         if len(group) == 1:
-            still = np.mean(labels == color, axis=0) >= NEARLY_ALWAYS
-            boxes[group[0]] = _boxes(still, found[color], samples.size)
+            share = np.mean(labels == color, axis=0)
+            boxes[group[0]] = _boxes(share, found[color], samples.size)
     return boxes
 
 
@@ -86,9 +89,15 @@ def places(boxes: Sequence[PixelBox], size: tuple[int, int]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _boxes(still: BoolArray, found: Candidates, size: tuple[int, int]) -> tuple[PixelBox, ...]:
-    """Boxes around the still areas (rows, columns) that are no marker, in px of a clip of (width, height)."""
-    scale = 1 << halvings(size)
+def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[PixelBox, ...]:
+    """Boxes around the still areas that are no marker, in px of a clip of (width, height).
+
+    Args:
+        share: (rows, columns) share of the sampled frames in which each pixel has the color.
+        found: The regions of the color in the sampled frames.
+        size: Width and height of the clip.
+    """
+    scale, still = 1 << halvings(size), share >= NEARLY_ALWAYS
     grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=MARGIN), dtype=np.uint8)
     least = LEAST_SHARE * _moving_area(grown, found, scale)
     if not least:
@@ -96,13 +105,28 @@ def _boxes(still: BoolArray, found: Candidates, size: tuple[int, int]) -> tuple[
     count, number, stats, _ = cv2.connectedComponentsWithStats(grown, connectivity=8)
     covering: list[tuple[int, int, int, int]] = []
     for one in (1 + np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")).tolist():
-        if np.count_nonzero(still & (number == one)) >= least:
+        area = still & (number == one)
+        if np.count_nonzero(area) >= least and _rests(area, share):
             covering += _covering(np.equal(number, one).view(np.uint8), 0, 0)
     width, height = size
     return tuple(
         (float(a * scale), float(b * scale), float(min(c * scale, width)), float(min(d * scale, height)))
         for a, b, c, d in covering
     )
+
+
+def _rests(area: BoolArray, share: Array) -> bool:
+    """Whether the outline of a still area rests: few pixels about it have the color now and then.
+
+    Args:
+        area: (rows, columns) the still area.
+        share: (rows, columns) share of the sampled frames in which each pixel has the color.
+    """
+    mask = area.view(np.uint8)
+    around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
+    now_and_then = around & (share >= SELDOM) & (share < NEARLY_ALWAYS)
+    outline = np.count_nonzero(mask) - np.count_nonzero(cv2.erode(mask, SIDE))
+    return bool(np.count_nonzero(now_and_then) <= outline)
 
 
 def _moving_area(still: Image, found: Candidates, scale: int) -> float:
@@ -125,7 +149,7 @@ def _moving_area(still: Image, found: Candidates, scale: int) -> float:
     largest = beside[first]
     usual = float(np.median(area[largest]))
     away = np.linalg.norm(place[largest] - np.median(place[largest], axis=0), axis=1)
-    return usual if float(np.median(away)) >= MOVES * np.sqrt(usual) else 0.0
+    return usual if float(np.median(away)) >= MOVES_PX else 0.0
 
 
 def _covering(mask: Image, left: int, top: int) -> list[tuple[int, int, int, int]]:

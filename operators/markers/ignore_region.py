@@ -35,6 +35,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, idle)
     cursor = "PAINT_CROSS"
+    ends_beside = False
 
     path: bpy.props.CollectionProperty(
         name="Path",
@@ -90,7 +91,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         """What to brush over."""
         brush = brush_at_work()
         radius = 0.0 if brush is None else brush.radius_px
-        detail = label("as a wall or a chair of its color")
+        detail = label("as a wall or a chair of a marker's color")
         return FootageRequest(label("Brush over what is no marker"), detail, radius), label(KEYS)
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:

@@ -25,6 +25,8 @@ class ClickSequence:
 
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     cursor = "CROSSHAIR"
+    ends_beside = True
+    """Whether a click beside the footage ends it; a brush is easily put down there."""
 
     @abstractmethod
     def cancel(self, context: bpy.types.Context) -> None:
@@ -81,7 +83,7 @@ class ClickSequence:
             return self.clicked(context, pixel)
         if _kind_under(context, event) in SCRUBBED:
             return {"PASS_THROUGH"}
-        return {*self.done(context), "PASS_THROUGH"}
+        return {*self.done(context), "PASS_THROUGH"} if self.ends_beside else {"RUNNING_MODAL"}
 
 
 def _kind_under(context: bpy.types.Context, event: bpy.types.Event) -> str:

@@ -82,6 +82,18 @@ def test_a_panel_is_not_sure_where_the_marker_is_seldom_seen_beside_it() -> None
     assert check(images).readouts[0].still_boxes == ()
 
 
+def test_a_garment_of_somebody_who_sits_is_no_still_area() -> None:
+    """Its outline sways by a few pixels with every breath, while another of its color moves about."""
+    rng = np.random.default_rng(12)
+
+    def both(index: int) -> list[Ellipse]:
+        sway = 3.0 * np.sin(index / 3.0)
+        return [*moving(index)[:1], (RED, (120.0 + sway, 190.0 + 0.5 * sway), (34.0, 26.0), 0.0)]
+
+    images = [draw(both(index), rng) for index in range(FRAMES)]
+    assert check(images, styles=STYLES[:1]).readouts[0].still_boxes == ()
+
+
 def test_a_few_frames_prove_nothing() -> None:
     """Whatever stays in the same place in six of them."""
     assert check(panelled()[:6]).readouts[0].still_boxes == ()
