@@ -4,8 +4,8 @@ Usage: blender --background --addons bl_ext.user_default.keymark --python docs/s
 
 Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
 that of the demonstration take, whose shipped poses replace an animator's. With a LIBRARY, as in `aerobic`,
-nothing is posed: its postures are matched with the footage. At the end another character performs the
-motion: a skeleton that stands in for a rig of yours.
+nothing is posed: its postures are found in the footage, or those of all libraries with `auto`. At the end
+another character performs the motion: a skeleton that stands in for a rig of yours.
 """
 
 import sys
@@ -118,9 +118,12 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
     bpy.data.objects.remove(hand)
 
 
-def match_keyframes(scene: bpy.types.Scene, library: str) -> None:
-    """Step 4 without posing: keyframes from a library; replace or pose the doubtful ones."""
-    bpy.ops.keymark.match_library(library=library)
+def find_keyframes(scene: bpy.types.Scene, library: str) -> None:
+    """Step 4 without posing: keyframes found with all libraries or a named one; correct the doubtful ones."""
+    if library == "auto":
+        bpy.ops.keymark.pose_all()
+    else:
+        bpy.ops.keymark.match_library(library=library)
     for match in active_take(scene).matching.matches:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
 
@@ -159,7 +162,7 @@ def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.type
     pick_markers(active_take(scene))
     build_actor(active_take(scene))
     if library:
-        match_keyframes(scene, library)
+        find_keyframes(scene, library)
     else:
         pose_keyframes(scene)
     bpy.ops.keymark.reconstruct()  # step 5: a new Action; the keyframes stay in theirs

@@ -34,6 +34,12 @@ UNDETERMINED_DEPTH_M = 0.10
 A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
 like one turned to the other: a library's decision there is right or wrong, which a covariance about it does
 not show. About the value that takes with truth have where nothing was posed."""
+SIZE_STD = 0.05
+"""Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
+lie farther in or out than joints. All frames share it."""
+GROUND_STD_M = 0.04
+"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share
+it."""
 POINT_DEPTH_STD_M = 2.0
 """Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
 large that they count for nothing, since place and joints have errors of their own that determine them."""
@@ -69,7 +75,30 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def undetermined_covariance(points: Array, camera: Camera, index: IndexArray, match_scale: Array) -> Array:
+def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
+    """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
+
+    Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
+
+    Args:
+        points: (F, P, 3) in the world [m].
+        ankles: (F,) heights of the lower ankle [m].
+        camera: The camera.
+    """
+    frame = np.arange(len(points))
+    middle = points.mean(axis=1)
+    sight = camera.sight(middle, frame)
+    location = np.array([camera.pose(int(index))[1] for index in frame])
+    distance = np.linalg.norm(middle - location, axis=-1)
+    level = np.hypot(sight[:, 0], sight[:, 1]) * distance
+    slope = np.abs(location[:, 2] - ankles) / np.maximum(level, 1e-3)  # of the sight of the feet
+    by_size, by_floor = 1.0 / (SIZE_STD * distance), slope / GROUND_STD_M
+    return np.asarray(1.0 / np.hypot(by_size, by_floor))
+
+
+def undetermined_covariance(
+    points: Array, camera: Camera, index: IndexArray, match_scale: Array, place_std_m: Array | float = 0.0
+) -> Array:
     """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that matched keyframes leave undetermined.
 
     Args:
@@ -77,8 +106,9 @@ def undetermined_covariance(points: Array, camera: Camera, index: IndexArray, ma
         camera: The camera.
         index: (K,) the keyframes' indices in the clip, in order.
         match_scale: (K,) size of the matched ones' error, relative to a usual one; 0 for posed ones.
+        place_std_m: (F,) error of the whole performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
-    std_m = UNDETERMINED_DEPTH_M * np.interp(frame, index, match_scale)
+    std_m = np.hypot(UNDETERMINED_DEPTH_M, place_std_m) * np.interp(frame, index, match_scale)
     return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])

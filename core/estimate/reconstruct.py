@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.skeleton import SIDES
 from ..errors import InputError
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
@@ -32,7 +33,7 @@ from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
-from .match_error import undetermined_covariance
+from .match_error import place_depth_std_m, undetermined_covariance
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
@@ -246,7 +247,12 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
-    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
+    place_std_m: Array | float = 0.0
+    if _found_ankle(take, result.posture) is not None:
+        ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+        lower = motion.points[:, ankles, 2].min(axis=1)
+        place_std_m = place_depth_std_m(motion.points, lower, take.camera)
+    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 

@@ -9,9 +9,9 @@ from ..arrays import Array
 
 CLICK_STD_PX = 1.5
 """Standard deviation of a click, or of a line's end drawn by hand [px]."""
-PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.015, float(np.radians(2.0))
-"""A person told to stand up straight: share by which they are shorter than their stature, from bent knees and
-back, or taller, and lean to any side."""
+PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.02, float(np.radians(3.0))
+"""Someone who stands or walks upright: share by which they are shorter than their stature or taller, as heads
+rise and fall by 3 % in every step, and lean to any side."""
 STATURE_STD = 0.015
 """Share by which a stated stature is off throughout: shoes, hair, and what people say of themselves."""
 THING_LENGTH_STD, THING_LEAN_STD_RAD = 0.005, float(np.radians(0.5))

@@ -8,8 +8,9 @@ held against the direction in which a line through its middle would run in the p
 upright thing's upper end against where it would be over the lower one. Least squares find the most probable
 camera, given what is believed of any camera beforehand: that needs no special cases.
 
-What the picture does not determine keeps its value: it is determined where its standard deviation is at most
-`DETERMINED` of what is believed beforehand. Deviations of the others know that those kept may be wrong.
+What the picture does not determine keeps its value, as little as leaves the rest determined, which is to have
+a standard deviation of at most `DETERMINED` of what is believed beforehand. Stated deviations know that what
+was kept may be wrong.
 """
 
 from dataclasses import dataclass, replace
@@ -86,9 +87,9 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
         raise ValueError("a moving camera has no single pose to be found")
     problem = _Problem(camera, evidence, lens_is_known)
     everything = problem.descend()
-    shares = np.sqrt(np.diag(problem.covariance(everything)))[: len(PARAMETERS)]
-    believed = problem.believed_std[: len(PARAMETERS)]
-    kept = np.flatnonzero((shares > DETERMINED * believed) | (believed <= KNOWN_LENS_STD))
+    covariance = problem.covariance(everything)
+    shares = np.sqrt(np.diag(covariance))[: len(PARAMETERS)]
+    kept = _undetermined(covariance, problem.believed_std)
     best = problem.descend_from(everything, kept)
     found = problem.camera_of(best)
     placement = CameraPlacement.of(found.matrix_world)
@@ -101,6 +102,31 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
         float(np.sqrt(np.mean(residuals.px**2))) if residuals.px.size else 0.0,
         problem.excess(best),
     )
+
+
+def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
+    """Indices of the parameters to keep: the fewest that leave the others determined.
+
+    What a picture says of two together, as of height and tilt by someone who stands in one place, holds for
+    the one once the other is kept.
+    """
+    count = len(PARAMETERS)
+    kept = [index for index in range(count) if believed_std[index] <= KNOWN_LENS_STD]
+    while len(kept) < count:
+        free = np.setdiff1d(np.arange(len(covariance)), kept)
+        # Given those kept, the others have the inverse of what is left of the information.
+        information = np.linalg.inv(covariance)[np.ix_(free, free)]
+        variance = np.diag(np.linalg.inv(information))
+        shares = {
+            int(at): float(np.sqrt(v)) / believed_std[at]
+            for at, v in zip(free, variance, strict=True)
+            if at < count
+        }
+        worst = max(shares, key=lambda at: shares[at])
+        if shares[worst] <= DETERMINED:
+            break
+        kept.append(worst)
+    return np.array(sorted(kept), dtype=np.intp)
 
 
 class _Residuals(NamedTuple):

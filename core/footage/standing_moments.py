@@ -22,8 +22,10 @@ APART_S = 0.3
 """Time after which a posture is another one: half a step of someone who walks."""
 SURE = 0.3
 """Least confidence of a keypoint."""
-PIXEL_SHARE = 0.02
-"""Standard deviation of a detector's point, as a share of the distance between ankles and head."""
+PIXEL_SHARE = 0.025
+"""Standard deviation of a detector's point, and of a rising heel, as a share from ankles to head."""
+LEVEL_SHARE = 0.06
+"""Largest difference of both ankles' heights in the picture, as such a share: a decimeter."""
 LENGTH_STD, LEAN_STD_RAD = 0.025, float(np.radians(3.0))
 """Of someone who walks: knees bend, heels rise, and the trunk leans."""
 DETECTOR_STD = 0.02
@@ -58,6 +60,9 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     usual = (height["hip"] - height["ankle"]) / (height["shoulder"] - height["hip"])
     straight = _along(legs, trunk, IN_LINE) & _along(trunk, head - shoulder, IN_LINE)
     upright = straight & _along(head - ankle, np.array([0.0, -1.0]), PLUMB)
+    feet = pixel[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES], 1]
+    with np.errstate(invalid="ignore"):
+        upright &= np.abs(feet[:, 0] - feet[:, 1]) < LEVEL_SHARE * np.linalg.norm(head - ankle, axis=-1)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
     ones = np.ones(len(chosen))

@@ -13,7 +13,7 @@ NEAR_FRAMES = 2
 
 
 def with_matched(take: Take, frames: Sequence[MatchedFrame], postures: Posture, library: str) -> Take:
-    """The take with the chosen candidates of some frames: posed keyframes stay, found ones near them move aside.
+    """The take with the chosen candidates of some frames: posed keyframes stay, found ones make room.
 
     Beside a posed keyframe a found one tells how the performer differs from the postures it was made of
     (`prior/performer_offset`).

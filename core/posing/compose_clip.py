@@ -1,4 +1,4 @@
-"""Postures of a clip put together from parts: what frames say, the path through them, the place of the whole."""
+"""Postures of a clip put together from parts: what frames say, the path through them, the place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,8 +12,9 @@ from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
 from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
 from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.library_match import CORRELATION_S, MatchInput
+from ..matching.library_match import CORRELATION_S
 from ..matching.match_evidence import MatchEvidence
+from ..matching.match_input import MatchInput
 from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
@@ -23,7 +24,7 @@ from .part_pools import LIMBS, PartPools
 from .posed_costs import PosedCosts
 
 PART_SCALE = 0.5
-"""Deviation of a composed body from the performer, relative to that of a whole posture of another performer."""
+"""Deviation of a composed body from the performer, relative to that of another performer's posture."""
 WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
 """Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
 NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
@@ -66,7 +67,14 @@ def compose_frames(
     evidence, camera = given.evidence, given.camera
     time_s = evidence.tracks.time_s[sampled]
     tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
-    rough = rough_depths(given.body, camera, evidence, sampled, time_s)
+    rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
+    if _posed_at_both_ends(given, sampled):  # the place is known, then, and what lies between is soon found
+        known = given.constraints
+        depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
+        rough = np.interp(sampled, known.frames, depths)
+        rounds = (NARROW,)
+    else:
+        rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
         floor_m = floor_height_m(given, stances, sampled, rough)
     yield 0.1
@@ -79,7 +87,8 @@ def compose_frames(
             costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, tempering)
     path: ComposedPath | None = None
     states: list[FrameStates] = []
-    for shares, begun, ended in ((WIDE, 0.1, 0.6), (NARROW, 0.6, 1.0)):
+    for turn, shares in enumerate(rounds):
+        begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
         states = yield from scaled(_states(costs, rough, shares), begun, 0.8 * ended + 0.2 * begun)
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         found = best_path(stances, states, costs, time_s, tempering, step_m)
@@ -94,6 +103,10 @@ def compose_frames(
         path.hips,
     )
     return Composition(path, states, posture, floor_m)
+
+
+def _posed_at_both_ends(given: MatchInput, sampled: IndexArray) -> bool:
+    return {int(sampled[0]), int(sampled[-1])} <= set(map(int, given.constraints.frames))
 
 
 def frame_costs(

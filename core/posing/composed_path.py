@@ -17,7 +17,7 @@ from .part_pools import LIMBS
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
 TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
-"""Usual speed of shoulders and hips about the hips' middle [m/s], and what the pool and headings are rough by."""
+"""Usual speed of shoulders and hips about the hips' middle [m/s], and what pool and headings are rough by."""
 PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04
 """The same of the place."""
 LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09
@@ -118,7 +118,7 @@ def limb_paths(
     for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
         relative = (place[None] - cost.location).astype(np.float32)
         chosen.append(cost.leg_pairs(np.array([own]), relative, tables[row], found[row][None]))
-    rows = [[each[side].index[0] for each in chosen] for side in (0, 1)]
+    rows = [[left.index[0] for left, _, _ in chosen], [right.index[0] for _, right, _ in chosen]]
     wholes = [weight * (a.cost[0][:, None] + b.cost[0] + pairs[0]) for a, b, pairs in chosen]
     both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
     for side, limb in enumerate(LEGS):

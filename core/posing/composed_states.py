@@ -5,8 +5,9 @@ torso and the sum of its limbs' own, so that the best of all compositions is fou
 floor asks both legs: one of them stands on it, or none does.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -146,7 +147,7 @@ class FrameCosts:
         return cost
 
     def limb_table(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
-        """(N, L) cost of each of a limb's parts on stances at places from the camera; the floor is not in it."""
+        """(N, L) cost of each of a limb's parts on stances at places from the camera, without the floor."""
         features = self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
@@ -266,8 +267,9 @@ class FrameCosts:
         a, b = self.axes[observed]
         return [(a, a), (a, b), (b, b)]
 
-    def _extent_cost(self, marker: int, entries: list[SingleArray], depth: SingleArray) -> SingleArray:
-        predicted = square_root(*entries)
+    def _extent_cost(self, marker: int, entries: Sequence[Any], depth: SingleArray) -> SingleArray:
+        xx, xy, yy = entries
+        predicted = square_root(xx, xy, yy)
         seen = self.likelihood.extent[marker].astype(np.float32)
         depth = np.maximum(depth, np.float32(0.1))
         variance = (

@@ -80,7 +80,7 @@ def _flipped_limbs(
         wanted = asked.any() if part is None else tuple(asked) == part.value
         if wanted and turned[asked].all():
             found.append(way)
-    return sorted(found, key=lambda way: way.strain)
+    return found
 
 
 def _flipped_trunks(

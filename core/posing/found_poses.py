@@ -1,7 +1,7 @@
 """Postures found in footage without posing, with the candidates of every proposed frame."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
 from ..footage.reading import Reading
@@ -24,7 +24,8 @@ class FoundPoses:
     floor_m: float
     """Height of the floor that the performer stands on [m]."""
     reason: str
-    """Sentence for people: how sure it is, and what is doubtful."""
+    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
+    say."""
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED
@@ -32,8 +33,16 @@ class FoundPoses:
     reading: Reading | None = None
     """The clip as read again with the postures telling where each marker is; None where the given reading
     holds."""
+    between: tuple[int, int] | None = None
+    """First and last frame that were looked at; None for the whole clip."""
 
 
 def with_found(take: Take, found: FoundPoses) -> Take:
-    """The take with the found keyframes, see `with_matched`."""
-    return with_matched(take, found.frames, found.postures, found.library)
+    """The take with the found keyframes, see `with_matched`; earlier ones stay where none was sought."""
+    changed = with_matched(take, found.frames, found.postures, found.library)
+    if found.between is None:
+        return changed
+    first, last = found.between
+    here = {key.index: key for key in changed.keyframes}
+    kept = {key.index: key for key in take.keyframes if not first <= key.index <= last}
+    return replace(take, keyframes=tuple(each for _, each in sorted((here | kept).items())))

@@ -75,30 +75,29 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     Raises:
         InputError: No library has a posture.
     """
+    usable = tuple(each for each in libraries if each.postures)
     lengths = tuple(sorted(body.actor.segments_m.items()))
-    return _knowledge(lengths, _Libraries(body, tuple(each for each in libraries if each.postures)))
+    content = tuple(hash(each.posture.to_vector().tobytes()) for one in usable for each in one.postures)
+    return _knowledge(_Given(body, usable, (lengths, content)))
 
 
 @dataclass(frozen=True, eq=False)
-class _Libraries:
-    """Libraries, alike where they are the very same objects, with the body that lengths stand for."""
+class _Given:
+    """A body and libraries, alike where their contents are."""
 
     body: Body
     libraries: tuple[Library, ...]
+    content: tuple[object, ...]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Libraries) and self._numbers == other._numbers
+        return isinstance(other, _Given) and self.content == other.content
 
     def __hash__(self) -> int:
-        return hash(self._numbers)
-
-    @property
-    def _numbers(self) -> tuple[int, ...]:
-        return tuple(map(id, self.libraries))
+        return hash(self.content)
 
 
 @lru_cache(maxsize=4)
-def _knowledge(lengths: tuple[tuple[str, float], ...], given: _Libraries) -> Knowledge:
+def _knowledge(given: _Given) -> Knowledge:
     likely = plausibility(given.body, given.libraries)
     return Knowledge(part_pools(given.libraries, given.body), likely)
 

@@ -17,7 +17,7 @@ FLOOR_STD_M = 0.05
 HEEL_M = 0.05
 """A heel that is off the floor by this much is nothing unusual."""
 BALANCE_STD_M = 0.12
-"""Horizontal distance of the center of mass from the feet that stand: a foot's length, and a step under way."""
+"""Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way."""
 BALANCE_DEGREES = 3.0
 """Of Student's t: who runs, leaps or leans on something is forgiven."""
 STEP_M = 0.10

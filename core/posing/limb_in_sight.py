@@ -66,7 +66,7 @@ def ways_in_sight(
         lines: Lines of sight of its middle and its end.
 
     Returns:
-        Up to four ways, those that look the same left out, in the order of `leans`.
+        Up to four ways, the most plausible first; of those that look the same, that one alone.
     """
     start = limb_points(body, posture, limb)
     lengths = part_lengths_m(body, limb)
@@ -78,7 +78,7 @@ def ways_in_sight(
             ideal = aimed(body, posture, limb, middle, end)
             found.append(_within_limits(body, ideal, limb, lines, np.array([upper, lower]) > 0))
     kept: list[LimbInSight] = []
-    for way in found:
+    for way in sorted(found, key=lambda way: way.strain):
         places = limb_points(body, way.posture, limb)
         if all(_apart_m(places, limb_points(body, other.posture, limb)) > DISTINCT_M for other in kept):
             kept.append(way)
@@ -150,6 +150,11 @@ def _weights(line: SightLine) -> Array:
     """(3, 3) matrix that leaves what is off a line of sight as it is, and makes less of what is along it."""
     along = np.outer(line.direction, line.direction)
     return np.asarray(np.eye(3) - (1.0 - DEPTH_SHARE) * along)
+
+
+def strain_of(posture: Posture, limb: LimbChain) -> float:
+    """How implausible a limb is as it stands; see `LimbInSight.strain`."""
+    return OUTSIDE * float(np.linalg.norm(limb_excess_rad(posture, limb))) + _effort(posture, limb)
 
 
 def _effort(posture: Posture, limb: LimbChain) -> float:

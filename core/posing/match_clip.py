@@ -66,7 +66,7 @@ def match_clip(
                 given, repeat_coarse_pass(given, prepared), floor_m, FIRST_ROUND_SHARE, 1.0
             )
             found = replace(again, reading=better) if is_better(again, found) else found
-    yield Progress("Done", 1.0)
+    yield Progress(f"Matching {library.title}", 1.0)
     return found
 
 

@@ -1,7 +1,7 @@
 """Features of parts: where what is seen of them lies, in the frame of what they hang on.
 
-Torsos in all headings are *stances*: a stance gives the frames of the pelvis and of the chest, from which legs
-and arms hang.
+Torsos in all headings are *stances*: a stance gives the frames of the pelvis and of the chest, from which
+legs and arms hang.
 """
 
 from dataclasses import dataclass

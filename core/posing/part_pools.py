@@ -4,6 +4,7 @@ Given where the torso is, limbs move nearly independently: an arm from one postu
 postures that no library has. Left and right limbs share one pool, mirrored.
 """
 
+from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -124,8 +125,22 @@ def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
     return balls, hinges
 
 
+_KEPT: OrderedDict[tuple[object, ...], tuple[tuple[Library, ...], PartPools]] = OrderedDict()
+MOST_KEPT = 4
+"""Pools kept for the next question about the same performer."""
+
+
 def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     """The parts of all libraries' postures and their mirror images on a body, with samples beside them."""
+    key = (*sorted(body.actor.segments_m.items()), *map(id, libraries))
+    if key not in _KEPT:
+        _KEPT[key] = tuple(libraries), _part_pools(libraries, body)  # held, so that no other has its id
+        while len(_KEPT) > MOST_KEPT:
+            _KEPT.popitem(last=False)
+    return _KEPT[key][1]
+
+
+def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     found, names = [], []
     for library in libraries:
         sequences = library_sequences(library, body)
@@ -222,7 +237,7 @@ def _nearest(points: Array, among: Array) -> IndexArray:
 
 
 def _spread(points: Array, taken: Array | None, radius_m: float, most: int) -> IndexArray:
-    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) apart from one another and others."""
+    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) that lie apart."""
     if taken is None:
         first = int(_distance(points, points.mean(axis=0)).argmin())
         chosen, away = [first], _distance(points, points[first])

@@ -12,10 +12,13 @@ from functools import cached_property
 import numpy as np
 from scipy.special import logsumexp
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body, Pose
+from ..body.limbs import TRUNK
+from ..body.skeleton import Skeleton
 from ..library.library import Library
 from .known_postures import PARTS, KnownPostures, known_postures, part_shapes
+from .part_pools import JOINTS, TORSO
 
 KERNEL_M = 0.05
 """Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
@@ -28,8 +31,10 @@ DIMENSIONS = 4.0
 UNUSUAL_SHARE = 0.002
 """Share of known postures, each by the libraries it is not from, that are more unusual than is called
 plausible."""
-MARGIN = 2.0
-"""Cost by which an unknown motion may be more unusual than that: an e-fold density less in two directions."""
+MARGIN = 6.0
+"""Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
+BEYOND_RAD = 0.25
+"""A joint this far beyond its range is contorted, whatever is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +53,10 @@ class Plausibility:
     def contorted(self, pose: Pose) -> BoolArray:
         """(N, 5) whether each part is where no known posture has anything like it."""
         most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
-        return np.asarray(self.costs(pose) > most)
+        skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
+        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
+        parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
+        return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
     @cached_property
     def usual(self) -> Mapping[str, tuple[float, float]]:
@@ -72,6 +80,14 @@ def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
         InputError: No library has a posture.
     """
     return Plausibility(known_postures(body, libraries))
+
+
+def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
+    """Degrees of freedom of a part."""
+    kind, _, side = part.partition(".")
+    stems = JOINTS[TORSO if part == TRUNK else kind]
+    joints = {f"{stem}.{side}" if side else stem for stem in stems}
+    return np.flatnonzero([name.rpartition(".")[0] in joints for name in skeleton.dof_names])
 
 
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:

@@ -1,7 +1,11 @@
-"""All poses of a clip in one go: the likeliest postures where nobody has posed, shared by every caller."""
+"""All poses of a clip in one go: the likeliest postures where nobody has posed, shared by every caller.
 
-from collections.abc import Sequence
-from dataclasses import replace
+Postures are composed of the libraries' parts (`compose_clip`), then held against the footage by the estimate
+that reconstructs motions, with the composed postures for its keyframes (`estimate/whole_clip`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -14,24 +18,26 @@ from ..estimate.whole_clip import estimate_whole_clip
 from ..footage.reading import Reading
 from ..library.library import Library
 from ..matching.candidates import MatchedFrame
-from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.library_match import sampled_frames
-from ..matching.marker_moments import marker_moments
 from ..matching.match_input import MatchInput, match_input
-from ..matching.noise_scales import DEGREES_OF_FREEDOM
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
-from ..progress import Job, Progress, within
+from ..progress import Job, Progress, stretch, within
 from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take
 from .compose_clip import Composition, compose_frames
 from .composed_candidates import composed_candidates
+from .explained import contradicting, explained_shares
 from .found_poses import FoundPoses
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
+from .posing_input import PosingInput, placed_in_clip, stretch_of
+from .second_reading import is_better, read_again
 
 COMPOSED_SHARE, FITTED_SHARE = 0.8, 0.98
 """Shares of the work after which postures are composed, and fitted to the footage."""
+DOUBTFUL = 0.5
+"""Confidence below which a keyframe is called doubtful."""
 
 
 def pose_clip(
@@ -58,7 +64,8 @@ def pose_clip(
         Progress.
 
     Returns:
-        The postures; there always are some, with a confidence that says how far to trust them.
+        The postures; there always are some, with a confidence that says how far to trust them. Between two
+        frames only those are found anew; elsewhere the postures are those of the take's keyframes.
 
     Raises:
         InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
@@ -68,84 +75,134 @@ def pose_clip(
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
     with threadpool_limits(limits=1, user_api="blas"):
         given = match_input(take, reading, keyframe_count)
-        if frames is not None:
-            given = replace(given, keyframes=np.unique(np.array(frames, dtype=np.intp)))
         yield Progress("Learning the parts of postures", 0.0)
-        pools = part_pools(usable, take.body)
-        stances = stance_features(pools, given.evidence)
-        tracks = given.evidence.tracks
-        sampled = sampled_frames(tracks, np.concatenate([given.keyframes, given.constraints.frames]))
-        if floor_m is None:
-            floor_m = given.constraints.floor_m()
-        composing = compose_frames(given, pools, stances, sampled, floor_m)
-        found = yield from within("Composing postures", composing, 0.05, COMPOSED_SHARE)
-        keyframes = tuple(
-            Keyframe(int(frame), found.posture[row]) for row, frame in enumerate(map(int, sampled))
-        )
-        fitting = estimate_whole_clip(
-            take.body,
-            take.camera,
-            tracks,
-            take.marker_segments,
-            interpolate(keyframes, tracks.frame_count),
-            tuple(map(int, sampled)),
-            match_scale=np.ones(len(sampled)),
-            keypoints=performer_keypoints(take, None, reading.tracks),
-            lower_ankle=found_ankle_m(take.body, found.posture, sampled, tracks.frame_count, found.floor_m),
-        )
-        fitted = yield from within("Fitting the postures", fitting, COMPOSED_SHARE, FITTED_SHARE)
-    explained = _explained(given, sampled, fitted.posture)
-    found_frames = _candidates(given, pools, stances, sampled, found, fitted.posture, explained)
-    fit = float(explained.mean())
+        search = _Search(take, part_pools(usable, take.body), floor_m, between, frames)
+        found = yield from stretch(search.poses(given, reading), 0.05, 1.0)
+        again = None
+        if between is None:
+            again = yield from stretch(read_again(take, reading, found), 0.98, 0.98)
+        if again is not None:
+            repeated = search.poses(match_input(take, again, keyframe_count), again)
+            second = yield from stretch(repeated, 0.05, 1.0)
+            if is_better(second, found):
+                found = replace(second, reading=again)
     yield Progress("Done", 1.0)
-    return FoundPoses(found_frames, fitted.posture, fit, found.floor_m, _reason(found_frames, fit))
+    return found
 
 
-def _explained(given: MatchInput, sampled: IndexArray, posture: Posture) -> Array:
-    """(T,) mean weight under Student's t of the places of markers and keypoints in sampled frames."""
-    own = posture[sampled]
-    places = marker_moments(given.body, given.evidence, own).centroid + own.translation[:, None]
-    shares = np.ones(len(sampled))
-    likelihoods = frame_likelihoods(given.camera, given.evidence, sampled, None, 1.0)
-    for row, likelihood in enumerate(likelihoods):
-        if not likelihood.visible.any():
-            continue
-        residual = np.einsum("aki,ai->ak", likelihood.image_axes, places[row] - likelihood.location)
-        squared = ((residual * likelihood.weight[:, None]) ** 2).sum(axis=-1)
-        shares[row] = float((1.0 / (1.0 + squared / DEGREES_OF_FREEDOM))[likelihood.visible].mean())
-    return shares
+@dataclass(frozen=True, eq=False)
+class _Search:
+    """What is asked of a clip."""
+
+    take: Take
+    pools: PartPools
+    floor_m: float | None
+    between: tuple[int, int] | None
+    frames: Sequence[int] | None
+
+    def poses(self, given: MatchInput, reading: Reading) -> Job[FoundPoses]:
+        """The postures by one reading of the clip."""
+        take = self.take
+        if self.frames is not None:
+            given = replace(given, keyframes=np.unique(np.array(self.frames, dtype=np.intp)))
+        floor_m = given.constraints.floor_m() if self.floor_m is None else self.floor_m
+        work = PosingInput(given, performer_keypoints(take, None, reading.tracks))
+        count = given.evidence.tracks.frame_count
+        if self.between is not None:
+            work = stretch_of(work, *self.between)
+        given = work.given
+        stances = stance_features(self.pools, given.evidence)
+        sampled = sampled_frames(
+            given.evidence.tracks, np.concatenate([given.keyframes, given.constraints.frames])
+        )
+        composing = compose_frames(given, self.pools, stances, sampled, floor_m)
+        composed = yield from within("Composing postures", composing, 0.0, COMPOSED_SHARE)
+        fitting = _fitted(take, work, sampled, composed)
+        postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)
+        explained, off = explained_shares(given, sampled, postures[sampled])
+        found = _candidates(self.pools, stances, work, sampled, composed, postures, explained)
+        fit = float(explained.mean())
+        if self.between is not None:
+            postures = placed_in_clip(postures, interpolate(take.keyframes, count), work.first)
+        return FoundPoses(
+            found,
+            postures,
+            fit,
+            composed.floor_m,
+            _reason(found, fit),
+            _contradictions(take, work, sampled, off),
+            between=self.between,
+        )
+
+
+def _fitted(take: Take, work: PosingInput, sampled: IndexArray, composed: Composition) -> Job[Posture]:
+    """(F,) the composed postures held against the footage; posed frames stay."""
+    given, scale = work.given, np.ones(len(sampled))
+    own = [composed.posture[row] for row in range(len(sampled))]
+    for frame, posture in zip(given.constraints.frames, given.constraints.postures, strict=True):
+        row = int(np.searchsorted(sampled, frame))
+        own[row], scale[row] = posture, 0.0
+    tracks = given.evidence.tracks
+    keyframes = tuple(Keyframe(int(frame), posture) for frame, posture in zip(sampled, own, strict=True))
+    fitting = estimate_whole_clip(
+        given.body,
+        given.camera,
+        tracks,
+        take.marker_segments,
+        interpolate(keyframes, tracks.frame_count),
+        tuple(map(int, sampled)),
+        match_scale=scale,
+        keypoints=work.keypoints,
+        lower_ankle=found_ankle_m(
+            given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m
+        ),
+    )
+    return (yield from within("Fitting the postures", fitting, 0.0, 1.0)).posture
 
 
 def _candidates(
-    given: MatchInput,
     pools: PartPools,
     stances: StanceFeatures,
+    work: PosingInput,
     sampled: IndexArray,
-    found: Composition,
+    composed: Composition,
     fitted: Posture,
     explained: Array,
 ) -> tuple[MatchedFrame, ...]:
     frames = []
-    for row in map(int, np.searchsorted(sampled, given.keyframes)):
+    for row in map(int, np.searchsorted(sampled, work.given.keyframes)):
         index = int(sampled[row])
-        torso = int(found.path.stance[row]) // HEADINGS
-        frames.append(
-            composed_candidates(
-                pools,
-                stances,
-                found.states[row],
-                found.path.posterior[row],
-                index,
-                fitted[index],
-                torso,
-                float(explained[row]),
-            )
+        torso = int(composed.path.stance[row]) // HEADINGS
+        found = composed_candidates(
+            pools,
+            stances,
+            composed.states[row],
+            composed.path.posterior[row],
+            index + work.first,
+            fitted[index],
+            torso,
+            float(explained[row]),
         )
+        frames.append(found)
     return tuple(frames)
+
+
+def _contradictions(
+    take: Take, work: PosingInput, sampled: IndexArray, off: Array
+) -> Mapping[int, tuple[str, ...]]:
+    """Names of what a proposed frame's posture does not explain, by its index in the clip."""
+    markers = tuple(style.name for style in take.markers)
+    names = (*markers, *work.given.evidence.keypoints.names)
+    found = {}
+    for row in map(int, np.searchsorted(sampled, work.given.keyframes)):
+        wrong = tuple(names[column] for column in np.flatnonzero(contradicting(off[row])))
+        if wrong:
+            found[int(sampled[row]) + work.first] = wrong
+    return found
 
 
 def _reason(frames: Sequence[MatchedFrame], fit: float) -> str:
     """Sentence for people on how sure the postures are."""
-    doubtful = sum(frame.candidates[0].confidence < 0.5 for frame in frames)
+    doubtful = sum(frame.candidates[0].confidence < DOUBTFUL for frame in frames)
     said = "none is doubtful" if not doubtful else f"{doubtful} of {len(frames)} keyframes are doubtful"
     return f"the postures explain {fit:.0%} of the footage; {said}"

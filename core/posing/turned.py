@@ -18,7 +18,7 @@ from ..body.mirror import mirrored, other_side
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from .limb_chain import LIMBS, limb_chain
-from .limb_in_sight import sight_lines, ways_in_sight
+from .limb_in_sight import sight_lines, strain_of, ways_in_sight
 from .reach import Pull, pulled
 from .sight_lines import SightLine
 
@@ -58,7 +58,7 @@ class Turned:
     posture: Posture
     sides: Sides
     strain: float
-    """How implausible its limbs are, as in `LimbInSight.strain`; 0 where they turn along."""
+    """How implausible its limbs are, as in `LimbInSight.strain`."""
 
 
 def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
@@ -97,7 +97,8 @@ def turned(body: Body, posture: Posture, camera: Camera, facing: Facing, sides: 
     """
     goal = facing_heading_rad(camera, posture.translation, facing)
     if sides is Sides.TURN:
-        return Turned(_at_heading(posture, goal), sides, 0.0)
+        along = sum(strain_of(posture, limb_chain(body.skeleton, name)) for name in LIMBS)
+        return Turned(_at_heading(posture, goal), sides, along)
     if sides is Sides.STAY:
         base, names = _at_heading(posture, goal), {limb: limb for limb in LIMBS}
     else:

@@ -38,7 +38,7 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
 
 
 def clip_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Update a take whose clip was set; results and keypoints from another clip are dropped."""
+    """Update a take whose clip was set; results, keypoints and lines from another clip are dropped."""
     clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
         give_footage(take, clip)  # sets the clip, and so calls this again
@@ -50,8 +50,9 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
         take.notes.clear()
         take.notices.clear()
         clear_review(take)
-        for sources in (take.follow.files, take.follow.tracks, take.follow.clicks):
-            sources.clear()
+        take.camera_findings = ""
+        for drawn in (take.camera_lines, take.follow.files, take.follow.tracks, take.follow.clicks):
+            drawn.clear()
 
 
 def camera_chosen(take: bpy.types.PropertyGroup) -> None:

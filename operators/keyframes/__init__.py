@@ -4,6 +4,7 @@ MODULES = (
     "propose_keyframes",
     "jump_to_proposal",
     "fit_pose",
+    "show_offered",
     "store_keyframe",
     "flip_depth",
     "turn_performer",

@@ -28,5 +28,6 @@ def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> int:
     store_pose(take.armature, take.keyframe_action, HUMAN, frame)
     assign_action(take.armature, take.keyframe_action)
     note_contradictions(take, frame, ())
+    take.offered.candidates.clear()
     invalidate_keyed_frames()
     return improve_neighbors(context, take, frame)

@@ -60,27 +60,30 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Turn the pose, fit it, and set the likeliest."""
-        from ...core.posing.turned import Facing, Sides, turned
+        from ...core.posing.turned import Facing, Sides, facing_of, turned
 
         take, scene = active_take(context.scene), context.scene
         seen = camera_now(scene, take)
         body, posture = shown_pose(take)
         wanted = list(Sides) if self.sides == AUTOMATIC else [Sides[self.sides]]
-        ways = [turned(body, posture, seen, Facing[self.facing], sides) for sides in wanted]
-        fitted = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else None
+        facing = Facing[self.facing]
+        ways = [turned(body, posture, seen, facing, sides) for sides in wanted]
+        found = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else []
+        # A fit may turn the performer on: what faces elsewhere is not what was asked for.
+        fitted = next((each for each in found if facing_of(each, seen) is facing), None)
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
         set_corrected(self, context, take, chosen)
         said = next(name for value, name, _ in FACINGS if value == self.facing)
         if fitted is None:
-            say(self, "INFO", "Turned: {facing}; nothing seen in this frame to fit to", facing=label(said))
+            say(self, "INFO", "Turned: {facing}; not fitted to the footage", facing=label(said))
         else:
             say(self, "INFO", "Turned and fitted: {facing}", facing=label(said))
 
 
 def _fitted(
     context: bpy.types.Context, take: bpy.types.PropertyGroup, ways: "list[Turned]"
-) -> "Posture | None":
-    """The likeliest of turned postures once they are fitted to the frame; None if it shows nothing to fit to.
+) -> "list[Posture]":
+    """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to.
 
     The actor's pose is as before.
     """
@@ -97,10 +100,10 @@ def _fitted(
             fit = fit_to_frame(frame, take.armature, take.keyframe_action, "POSE", matches)
             found.append((fit.cost + way.strain, fit.posture))
     except InputError:  # the frame lies outside the footage, or shows nothing of what is followed
-        return None
+        return []
     finally:
         restore_pose(take.armature, before)
-    return min(found, key=lambda each: each[0])[1]
+    return [posture for _, posture in sorted(found, key=lambda each: each[0])]
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_turn_performer,))

@@ -5,9 +5,14 @@ from math import pi
 
 import bpy
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
+from ...core.body.actor import Actor
 from ...core.body.heading import facing_rad
+from ...core.body.human import HUMAN
+from ...core.body.kinematics import Body
+from ...core.body.limbs import TRUNK, limb_of
 from ...core.body.posture import Posture
 from ..bridge.actions import assign_action
 from ..bridge.candidate_posture import candidate_posture
@@ -16,6 +21,11 @@ from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
 from ..shell.takes import actor_of
 from .properties import PLACE_VALUES
+
+ANYBODY = Body(Actor.from_stature(1.7))
+"""The body on which candidates are compared; its size hardly matters."""
+ELSEWHERE_M = 0.15
+"""Distance between joints of two candidates above which anybody sees that a limb is elsewhere [m]."""
 
 
 def add_match(take: bpy.types.PropertyGroup, frame: float, library: str) -> bpy.types.PropertyGroup:
@@ -36,8 +46,21 @@ def add_candidate(
     candidate.name, candidate.mirrored, candidate.confidence = name, mirrored, confidence
     vector = posture.to_vector()
     candidate.place, candidate.turns = vector[:PLACE_VALUES], vector[PLACE_VALUES:]
-    apart = _heading(posture) - _heading(candidate_posture(match.candidates[0]))
+    first = candidate_posture(match.candidates[0])
+    apart = _heading(posture) - _heading(first)
     candidate.turned = (apart + pi) % (2.0 * pi) - pi
+    candidate.limbs = " ".join(_limbs_elsewhere(posture, first, apart))
+
+
+def _limbs_elsewhere(posture: Posture, first: Posture, apart_rad: float) -> list[str]:
+    """Limbs whose joints are elsewhere on the body than the first posture's, which faces another way."""
+    back = Rotation.from_euler("z", -apart_rad).as_matrix()
+    own, other = (ANYBODY.points(ANYBODY.pose(each)) - each.translation for each in (posture, first))
+    distance = np.linalg.norm(own @ back.T - other, axis=-1)
+    elsewhere = {
+        limb_of(name) for name, far in zip(HUMAN.point_names, distance > ELSEWHERE_M, strict=True) if far
+    }
+    return sorted(elsewhere - {TRUNK})
 
 
 def _heading(posture: Posture) -> float:

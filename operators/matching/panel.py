@@ -2,17 +2,16 @@
 
 import bpy
 
-from ..overlays.style import candidate_icon
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
-from .candidate_titles import candidate_title
+from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
-FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
+FRAME_UNITS = 1.6
 ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
 
 
@@ -51,11 +50,6 @@ def found_icon(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) ->
     if match.confidence < DOUBTFUL:
         return "QUESTION"
     return "CHECKMARK" if match.confidence >= SURE else "DOT"
-
-
-def percent(share: float) -> str:
-    """A probability in percent."""
-    return label("{percent:.0f} %", percent=100.0 * share)
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
@@ -121,27 +115,8 @@ def _draw_candidates(
         return
     match = matching.matches[matching.active_match]
     box = layout.column(align=True)
-    head = box.row(align=True)
-    head.label(text=label("Frame {frame:g} may show", frame=match.frame), translate=False)
-    head.prop(context.scene.keymark.overlays, "show_candidates", text="", icon="GHOST_ENABLED")
-    aside = context.space_data.region_3d.view_perspective != "CAMERA"
-    head.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
-    for index, candidate in enumerate(match.candidates):
-        row = box.row(align=True)
-        button = row.operator(
-            "keymark.replace_match",
-            text=label("{number}  {candidate}", number=index + 1, candidate=candidate_title(candidate)),
-            translate=False,
-            icon=candidate_icon(index),
-            depress=index == match.chosen,
-        )
-        button.candidate = index
-        if candidate.mirrored:
-            row.label(text="", icon="MOD_MIRROR")
-        said = row.row()
-        said.ui_units_x = PERCENT_UNITS
-        said.alignment = "RIGHT"
-        said.label(text=percent(candidate.confidence), translate=False)
+    draw_candidates_head(box, context, match)
+    draw_candidates(box, match, "keymark.replace_match")
     row = layout.row(align=True)
     accept = row.row(align=True)
     accept.enabled = state_of(take, match) == "FOUND"

@@ -84,6 +84,11 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
         description="Turn to the performer's left from the posture that was chosen first, seen from above",
         subtype="ANGLE",
     )
+    limbs: bpy.props.StringProperty(
+        name="Limbs",
+        description="Limbs that are elsewhere than the first candidate's, which shows what is chosen between",
+        options={"HIDDEN"},
+    )
     turns: bpy.props.FloatVectorProperty(
         name="Turns", description="Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES
     )

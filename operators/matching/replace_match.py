@@ -34,10 +34,10 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         matching = take.matching if take is not None else None
         if matching is None or matching.active_match >= len(matching.matches):
             return str(cls.__doc__)
-        candidates = matching.matches[matching.active_match].candidates
-        if properties.candidate >= len(candidates):
+        match = matching.matches[matching.active_match]
+        if properties.candidate >= len(match.candidates):
             return str(cls.__doc__)
-        said = candidate_title(candidates[properties.candidate])
+        said = candidate_title(match, match.candidates[properties.candidate])
         return label(
             "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said
         )

@@ -12,7 +12,7 @@ from ...core.body.human import HUMAN
 from ..bridge.camera_from_scene import read_lens
 from ..bridge.candidate_posture import candidate_posture
 from ..shell.footage_view import FootageView, footage_view
-from ..shell.found_frames import match_at, state_of
+from ..shell.found_frames import match_at, offered_at, state_of
 from ..shell.lru_cache import LruCache
 from ..shell.takes import find_take, footage_of
 from . import drawing
@@ -44,11 +44,8 @@ def draw(context: bpy.types.Context) -> None:
     hidden = space.type == "VIEW_3D" and not space.overlay.show_overlays
     if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
         return
-    place = match_at(take, scene.frame_current_final)
-    if place < 0 or take.armature is None:
-        return
-    match = take.matching.matches[place]
-    if len(match.candidates) < 2 or state_of(take, match) != "FOUND":
+    match = _shown(take, scene.frame_current_final)
+    if match is None or take.armature is None:
         return
     points = candidate_points(take.armature, match)
     footage = footage_view(scene, take, context.area, context.region)
@@ -59,6 +56,15 @@ def draw(context: bpy.types.Context) -> None:
     else:
         return
     paint(picture(positions, match.chosen, settings))
+
+
+def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
+    """What there is to choose from at a scene frame: a found keyframe's candidates, or those offered."""
+    place = match_at(take, frame)
+    match = take.matching.matches[place] if place >= 0 else None
+    if match is not None and len(match.candidates) > 1 and state_of(take, match) == "FOUND":
+        return match
+    return offered_at(take, frame)
 
 
 def candidate_points(armature_object: bpy.types.Object, match: bpy.types.PropertyGroup) -> Array:

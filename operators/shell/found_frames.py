@@ -45,6 +45,14 @@ def match_at(take: bpy.types.PropertyGroup, frame: float) -> int:
     return nearest if apart and apart[nearest] < SAME_FRAME else -1
 
 
+def offered_at(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
+    """The poses to choose from at a scene frame that has no key; None where there are none."""
+    offered = take.offered
+    here = len(offered.candidates) > 1 and abs(offered.frame - frame) < SAME_FRAME
+    keyed = round(frame, 3) in {*matched_frames(take), *posed_frames(take)}
+    return offered if here and not keyed else None
+
+
 def count_found(take: bpy.types.PropertyGroup) -> tuple[int, int]:
     """Number of the found keyframes that are still as they were found, and of the doubtful ones."""
     matches = take.matching.matches

@@ -17,7 +17,7 @@ from ..footage.take_footage import camera_chosen, clip_chosen
 from ..keypoints.properties import KEYMARK_PG_follow
 from ..markers.ignored_properties import KEYMARK_PG_ignored_region
 from ..markers.properties import KEYMARK_PG_marker
-from ..matching.properties import KEYMARK_PG_matching
+from ..matching.properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
 from ..shell.contradictions import KEYMARK_PG_contradiction
 from ..shell.notices import KEYMARK_PG_notice
@@ -208,6 +208,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
     matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
     contradictions: bpy.props.CollectionProperty(type=KEYMARK_PG_contradiction)
+    offered: bpy.props.PointerProperty(type=KEYMARK_PG_match)
     method: bpy.props.EnumProperty(
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )

@@ -21,7 +21,7 @@ SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_MATCH = 0.02
 """A frame, with one library."""
-SECONDS_TO_POSE = 0.15
+SECONDS_TO_POSE = 0.1
 """A frame, with all libraries."""
 BYTES_A_TAKE = 1_800_000
 BYTES_A_FRAME = 5_000

@@ -6,7 +6,7 @@ import pytest
 from keymark.core.footage.camera_placement import CameraPlacement, heading_rad
 from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import fixed_reason
-from keymark.operators.footage.camera_fields import placement_is_guess
+from keymark.operators.shell.placement_guess import placement_is_guess
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes.next_step import next_step
 from mathutils import Euler

@@ -8,7 +8,6 @@ import pytest
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.camera_placement import CameraPlacement
 from keymark.core.take.take import Take
-from keymark.operators.footage.camera_fields import placement_is_guess
 from keymark.operators.footage.drawn_lines import (
     ACROSS,
     HEIGHT,
@@ -21,6 +20,7 @@ from keymark.operators.footage.drawn_lines import (
     store_lines,
 )
 from keymark.operators.footage.take_footage import lens_is_guess
+from keymark.operators.shell.placement_guess import placement_is_guess
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")

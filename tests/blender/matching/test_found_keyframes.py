@@ -9,6 +9,7 @@ import pytest
 from _found import shown
 from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
+from keymark.operators.matching.candidate_titles import candidate_title
 from keymark.operators.matching.matches import known_matches
 from keymark.operators.overlays.picture import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
@@ -163,3 +164,19 @@ def test_found_keyframes_come_back_with_the_file(found: Group, tmp_path: Path) -
     take = active_take(bpy.context.scene)
     assert known_matches(take) == before and len(before) == 3 and take.matching.reason == reason
     assert [tuple(one.place) for match in take.matching.matches for one in match.candidates] == place
+
+
+def test_a_candidate_is_named_by_what_tells_it_from_the_first(found: Group, wave_motion: Motion) -> None:
+    """The limbs of a composed posture, whose name is often the same; a library's own name; a turn before."""
+    last = found.matching.matches[2]
+    first, other = last.candidates
+    assert candidate_title(last, first) == "Wave 12"
+    assert candidate_title(last, other) == "Other arms"
+    other.turned = 0.8
+    assert candidate_title(last, other) == "46° left: other arms"
+    other.turned = -3.1
+    assert candidate_title(last, other) == "Turned round: other arms"
+    other.limbs, other.turned = "arm.R leg.L leg.R", 0.0
+    assert candidate_title(last, other) == "Other right arm, legs"
+    last.library = "waves"
+    assert candidate_title(last, other) == "Back"

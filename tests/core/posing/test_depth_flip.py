@@ -14,7 +14,7 @@ from _corrections import (
     points,
     segment_lengths,
 )
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
@@ -24,7 +24,7 @@ from keymark.core.body.standing_posture import standing_posture
 from keymark.core.footage.camera import Camera
 from keymark.core.posing.depth_flip import FLIPPABLE, FlippedPart, flipped
 from keymark.core.posing.limb_chain import LIMBS, limb_chain, limb_excess_rad
-from keymark.core.posing.limb_in_sight import sight_lines, ways_in_sight
+from keymark.core.posing.limb_in_sight import DISTINCT_M, sight_lines, ways_in_sight
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))
 SEEDS = st.integers(0, 2**32 - 1)
@@ -52,6 +52,7 @@ def depths(posture: Posture, camera: Camera, limb: str) -> Array:
     )
 
 
+@settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int, limb: str) -> None:
     """Whatever posture and camera; and one part of it lies on the other side in depth."""
@@ -66,6 +67,7 @@ def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int,
         assert (np.sign(depths(other, camera, limb)) != np.sign(before)).any()
 
 
+@settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flip_within_joint_limits_keeps_the_image(seed: int, limb: str) -> None:
     """To a small part of a pixel, where the line of sight can be reached at all."""
@@ -80,16 +82,20 @@ def test_a_flip_within_joint_limits_keeps_the_image(seed: int, limb: str) -> Non
         assert np.abs(limb_excess_rad(way.posture, chain)).max() == 0.0
 
 
+@settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_flipping_the_same_part_again_comes_back(seed: int, limb: str) -> None:
-    """Where nothing was in the way."""
+    """Where nothing was in the way, to within what counts as the same place."""
     posture, camera = natural_posture(seed, 0.5), camera_around(seed + 1)
     for part in FlippedPart:
         there = flipped(BODY, posture, camera, limb, part)
         for other in there:
-            if np.abs(pixels(other, camera) - pixels(posture, camera)).max() < 0.01:
+            kept = np.abs(pixels(other, camera) - pixels(posture, camera)).max() < 0.01
+            apart = np.linalg.norm(points(other) - points(posture), axis=-1).max()
+            if kept and apart > 3.0 * DISTINCT_M:
                 (back,) = flipped(BODY, other, camera, limb, part)
-                np.testing.assert_allclose(points(back), points(posture), atol=1e-6)
+                off = np.linalg.norm(points(back) - points(posture), axis=-1).max()
+                assert off < 1.5 * DISTINCT_M
 
 
 def test_an_arm_held_forward_is_flipped_back_and_stays_in_the_picture() -> None:

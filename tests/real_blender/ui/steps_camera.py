@@ -6,10 +6,12 @@ from driver import Steps, expect, turns
 from numpy.typing import NDArray
 from person import Person, keymark
 
-AHEAD_M = 4.5
-"""Distance over the floor at which the lines are that a person would see there."""
+KNOWN_M = 1.2
+"""Height of something that stands on the floor, wholly in the picture."""
+EDGE = 0.03
+"""Share of the picture at its edges in which nothing is drawn."""
 TILT_DEGREES, HEIGHT_M = 3.0, 0.2
-"""How far the camera found may be from the true one, drawn to the pixel with a lens that is a guess."""
+"""How far the camera found may be from the true one, drawn by the pixel with a guessed lens."""
 
 
 def find_camera(person: Person) -> Steps[None]:
@@ -28,10 +30,11 @@ def find_camera(person: Person) -> Steps[None]:
 
 
 def _draw(person: Person, key: str) -> Steps[None]:
-    """Draw two verticals, two lines on the floor and the performer's height, then press a key."""
+    """Draw two verticals, two lines on the floor and a known height, type that, then press a key."""
     yield from person.hands.click_button("keymark.camera_from_lines", "kind='VERTICAL'")
     for start, end in _lines(person):
         yield from person.hands.drag(_place(person, start), _place(person, end))
+    yield from person.hands.write(f"{KNOWN_M:g}")
     if key == "RET":
         yield from person.look("lines")
     yield from person.hands.press(key)
@@ -39,28 +42,28 @@ def _draw(person: Person, key: str) -> Steps[None]:
     expect(not person.jobs(), f"{key} does not end the lines")
 
 
-def _lines(person: Person) -> NDArray[np.float64]:
-    """(5, 2, 2) ends of lines in the footage [px] that lie in the world as the person knows."""
-    known = person.known.camera
-    heading = keymark("core.footage.camera_placement").heading_rad(known.matrix_world)
-    ahead, right = (
-        np.array([-np.sin(heading), np.cos(heading), 0.0]),
-        np.array([np.cos(heading), np.sin(heading), 0]),
-    )
-    foot = known.matrix_world[:3, 3] * [1.0, 1.0, 0.0] + AHEAD_M * ahead
-    up = np.array([0.0, 0.0, 1.0])
-    stature = person.take.stature
-    ends = np.array(
-        [
-            [foot - 0.9 * right + 0.1 * up, foot - 0.9 * right + 1.9 * up],
-            [foot + right + 0.1 * up, foot + right + 1.9 * up],
-            [foot - 0.7 * right - 0.5 * ahead, foot - 0.7 * right + 1.5 * ahead],
-            [foot + 0.8 * right - 0.5 * ahead, foot + 0.8 * right + 1.5 * ahead],
-            [foot, foot + stature * up],
-        ]
-    )
-    pixel: NDArray[np.float64] = known.project(ends)[0]
-    return pixel
+def _lines(person: Person) -> list[NDArray[np.float64]]:
+    """Ends (2, 2) of five lines in the footage [px] that lie about the performer as the person knows."""
+    known = person.known
+    heading = keymark("core.footage.camera_placement").heading_rad(known.camera.matrix_world)
+    ahead = np.array([-np.sin(heading), np.cos(heading), 0.0])
+    right, up = np.array([ahead[1], -ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
+    foot = known.keyframes[0].posture.translation * [1.0, 1.0, 0.0]
+    plumb = [(foot + side * right + 0.1 * up, foot + side * right + 1.9 * up) for side in (-0.9, 0.9)]
+    level = [(foot + side * right - ahead, foot + side * right + ahead) for side in (-0.6, 0.7)]
+    return [_shown(person, *line) for line in (*plumb, *level, (foot, foot + KNOWN_M * up))]
+
+
+def _shown(person: Person, start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The ends of what the picture shows of a line in the world."""
+    camera = person.known.camera
+    pixel: NDArray[np.float64] = camera.project(start + np.linspace(0.0, 1.0, 200)[:, None] * (end - start))[
+        0
+    ]
+    size = np.array(camera.resolution)
+    inside = ((pixel > EDGE * size) & (pixel < (1.0 - EDGE) * size)).all(axis=1)
+    expect(inside.sum() > 20, "a line that the person would draw is not in the picture")
+    return pixel[inside][[0, -1]]
 
 
 def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:

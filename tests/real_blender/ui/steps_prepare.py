@@ -8,6 +8,7 @@ from driver import Steps, expect, turns, until
 from mathutils import Matrix
 from numpy.typing import NDArray
 from person import Person, keymark
+from steps_camera import find_camera
 
 FARTHEST_COLOR = 40.0
 """Between a pixel of a sleeve and the sleeve's color over the whole clip, of 255."""
@@ -44,14 +45,15 @@ def opened(person: Person, reconstructed: bool) -> Steps[None]:
 
 
 def footage(person: Person) -> Steps[None]:
-    """Load the clip by the file browser, cancelled once, and set the camera up as it stood."""
+    """Load the clip by the file browser, cancelled once; find the camera, and set it up as it truly stood."""
     clip = "keymark.load_footage", person.known.clip
     yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *clip, "ESC"))
     yield from person.undoable("loading the footage", lambda: browse(person, *clip, "RET"))
     take, known = person.take, person.known
     expect(take.clip is not None and take.clip.frame_duration > 1, "the footage was not loaded")
     expect(person.scene.frame_end == known.frame_start + take.clip.frame_duration - 1, "the range is another")
-    camera = take.camera
+    yield from find_camera(person)
+    camera = person.take.camera
     camera.matrix_world = Matrix(known.camera.matrix_world.tolist())
     camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", known.camera.sensor_width_mm
     camera.data.lens = known.camera.lens_mm

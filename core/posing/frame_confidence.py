@@ -1,0 +1,20 @@
+"""How sure a candidate of one frame is."""
+
+import numpy as np
+
+from ..matching.candidates import PROBABILITY_BOUNDS
+
+INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.5, 0.5, -0.05
+"""Logistic regression, rounded."""
+
+
+def frame_confidence(share: float, cost: float) -> float:
+    """Probability that a candidate is about right, to 10 cm, the hips aligned.
+
+    Args:
+        share: Probability of it and of those near it among all hypotheses of the frame.
+        cost: Its own cost: a posture that beats all others may still explain the frame badly.
+    """
+    bounded = float(np.clip(share, *PROBABILITY_BOUNDS))
+    odds = INTERCEPT + SHARE_COEFFICIENT * np.log(bounded / (1.0 - bounded)) + COST_COEFFICIENT * cost
+    return float(1.0 / (1.0 + np.exp(-odds)))
