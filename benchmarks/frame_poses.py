@@ -1,6 +1,6 @@
 """One frame alone: how often the postures found from nothing but that frame are right, and are said to be.
 
-Usage: frame_poses.py [TAKE ...] [--step FRAMES] with names or folders of takes. See README.md beside this file.
+Usage: frame_poses.py [TAKE ...] [--step FRAMES] with names or folders of takes. See README.md.
 """
 
 import argparse
@@ -147,8 +147,8 @@ def reliability(found: Iterable[Found]) -> list[tuple[str, int, float, float]]:
 def table(takes: dict[str, dict[str, list[Found]]]) -> str:
     """Results as Markdown."""
     lines = [
-        "Isolated frames posed from nothing: median error, hips aligned [mm], and the share within 80 mm, of the",
-        "first candidate and of the best of up to four; share of frames in which something is said to contradict.",
+        "Isolated frames posed from nothing: median error, hips aligned [mm], and the share within 80 mm, of",
+        "the first candidate and of the best of up to four; share of frames that something contradicts.",
         "",
         "| take | followed | frames | first | < 80 | best of four | < 80 | contradicted | CPU [ms] |",
         "|---|---|---:|---:|---:|---:|---:|---:|---:|",
@@ -161,7 +161,8 @@ def table(takes: dict[str, dict[str, list[Found]]]) -> str:
                 continue
             one = summary(rows)
             lines.append(
-                f"| {name} | {kind} | {one['frames']:.0f} | {one['first_mm']:.0f} | {one['first_right']:.2f} | "
+                f"| {name} | {kind} | {one['frames']:.0f} | {one['first_mm']:.0f} | "
+                f"{one['first_right']:.2f} | "
                 f"{one['best_mm']:.0f} | {one['best_right']:.2f} | {one['contradicted']:.2f} | "
                 f"{one['cpu_ms']:.0f} |"
             )

@@ -43,6 +43,8 @@ class FramePoses:
     contradictions: tuple[str, ...] = ()
     """Names of the markers and keypoints that the first candidate does not explain, as no plausible posture
     does."""
+    cost: float = 0.0
+    """Near a pose, the negative logarithm of the posture's probability, up to a constant of the frame."""
 
 
 def find_frame_poses(
@@ -86,7 +88,7 @@ def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
     fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=shown.points_of(False))
     names = [shown.tracks.names[marker] for marker in fit.misplaced]
     only = Candidate(fit.posture, "", False, 1.0)
-    return FramePoses((only,), (*names, *fit.misplaced_points))
+    return FramePoses((only,), (*names, *fit.misplaced_points), fit.cost)
 
 
 def _hypotheses(
