@@ -5,6 +5,7 @@ Usage: camera.py [TAKE ...] [--motion TAKE ...] with names or folders of takes w
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -196,6 +197,7 @@ def main() -> None:
             for way, found in cameras_of(folder, take, truth, lens_is_known).items():
                 if found:
                     lines.append(row(name, way, lens, found))
+                    print(lines[-1], file=sys.stderr, flush=True)
                     everything.setdefault((way, lens), []).extend(found)
                     numbers[f"{name}, {way}, {lens}"] = [
                         {**asdict(replace(one, camera=None)), "camera": None} for one in found

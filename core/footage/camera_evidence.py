@@ -12,6 +12,8 @@ CLICK_STD_PX = 1.5
 PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.02, float(np.radians(3.0))
 """Someone who stands or walks upright: share by which they are shorter than their stature or taller, as heads
 rise and fall by 3 % in every step, and lean to any side."""
+COMMON_LEAN_RAD = float(np.radians(2.5))
+"""Lean that one person has at all moments alike: heads lie in front of ankles, and walkers lean forward."""
 STATURE_STD = 0.015
 """Share by which a stated stature is off throughout: shoes, hair, and what people say of themselves."""
 THING_LENGTH_STD, THING_LEAN_STD_RAD = 0.005, float(np.radians(0.5))
@@ -64,13 +66,19 @@ class Uprights:
             stature_m: Body height [m].
         """
         return cls._standing(
-            ground_px, crown_px, stature_m, PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD, STATURE_STD
+            ground_px,
+            crown_px,
+            stature_m,
+            PERSON_LENGTH_STD,
+            PERSON_LEAN_STD_RAD,
+            STATURE_STD,
+            COMMON_LEAN_RAD,
         )
 
     @classmethod
     def things(cls, lower_px: ArrayLike, upper_px: ArrayLike, length_m: ArrayLike) -> "Uprights":
         """Things of known lengths (N,) [m] that stand on the floor, as doors, by their ends (N, 2) [px]."""
-        return cls._standing(lower_px, upper_px, length_m, THING_LENGTH_STD, THING_LEAN_STD_RAD, 0.0)
+        return cls._standing(lower_px, upper_px, length_m, THING_LENGTH_STD, THING_LEAN_STD_RAD, 0.0, 0.0)
 
     @classmethod
     def _standing(
@@ -81,6 +89,7 @@ class Uprights:
         length_std: float,
         lean_std_rad: float,
         common_std: float,
+        common_lean_rad: float,
     ) -> "Uprights":
         lower = np.array(lower_px, dtype=np.float64).reshape(-1, 2)
         upper = np.array(upper_px, dtype=np.float64).reshape(-1, 2)
@@ -94,6 +103,7 @@ class Uprights:
             length_std * ones,
             lean_std_rad * ones,
             common_std,
+            common_lean_rad,
         )
 
     def __len__(self) -> int:

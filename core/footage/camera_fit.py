@@ -26,7 +26,7 @@ from .camera_placement import CameraPlacement
 
 HEIGHT, TILT, ROLL, LENS = "height", "tilt", "roll", "lens"
 PARAMETERS = (HEIGHT, TILT, ROLL, LENS)
-BELIEVED_STD = np.array([0.4, np.radians(15.0), np.radians(6.0), 0.35])
+BELIEVED_STD = np.array([0.4, np.radians(15.0), np.radians(4.0), 0.35])
 """Of the logarithm of the height (from 0.6 to 3 m about 1.4 m, twice that deviation), tilt and roll (held in
 hands, or on a slanting support), and of the logarithm of the focal length (17 to 70 mm about 35)."""
 KNOWN_LENS_STD = 0.01

@@ -13,7 +13,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..body.standing_posture import standing_posture
-from .camera_evidence import STATURE_STD, Uprights
+from .camera_evidence import COMMON_LEAN_RAD, STATURE_STD, Uprights
 from .keypoints.keypoints import Keypoints
 from .keypoints.principal_keypoints import principal_keypoints
 from .region_tracks import RegionTracks
@@ -30,12 +30,13 @@ LENGTH_STD, LEAN_STD_RAD = 0.025, float(np.radians(3.0))
 """Of someone who walks: knees bend, heels rise, and the trunk leans."""
 DETECTOR_STD = 0.02
 """Share by which detectors put ankles and head too high or too low throughout."""
-COMMON_LEAN_RAD = float(np.radians(2.5))
-"""Heads lie in front of ankles, and walkers lean forward."""
 IN_LINE = float(np.cos(np.radians(15.0)))
 """Cosine of the largest angle between trunk and legs."""
 PLUMB = float(np.cos(np.radians(30.0)))
 """The same between the body and the picture's vertical: whoever lies is in line as well."""
+FLIGHT_S, FLIGHT_SHARE = 0.25, 0.12
+"""Whoever leaves the floor falls by 0.3 m in a quarter second, a fifth of the length from ankles to head; who
+walks toward the camera comes down in the picture by less than these shares in that time."""
 MOST_UNLIKE = 0.2
 """Largest logarithm of the ratio of legs to trunk, relative to that of someone upright in the same clip."""
 REGION_STD_PX = 1.0
@@ -63,6 +64,7 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     feet = pixel[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES], 1]
     with np.errstate(invalid="ignore"):
         upright &= np.abs(feet[:, 0] - feet[:, 1]) < LEVEL_SHARE * np.linalg.norm(head - ankle, axis=-1)
+    upright &= _on_floor(ankle[:, 1], np.linalg.norm(head - ankle, axis=-1), fps)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
     ones = np.ones(len(chosen))
@@ -101,7 +103,8 @@ def standing_regions(tracks: RegionTracks, segments: tuple[str, ...], body: Body
     level = np.abs(centroid[:, 1, 1] - centroid[:, 2, 1]) < MOST_UNLIKE * size
     level &= _along(trunk - shins, np.array([0.0, -1.0]), PLUMB)
     tall = size > np.exp(-MOST_UNLIKE) * np.nanmax(np.where(whole, size, np.nan)) if whole.any() else whole
-    chosen = _apart(whole & level & np.asarray(tall), fps)
+    on_floor = _on_floor(shins[:, 1], size, fps)
+    chosen = _apart(whole & level & np.asarray(tall) & on_floor, fps)
     height = _heights(body)
     middle = {
         "shin": 0.5 * (height["knee"] + height["ankle"]),
@@ -139,6 +142,22 @@ def _along(first: Array, second: Array, least: float) -> BoolArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         cosine = (first * second).sum(-1) / (np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1))
         return np.asarray(cosine > least)
+
+
+def _on_floor(row: Array, size: Array, fps: float) -> BoolArray:
+    """(F,) whether the feet's row (F,) in the picture hardly changes about each frame.
+
+    Args:
+        row: Their rows [px].
+        size: (F,) length of the body in the picture [px].
+        fps: Frames per second.
+    """
+    reach = max(1, round(FLIGHT_S * fps))
+    padded = np.pad(row, reach, constant_values=np.nan)
+    near = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
+    with np.errstate(invalid="ignore"):
+        apart = np.nanmax(np.where(np.isfinite(near), np.abs(near - row[:, None]), 0.0), axis=1)
+        return np.asarray(apart < FLIGHT_SHARE * size)
 
 
 def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:

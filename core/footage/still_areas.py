@@ -28,6 +28,9 @@ SELDOM = 0.25
 """Share of the sampled frames below which a pixel has the color by the marker that passes."""
 MOVES_PX = 2.0 * STILL_STEP_PX
 """Median distance of a moving marker from its usual place, in pixels of the measuring grid."""
+MOST_UNSURE = 1.5
+"""Most pixels about a still area that have its color now and then, relative to its outline: the ring that
+blends into what is behind it may flicker with the noise, a second ring shows that it moves."""
 LEAST_SHARE = 0.1
 """Least area of a still area that is worth a word, relative to the marker's."""
 MARGIN = 2
@@ -126,7 +129,7 @@ def _rests(area: BoolArray, share: Array) -> bool:
     around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
     now_and_then = around & (share >= SELDOM) & (share < NEARLY_ALWAYS)
     outline = np.count_nonzero(mask) - np.count_nonzero(cv2.erode(mask, SIDE))
-    return bool(np.count_nonzero(now_and_then) <= outline)
+    return bool(np.count_nonzero(now_and_then) <= MOST_UNSURE * outline)
 
 
 def _moving_area(still: Image, found: Candidates, scale: int) -> float:

@@ -31,9 +31,10 @@ NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
 """Distances tried about the first path."""
 SMOOTH_S = 0.6
 """Time over which the rough distance is smoothed."""
+FLOOR_STD_M = 0.06
+"""Height of a standing foot where a likelihood has a floor of its own."""
 MOST_PLACED = 16
 """Frames in which the performer is placed by size."""
-FLOOR_STD_M = 0.06
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,22 +80,37 @@ def compose_frames(
         floor_m = floor_height_m(given, stances, sampled, rough)
     yield 0.1
     costs = frame_costs(given, stances, sampled, floor_m)
+    swapped: list[FrameCosts] = []
+    if len(evidence.points):
+        mirrored = replace(given, evidence=evidence.exchanged())
+        swapped = frame_costs(mirrored, stances, sampled, floor_m)
     posed = given.constraints
     for index, frame in enumerate(posed.frames):
         row = int(np.searchsorted(sampled, frame))
         if row < len(sampled) and sampled[row] == frame:
             hips, points = posed.hips[index], posed.points[index]
             costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, tempering)
+            if swapped:
+                swapped[row] = costs[row]
     path: ComposedPath | None = None
     states: list[FrameStates] = []
     for turn, shares in enumerate(rounds):
         begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
-        states = yield from scaled(_states(costs, rough, shares), begun, 0.8 * ended + 0.2 * begun)
+        is_last = turn == len(rounds) - 1
+        # The first round is for the place alone; exchanged sides are tried where it is known.
+        rows = np.arange(len(sampled)) if is_last else _every_second(len(sampled))
+        own = [costs[row] for row in rows]
+        others = swapped if is_last else []
+        states = yield from scaled(
+            _states(own, others, rough[rows], shares), begun, 0.8 * ended + 0.2 * begun
+        )
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
-        found = best_path(stances, states, costs, time_s, tempering, step_m)
+        weight = min(1.0, float(np.median(np.diff(time_s[rows]))) / CORRELATION_S)
+        found = best_path(stances, states, own, others, time_s[rows], weight, step_m)
         path = yield from scaled(found, 0.8 * ended + 0.2 * begun, ended)
-        depth = np.array([camera.depth(place, int(f)) for place, f in zip(path.hips, sampled, strict=True)])
-        rough = _smoothed(depth, time_s)
+        at = zip(path.hips, sampled[rows], strict=True)
+        depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
+        rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
     assert path is not None
     posture = pools.composed(
         path.stance // HEADINGS,
@@ -103,6 +119,11 @@ def compose_frames(
         path.hips,
     )
     return Composition(path, states, posture, floor_m)
+
+
+def _every_second(count: int) -> IndexArray:
+    """Every second of some frames, and the last."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1)).astype(np.intp)
 
 
 def _posed_at_both_ends(given: MatchInput, sampled: IndexArray) -> bool:
@@ -147,10 +168,16 @@ def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArr
     return 0.0 if np.mean(added) < FLOOR_COST_MARGIN else found
 
 
-def _states(costs: Sequence[FrameCosts], rough: Array, shares: Sequence[float]) -> Part[list[FrameStates]]:
+def _states(
+    costs: Sequence[FrameCosts], others: Sequence[FrameCosts], rough: Array, shares: Sequence[float]
+) -> Part[list[FrameStates]]:
+    """The states of each frame, with those of exchanged sides where `others` are given."""
     found = []
     for index, (cost, depth) in enumerate(zip(costs, rough, strict=True)):
-        found.append(cost.states(depth * np.array(shares)))
+        states = cost.states(depth * np.array(shares))
+        if others and others[index] is not cost:
+            states = states.with_exchanged(others[index].states(depth * np.array(shares[:1])))
+        found.append(states)
         yield index / len(costs)
     return found
 

@@ -47,6 +47,7 @@ def best_path(
     stances: StanceFeatures,
     states: Sequence[FrameStates],
     costs: Sequence[FrameCosts],
+    others: Sequence[FrameCosts],
     time_s: Array,
     tempering: float,
     depth_step_m: float,
@@ -57,6 +58,7 @@ def best_path(
         stances: All stances.
         states: Those of each frame.
         costs: What each frame says.
+        others: The same with left and right of the keypoints exchanged; none where that is not tried.
         time_s: (T,) times of the frames.
         tempering: Weight of a frame.
         depth_step_m: Distance between the depths that were tried.
@@ -77,7 +79,9 @@ def best_path(
     posterior = path_posteriors(own, steps)
     stance = np.array([each.stance[row] for each, row in zip(states, best, strict=True)])
     hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)], dtype=float)
-    limbs = limb_paths(stances, costs, stance, hips, time_s, tempering)
+    swapped = [bool(each.exchanged[row]) for each, row in zip(states, best, strict=True)]
+    said = [others[i] if swap else cost for i, (cost, swap) in enumerate(zip(costs, swapped, strict=True))]
+    limbs = limb_paths(stances, said, stance, hips, time_s, tempering)
     yield 1.0
     return ComposedPath(stance, hips, limbs, posterior)
 

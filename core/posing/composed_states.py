@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.center_of_mass import mass_weights
 from ..body.human import HUMAN
 from ..body.limbs import TRUNK, limb_of
+from ..matching.emissions import EXCHANGED_COST
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
@@ -47,22 +48,32 @@ class FrameStates:
     """(K,) negative log likelihood, up to a constant of the frame."""
     limbs: IndexArray
     """(K, 4) the best of each limb, in the order of `LIMBS`."""
+    exchanged: BoolArray
+    """(K,) whether left and right of the keypoints are exchanged for it."""
 
     def chosen(self, rows: IndexArray) -> "FrameStates":
         """Some of the states."""
-        return FrameStates(self.stance[rows], self.hips[rows], self.cost[rows], self.limbs[rows])
+        return FrameStates(
+            self.stance[rows], self.hips[rows], self.cost[rows], self.limbs[rows], self.exchanged[rows]
+        )
+
+    def with_exchanged(self, other: "FrameStates") -> "FrameStates":
+        """The best of these and of those with left and right of the keypoints exchanged."""
+        count = len(self.cost)
+        both = FrameStates(
+            np.concatenate([self.stance, other.stance]),
+            np.concatenate([self.hips, other.hips]),
+            np.concatenate([self.cost, other.cost + EXCHANGED_COST]),
+            np.concatenate([self.limbs, other.limbs]),
+            np.arange(count + len(other.cost)) >= count,
+        )
+        return both.chosen(lowest(both.cost, MOST_STATES, MARGIN))
 
 
 class FrameCosts:
     """Costs of stances and limbs in one frame."""
 
-    def __init__(
-        self,
-        likelihood: FrameLikelihood,
-        stances: StanceFeatures,
-        floor_m: float | None,
-        moments: bool = True,
-    ) -> None:
+    def __init__(self, likelihood: FrameLikelihood, stances: StanceFeatures, floor_m: float | None) -> None:
         self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
         self.axes = np.asarray(likelihood.image_axes, dtype=np.float32)  # (A, 2, 3)
         self.rows = self.axes * np.asarray(likelihood.weight, dtype=np.float32)[:, None, None]
@@ -71,10 +82,9 @@ class FrameCosts:
         self.sight = np.asarray(likelihood.sight, dtype=np.float32)
         self.share = np.float32(likelihood.share)
         self.markers = len(likelihood.unclipped)
-        self.moments = moments
 
     def states(self, depths_m: Array) -> FrameStates:
-        """The states that explain the frame best, at some distances along the camera's axis, the middle first."""
+        """The states that explain the frame best, at some distances from the camera, the middle one first."""
         every = np.arange(len(self.stances.pelvis))
         middle = np.float32(depths_m[0])
         places = self.places(every, np.full(len(every), middle))
@@ -91,7 +101,8 @@ class FrameCosts:
         places = self.places(stance, depth, limbs)
         cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places), paired=True)
         kept = lowest(cost, MOST_STATES, MARGIN)
-        return FrameStates(stance[kept], places[kept] + self.location, cost[kept], limbs[kept])
+        plain = np.zeros(len(kept), dtype=bool)
+        return FrameStates(stance[kept], places[kept] + self.location, cost[kept], limbs[kept], plain)
 
     def places(
         self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
@@ -138,7 +149,7 @@ class FrameCosts:
             depth = self._hint_cost(observed, local[:, column] @ self.sight)
             if depth is not None:
                 cost += depth
-            if observed < self.markers and self.moments and self.likelihood.unclipped[observed]:
+            if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[stance, column]
                 entries = [moment @ _products(*pair) for pair in self._pairs(observed)]
                 cost += self._extent_cost(observed, entries, -at @ self.backward)
@@ -165,7 +176,7 @@ class FrameCosts:
             guessed = self._hint_cost(observed, (self.sight @ turn) @ local + (origin @ self.sight)[:, None])
             if guessed is not None:
                 cost += guessed
-            if observed < self.markers and self.moments and self.likelihood.unclipped[observed]:
+            if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[:, column].T  # (6, L)
                 first, second = (axis @ turn for axis in self.axes[observed])
                 entries = [

@@ -44,7 +44,7 @@ class FramePoses:
     """Names of the markers and keypoints that the first candidate does not explain, as no plausible posture
     does."""
     cost: float = 0.0
-    """Negative logarithm of the first one's probability near a pose, up to a constant of the frame."""
+    """Near a pose, the negative logarithm of the posture's probability, up to a constant of the frame."""
 
 
 def find_frame_poses(

@@ -160,13 +160,8 @@ class FrameResult:
     """Names of the markers and keypoints that the first one does not explain."""
     residual_px: Array
     """(M + N,) distances of markers and keypoints from where the first one has them [px]; NaN if hidden."""
-    cost: float
-    """Negative logarithm of its probability where it was sought near a pose, up to a constant."""
-
-    @property
-    def posture(self) -> Posture:
-        """The likeliest posture."""
-        return self.candidates[0].posture
+    cost: float = 0.0
+    """Near a pose, what tells the likelier of several poses apart, as in `FramePoses`."""
 
 
 def fit_to_frame(
@@ -231,8 +226,8 @@ def fit_to_frame(
         found = find_frame_poses(shown, libraries, floor_m, belief)
     posture = found.candidates[0].posture
     off = frame_residuals(evidence, shown.regions, here, posture, len(posed))
-    distances = np.append(off.marker_px, off.keypoint_px)
-    return FrameResult(found.candidates, found.contradictions, distances, found.cost)
+    residual_px = np.append(off.marker_px, off.keypoint_px)
+    return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
 
 
 def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:

@@ -3,6 +3,7 @@
 import bpy
 
 from ..shell.messages import label
+from ..shell.panel import draw_sentence, side_by_side
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
 from .camera_panel import draw_camera
@@ -29,7 +30,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")
         if take.clip is not None:
-            _draw_clip(column, take)
+            _draw_clip(column, context, take)
         column.separator()
         column.prop(take, "camera")
         if take.camera is not None:
@@ -39,7 +40,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
         text = "Load Footage" if take.clip is None else "Replace Clip"
         row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE")
         row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
-        row = column.row(align=True)
+        row = side_by_side(column)
         row.operator("keymark.open_take", icon="FILE_FOLDER")
         row.operator("keymark.save_take", icon="FILE_TICK")
 
@@ -58,7 +59,7 @@ class KEYMARK_MT_clips(bpy.types.Menu):
             entry.as_new_take = take is not None and take.clip is not None
 
 
-def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
     """Draw the clip's size, length and rate, or that its file is missing."""
     clip, state = take.clip, take.clip_state
     if state.missing:
@@ -71,9 +72,9 @@ def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
     facts.active = False
     size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])
     extent = label("{count} frames at {rate:.5g} fps", count=clip.frame_duration, rate=state.rate)
-    facts.label(text=f"{size}, {extent}", translate=False, icon="INFO")
+    draw_sentence(facts, context, f"{size}, {extent}", "INFO")
     if state.variable_rate:
-        column.label(text="Variable rate: keys lie between frames", icon="ERROR")
+        draw_sentence(column, context, label("Variable rate: keys lie between frames"), "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))

@@ -4,7 +4,7 @@ import bpy
 
 from ..shell.job_progress import job_is_running
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.panel import TakePanel, side_by_side
 from ..shell.takes import active_take
 from .corrections import DRAGGING
 from .limb_selection import TITLES, selected_limbs
@@ -21,7 +21,7 @@ class KEYMARK_PT_keyframes_correct(TakePanel, bpy.types.Panel):
         take, column = active_take(context.scene), self.column()
         running = job_is_running(context, DRAGGING)
         column.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
-        row = column.row(align=True)
+        row = side_by_side(column)
         row.operator("keymark.flip_depth", text=_flipped(take), translate=False, icon="MOD_MIRROR")
         row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")
         row = column.row(align=True)

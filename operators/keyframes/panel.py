@@ -5,6 +5,7 @@ import bpy
 from ..matching.candidate_buttons import draw_candidates, draw_candidates_head
 from ..shell.contradictions import draw_contradictions
 from ..shell.found_frames import offered_at
+from ..shell.job_progress import steady_frame
 from ..shell.keyed_frames import (
     has_frame,
     keyframes_of,
@@ -14,7 +15,7 @@ from ..shell.keyed_frames import (
     unposed_proposals,
 )
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_progress
+from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
@@ -42,13 +43,13 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
         if not len(take.proposals):
             _draw_propose(column, context)
-        _draw_posed(column, take)
+        _draw_posed(column, context, take)
         row = column.row(align=True)
         row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
         going = row.operator("keymark.jump_to_proposal", text="Next to Pose")
         going.direction, going.skip_posed = "NEXT", True
         row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
-        _draw_here(column, context.scene, take)
+        _draw_here(column, round(steady_frame(context)), take)
         draw_contradictions(column, context, take)
         posing = column.column(align=True)
         posing.scale_y = 1.2
@@ -77,17 +78,19 @@ def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
-def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+def _draw_posed(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
     """Draw the numbers of proposed frames that are posed, of other posed frames, and of found ones."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     found = len(matched_frames(take))
     if found:
         text = label("{posed} posed, {found} found", posed=posed, found=found)
-        layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+        draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
         return
     if not proposed:
         text = label("{posed} posed; none proposed yet", posed=posed)
-        layout.label(text=text, icon="INFO", translate=False)
+        draw_sentence(layout, context, text, "INFO")
         return
     done = proposed - left
     text = label("{done} of {count} posed", done=done, count=proposed)
@@ -95,17 +98,17 @@ def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> No
         text = label(
             "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
         )
-    layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+    draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
 
 
-def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
+def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyGroup) -> None:
     """Draw whether this frame is posed, found or proposed, or that the motion is shown instead."""
-    frame = scene.frame_current
     data = take.armature.animation_data if take.armature is not None else None
     shown = data.action if data is not None else None
     if shown is not None and shown in (take.motion_action, take.finish.action):
         row = layout.row(align=True)
-        row.label(text="Motion shown", icon="ERROR")
+        if is_roomy(bpy.context):
+            row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)

@@ -98,7 +98,7 @@ def _fitted(
         for way in ways:
             write_posture(take.armature, way.posture)
             fit = fit_to_frame(frame, take.armature, take.keyframe_action, "POSE", matches)
-            found.append((fit.cost + way.strain, fit.posture))
+            found.append((fit.cost + way.strain, fit.candidates[0].posture))
     except InputError:  # the frame lies outside the footage, or shows nothing of what is followed
         return []
     finally:

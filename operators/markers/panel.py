@@ -4,11 +4,20 @@ import bpy
 
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
 from ..shell.messages import label
-from ..shell.panel import RowList, draw_progress, draw_sentence
+from ..shell.panel import (
+    RowList,
+    draw_progress,
+    draw_sentence,
+    is_roomy,
+    property_column,
+    side_by_side,
+)
 from ..shell.takes import active_take
 from .frame_markers import markers_label
 
 IGNORING = ("keymark.ignore_region", "keymark.ignore_still_areas")
+SWATCH_UNITS, NARROW_SWATCH_UNITS = 1.6, 0.8
+"""Width of a marker's color in the list, which leaves a narrow sidebar to the names."""
 LABEL_SHARE = 0.4
 """Share of the width that Blender gives to the labels of its two columns."""
 
@@ -22,16 +31,19 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
         """Draw one marker: color, name, status, and the eyedropper that picks this one alone."""
         row = layout.row(align=True)
         swatch = row.row()
-        swatch.ui_units_x = 1.6
+        roomy = is_roomy(context)
+        swatch.ui_units_x = SWATCH_UNITS if roomy else NARROW_SWATCH_UNITS
         swatch.enabled = item.is_picked
         swatch.prop(item, "color", text="")
         row.prop(item, "name", text="", emboss=False)
         status = row.row()
         status.alignment = "RIGHT"
         take = active_take(context.scene)
-        if item.is_picked and not item.has_readout(take):
+        if item.warning and not roomy:
+            status.label(text="", icon="ERROR")
+        elif item.is_picked and roomy and not item.has_readout(take):
             status.label(text="", icon="QUESTION")
-        elif item.is_picked:
+        elif item.is_picked and roomy:
             status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")
         here = next((index for index, marker in enumerate(take.markers) if marker == item), -1)
         pick = row.row()
@@ -103,7 +115,7 @@ def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     if take.active_marker < len(take.markers):
         _draw_marker(layout, context, take, take.markers[take.active_marker])
     _draw_ignored(layout, context, take)
-    row = layout.row(align=True)
+    row = side_by_side(layout)
     if not draw_progress(row, context, "keymark.check_markers"):
         row.operator("keymark.check_markers", icon="VIEWZOOM")
     shown = context.window_manager.keymark_show_masks
@@ -135,8 +147,7 @@ def _draw_ignored(
     row.template_list("KEYMARK_UL_ignored_regions", "", *source, rows=2, maxrows=5)
     row.column(align=True).operator("keymark.remove_ignored_region", text="", icon="REMOVE")
     if take.active_ignored < len(take.ignored_regions):
-        region, column = take.ignored_regions[take.active_ignored], layout.column()
-        column.use_property_split, column.use_property_decorate = True, False
+        region, column = take.ignored_regions[take.active_ignored], property_column(layout.column())
         column.prop(region, "some_frames")
         if region.some_frames:
             frames = column.column(align=True)
@@ -151,9 +162,7 @@ def _draw_marker(
     marker: bpy.types.PropertyGroup,
 ) -> None:
     """Draw the active marker: its properties and its readout."""
-    column = layout.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
+    column = property_column(layout.column())
     column.prop(marker, "segment")
     column.prop(marker, "color")
     if not marker.has_readout(take):

@@ -5,6 +5,7 @@ names tell masks apart for color-blind eyes.
 """
 
 from collections.abc import Sequence
+from time import monotonic
 
 import bpy
 import gpu
@@ -36,6 +37,9 @@ NAME_GAP = 4.0
 """Distance between an outline and the name above it [unscaled px]."""
 SHORTEST_NAMED = 0.25
 """Share of the longest outline's length below which outlines get no name."""
+LARGEST_SHARE = 0.2
+"""Of a frame's time: masks that take longer are not made while the animation plays. Overlays together are to
+take at most a third."""
 MESH = 24
 """Cells across the picture, which follow the lens distortion."""
 
@@ -141,21 +145,52 @@ def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | Non
     """Make the masks of the scene's current frame."""
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
+    if is_played() and not _cost.is_fast(scene):
+        return  # `draw` shows none that are of another frame
     try:
+        started = monotonic()
         update_masks(scene)
+        _cost.last_s = monotonic() - started
     except KeymarkError:
         clear_previews()  # the clip is missing, which the operator that shows masks reports
+
+
+@persistent
+def _stopped(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Make the masks that playback has left out."""
+    _cost.last_s = 0.0
+    _frame_changed(scene)
+
+
+def is_played() -> bool:
+    """Whether any window plays the animation."""
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+
+
+class Cost:
+    """How long the masks of a frame took to make."""
+
+    last_s = 0.0
+
+    def is_fast(self, scene: bpy.types.Scene) -> bool:
+        """Whether they take no more than their share of a frame's time, so that playback keeps its speed."""
+        return self.last_s <= LARGEST_SHARE * scene.render.fps_base / scene.render.fps
+
+
+_cost = Cost()
 
 
 def register() -> None:
     """Follow the scene's frame, unless Blender runs in the background."""
     if not bpy.app.background:
         bpy.app.handlers.frame_change_post.append(_frame_changed)
+        bpy.app.handlers.animation_playback_post.append(_stopped)
 
 
 def unregister() -> None:
     """Stop following it; release textures and open files."""
     if _frame_changed in bpy.app.handlers.frame_change_post:
         bpy.app.handlers.frame_change_post.remove(_frame_changed)
+        bpy.app.handlers.animation_playback_post.remove(_stopped)
     _drawn.clear()
     clear_previews()

@@ -5,7 +5,7 @@ import bpy
 from ..markers.properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.messages import label
-from ..shell.panel import RowList, TakePanel
+from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
@@ -60,7 +60,7 @@ class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
             words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
             column.progress(factor=review.confidence, text=words, type="BAR")
         if not len(review.weak_frames):
-            column.label(text="No frame needs another keyframe", icon="CHECKMARK")
+            draw_sentence(column, context, label("No frame needs another keyframe"), "CHECKMARK")
             return
         column.label(text="Worth Another Keyframe")
         column.template_list(

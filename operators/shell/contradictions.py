@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import bpy
 
 from ...core.footage.keypoints.body_points import BODY_POINTS
+from .job_progress import steady_frame
 from .messages import label
 from .panel import draw_sentence
 
@@ -59,7 +60,7 @@ def draw_contradictions(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw what contradicts in the current frame, if anything does."""
-    names = contradictions_at(take, context.scene.frame_current_final)
+    names = contradictions_at(take, steady_frame(context))
     if names:
         said = label("No plausible pose explains {names} here", names=", ".join(names))
         draw_sentence(layout, context, said, "ERROR")

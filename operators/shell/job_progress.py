@@ -18,6 +18,7 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
     stage: bpy.props.StringProperty()
     fraction: bpy.props.FloatProperty(min=0.0, max=1.0)
     time_left: bpy.props.StringProperty()
+    frame: bpy.props.FloatProperty(description="The scene frame at which the job was begun")
 
     def show(self, stage: str, fraction: float, time_left: str = "") -> None:
         """Set all three."""
@@ -41,6 +42,16 @@ def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
+
+
+def steady_frame(context: bpy.types.Context) -> float:
+    """The scene's frame; while a job runs, the one at which it was begun.
+
+    Previews go through the clip, and panels that followed them would change their height under the mouse.
+    """
+    manager = context.window_manager
+    begun = manager.keymark_progress.stage and job_is_running(context)
+    return float(manager.keymark_progress.frame if begun else context.scene.frame_current_final)
 
 
 def time_left(elapsed_s: float, fraction: float) -> str:

@@ -6,12 +6,9 @@ from typing import ClassVar
 import bpy
 
 from .notices import draw_notices, notices_of
-from .panel import TakePanel, unscaled_width
+from .panel import TakePanel, is_roomy, property_column
 from .steps import is_behind
 from .takes import active_take
-
-ROOMY_PX = 240.0
-"""Width of a sidebar in which a header has room for a name and a summary."""
 
 
 class StepPanel(TakePanel):
@@ -41,19 +38,16 @@ class StepPanel(TakePanel):
         self, header: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
     ) -> None:
         """Draw at the header's end what the step has come to, if it fits, or that something is wrong."""
-        has_room = unscaled_width(context) >= ROOMY_PX
         state = header.row()
         state.alignment = "RIGHT"
         state.active = False
         wrong = bool(notices_of(take, self.step)) or self.is_wrong(take)
         icon = "ERROR" if wrong else "CHECKMARK" if is_behind(take, self.step) else "NONE"
-        state.label(text=self.summary(take) if has_room else "", icon=icon, translate=False)
+        state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
 
     def column(self) -> bpy.types.UILayout:
         """Return the step's column of properties."""
-        self._body.use_property_split = True
-        self._body.use_property_decorate = False
-        return self._body.column()
+        return property_column(self._body)
 
     @property
     def body(self) -> bpy.types.UILayout:

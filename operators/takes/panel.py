@@ -5,7 +5,8 @@ import bpy
 from ..footage.fitted_view import keep_beside_sidebar
 from ..library import registry
 from ..shell.job_progress import job_is_running
-from ..shell.panel import RowList, SidebarPanel, draw_progress
+from ..shell.messages import label
+from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer
@@ -101,8 +102,13 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
                 _draw_beginning(layout)
             return
         _draw_takes(layout, context.scene.keymark)
-        if not draw_progress(layout, context):
-            layout.label(text=next_step(take), icon="FORWARD")
+        # As high as the sentence, so that nothing moves when a job begins or ends.
+        sentence = label(next_step(take))
+        row = layout.row()
+        row.scale_y = sentence_height(context, sentence)
+        if not draw_progress(row, context):
+            row.scale_y = 1.0
+            draw_sentence(row, context, sentence, "FORWARD")
 
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:

@@ -78,6 +78,17 @@ def test_who_bends_kneels_or_is_cut_off_is_no_measure() -> None:
     assert len(standing_keypoints(Keypoints.none(20), BODY, FPS)) == 0
 
 
+def test_who_is_in_the_air_is_no_measure() -> None:
+    """Upright and as tall as ever, half a meter over the floor every second second."""
+    points = walk(480)
+    time_s = np.arange(len(points)) / FPS
+    points[..., 2] += (4.9 * np.maximum(0.1 - (time_s % 2.0 - 1.0) ** 2, 0.0))[:, None]
+    seen = standing_keypoints(keypoints(points), BODY, FPS)
+    assert 16 <= len(seen) <= 40
+    fit = fit_camera(before(), CameraEvidence(uprights=seen), lens_is_known=True)
+    assert abs(fit.placement.tilt_rad + np.radians(8.0)) < min(2.5 * fit.std["tilt"], np.radians(4.0))
+
+
 def test_single_moments_far_off_change_little() -> None:
     """Every fifth moment has a detector's ankles at the knees."""
     points = walk()

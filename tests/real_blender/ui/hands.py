@@ -154,6 +154,19 @@ class Hands:
         yield from self.press("RET")
 
     def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+        """The same, and then again in the steps that were folded because the work has left them behind."""
+        found = yield from self._look_around(kind, copy, wanted)
+        steps = bpy.context.window_manager.keymark_steps
+        folded = [name for name in steps.bl_rna.properties.keys() if getattr(steps, name) is False]
+        if found is not None or not folded:
+            return found
+        for name in folded:  # where a header is no script can see
+            setattr(steps, name, True)
+        self.area(kind).tag_redraw()
+        yield from turns(4)
+        return (yield from self._look_around(kind, copy, wanted))
+
+    def _look_around(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
         """Where in the sidebar the button is whose copied text contains all that is wanted."""
         for text, place in list(self._remembered.items()):
             if text[:2] == (kind, copy) and all(word in text[2] for word in wanted):
