@@ -19,6 +19,9 @@ from .known_postures import PARTS
 UNWORN_COST = 12.0
 """Cost of a region that nobody wears: one marker in twenty, at one of some ten thousand places and sizes that
 can be told apart in a picture."""
+KEYPOINT_COST = 0.5
+"""What a keypoint costs where the posture is right, its guessed depth included: no gain of leaving a
+marker out."""
 FEW_STARTS = 24
 """Starts of a search without a marker, which only asks how well the rest can be explained."""
 
@@ -41,7 +44,7 @@ def unworn_marker(
     visible = np.flatnonzero(shown.tracks.visible[0])
     # Nothing is left to gain where all is well explained.
     alone = len(visible) + int(shown.points.seen.sum()) < 2
-    if least < UNWORN_COST or alone or not len(visible):
+    if least < UNWORN_COST + KEYPOINT_COST * shown.points.seen.sum() or alone or not len(visible):
         return None
     rest = {int(marker): shown.without(int(marker)) for marker in visible}
     gains = {

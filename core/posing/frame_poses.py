@@ -6,7 +6,7 @@ by their probability and brought to the evidence again, which is nearer to the t
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import fit_frame
 from ..library.library import Library
-from ..matching.candidates import ABOUT_RIGHT_M, Candidate
+from ..matching.candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate
 from ..prior.frame_prior import FramePrior
 from .frame_belief import belief_costs, believed_fit
 from .frame_confidence import frame_confidence
@@ -26,8 +26,10 @@ from .frame_shown import FrameShown
 from .known_postures import part_shapes
 
 MOST_CANDIDATES = 4
+MOST_MEANS = 8
+"""Means that are brought to the evidence, where some may end alike."""
 APART_M = 0.13
-"""Candidates' points, hips aligned, are farther apart than this on average: someone sees the difference."""
+"""Hypotheses that lead to different means are farther apart than this on average, hips aligned."""
 NO_TORSO = -1
 """Stands for the torso of a hypothesis from keyframes."""
 TEMPERATURE = 3.0
@@ -122,15 +124,19 @@ def _candidates(
     order = np.argsort(-share, kind="stable")
     if kept:
         order = np.concatenate([[leading], order])
-    chosen = distinct(points, order, APART_M, MOST_CANDIDATES)
+    chosen = distinct(points, order, APART_M, MOST_MEANS)
     means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
     start = Hypotheses(means, found.cost[chosen], found.torso[chosen], found.exchanged[chosen])
     final = refined(known, shown, start, floor_m)
+    if kept:
+        rest = final.posture[np.arange(1, len(chosen))]
+        final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
     made = []
-    for rank, row in enumerate(chosen):
-        posture = found.posture[leading] if kept and rank == 0 else final.posture[rank]
+    ended = points_from_hips(body, final.posture)
+    for rank in distinct(ended, np.arange(len(chosen)), DISTINCT_M, MOST_CANDIDATES):
+        posture = final.posture[int(rank)]
         name, flipped = _nearest(known, posture)
-        sure = frame_confidence(float(share[row]), float(final.cost[rank]))
+        sure = frame_confidence(float(share[chosen[rank]]), float(final.cost[rank]))
         made.append(Candidate(posture, name, flipped, sure))
     return tuple(made)
 
