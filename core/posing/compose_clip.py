@@ -31,9 +31,10 @@ NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
 """Distances tried about the first path."""
 SMOOTH_S = 0.6
 """Time over which the rough distance is smoothed."""
+FLOOR_STD_M = 0.06
+"""Height of a standing foot where a likelihood has a floor of its own."""
 MOST_PLACED = 16
 """Frames in which the performer is placed by size."""
-FLOOR_STD_M = 0.06
 
 
 @dataclass(frozen=True, eq=False)

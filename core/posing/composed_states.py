@@ -73,13 +73,7 @@ class FrameStates:
 class FrameCosts:
     """Costs of stances and limbs in one frame."""
 
-    def __init__(
-        self,
-        likelihood: FrameLikelihood,
-        stances: StanceFeatures,
-        floor_m: float | None,
-        moments: bool = True,
-    ) -> None:
+    def __init__(self, likelihood: FrameLikelihood, stances: StanceFeatures, floor_m: float | None) -> None:
         self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
         self.axes = np.asarray(likelihood.image_axes, dtype=np.float32)  # (A, 2, 3)
         self.rows = self.axes * np.asarray(likelihood.weight, dtype=np.float32)[:, None, None]
@@ -88,7 +82,6 @@ class FrameCosts:
         self.sight = np.asarray(likelihood.sight, dtype=np.float32)
         self.share = np.float32(likelihood.share)
         self.markers = len(likelihood.unclipped)
-        self.moments = moments
 
     def states(self, depths_m: Array) -> FrameStates:
         """The states that explain the frame best, at some distances from the camera, the middle one first."""
@@ -156,7 +149,7 @@ class FrameCosts:
             depth = self._hint_cost(observed, local[:, column] @ self.sight)
             if depth is not None:
                 cost += depth
-            if observed < self.markers and self.moments and self.likelihood.unclipped[observed]:
+            if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[stance, column]
                 entries = [moment @ _products(*pair) for pair in self._pairs(observed)]
                 cost += self._extent_cost(observed, entries, -at @ self.backward)
@@ -183,7 +176,7 @@ class FrameCosts:
             guessed = self._hint_cost(observed, (self.sight @ turn) @ local + (origin @ self.sight)[:, None])
             if guessed is not None:
                 cost += guessed
-            if observed < self.markers and self.moments and self.likelihood.unclipped[observed]:
+            if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[:, column].T  # (6, L)
                 first, second = (axis @ turn for axis in self.axes[observed])
                 entries = [

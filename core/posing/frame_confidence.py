@@ -4,8 +4,9 @@ import numpy as np
 
 from ..matching.candidates import PROBABILITY_BOUNDS
 
-INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.5, 0.5, -0.05
-"""Logistic regression, rounded."""
+INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.6, 0.45, -0.055
+"""Logistic regression, rounded, of being about right, on 184 candidates of 64 frames of four takes with
+truth: of those up to 20, 40, 60, 80 and 100 % sure, 13, 26, 42, 69 and 100 % were."""
 
 
 def frame_confidence(share: float, cost: float) -> float:

@@ -40,7 +40,8 @@ def unworn_marker(
     least = float(found.cost.min())
     visible = np.flatnonzero(shown.tracks.visible[0])
     # Nothing is left to gain where all is well explained.
-    if least < UNWORN_COST or len(visible) + int(shown.points.seen.sum()) < 2:
+    alone = len(visible) + int(shown.points.seen.sum()) < 2
+    if least < UNWORN_COST or alone or not len(visible):
         return None
     rest = {int(marker): shown.without(int(marker)) for marker in visible}
     gains = {

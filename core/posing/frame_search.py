@@ -42,6 +42,8 @@ PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3
 """How far a descent may go from its start: sizes are good to a tenth, headings are 15 degrees apart."""
 FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))
 """Factors of the image noise, one a step, from a composition, which a performer is about 5 cm off."""
+NEVER_COST = 1e3
+"""Cost of a body part of which lies behind the camera, where nothing can be compared."""
 SCREENED_SHARE = 0.5
 """Weight of a start's cost in screening, in which the many compositions around it count: a posture that only
 one combination leads to is less likely than its own evidence says."""
@@ -193,7 +195,8 @@ def _descended(
     place = np.argsort(np.concatenate(order)) if count else np.zeros(0, dtype=np.intp)
     posture = Posture.concatenate(postures)[place]
     cost = np.concatenate(costs)[place] + EXCHANGED_COST * starts.exchanged
-    return posture, cost + known.plausibility.costs(known.pools.body.pose(posture)).sum(axis=-1)
+    cost = cost + known.plausibility.costs(known.pools.body.pose(posture)).sum(axis=-1)
+    return posture, np.where(np.isfinite(cost), cost, NEVER_COST)
 
 
 def _side_by_side(

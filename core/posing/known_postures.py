@@ -88,18 +88,14 @@ def part_shapes(body: Body, pose: Pose) -> dict[str, Array]:
     skeleton = body.skeleton
     points, names = body.points(pose), skeleton.point_names
     shapes: dict[str, Array] = {}
-    ahead = np.swapaxes(_heading_turn(pose), -1, -2)
     trunk = [names.index(name) for name in ("head", "shoulder.L", "shoulder.R", "hip.L")]
-    shapes[TRUNK] = _flat((points[:, trunk] - pose.posture.translation[:, None]) @ np.swapaxes(ahead, -1, -2))
+    upper: Array = points[:, trunk] - pose.posture.translation[:, None]
+    shapes[TRUNK] = _flat(np.einsum("nki,nij->nkj", upper, yaw_rotation(headings_rad(pose.posture))))
     for limb in LIMBS:
         joint = skeleton.joint_index(CARRIERS[limb.partition(".")[0]])
         own = [index for index, name in enumerate(names) if limb_of(name) == limb]
         shapes[limb] = _flat((points[:, own] - pose.origin[:, None, joint]) @ pose.rotation[:, joint])
     return shapes
-
-
-def _heading_turn(pose: Pose) -> Array:
-    return yaw_rotation(headings_rad(pose.posture))
 
 
 def _flat(points: Array) -> Array:

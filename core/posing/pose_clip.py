@@ -121,9 +121,12 @@ class _Search:
         postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)
         explained, off = explained_shares(given, sampled, postures[sampled])
         found = _candidates(self.pools, stances, work, sampled, composed, postures, explained)
-        fit = float(explained.mean())
+        seen = np.isfinite(off).any(axis=1)
+        fit = float(explained[seen].mean()) if seen.any() else 0.0
         if self.between is not None:
-            postures = placed_in_clip(postures, interpolate(take.keyframes, count), work.first)
+            ends = Keyframe(work.first, postures[0]), Keyframe(self.between[1], postures[-1])
+            elsewhere = interpolate(take.keyframes or ends, count)
+            postures = placed_in_clip(postures, elsewhere, work.first)
         return FoundPoses(
             found,
             postures,

@@ -7,9 +7,9 @@ from ..arrays import Array
 from ..prior.keyframes import Keyframe
 from ..take.take import Take
 
-FARTHEST_S = 1.0
-"""Time on either side of a corrected keyframe beyond which found ones stay as they are: what a body does a
-second later follows from its posture no more, and the animator waits."""
+FARTHEST_S = 0.5
+"""Time on either side of a corrected keyframe beyond which found ones stay: what a body does later
+follows less and less from its posture there, and the animator waits."""
 
 
 @dataclass(frozen=True)

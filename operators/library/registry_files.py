@@ -1,6 +1,7 @@
 """Files of the registry: the user's folder and the libraries that come with Keymark, read and written."""
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from ...core.errors import InputError
@@ -42,11 +43,21 @@ def shipped_libraries() -> list[Library]:
 
 
 def all_libraries() -> Sequence[Library]:
-    """All registered libraries.
+    """All registered libraries; the same objects for as long as no file changes.
+
+    What is made of them (`core/posing/part_pools`) is kept by the objects: asked again, it is at hand.
 
     Raises:
         InputError: There is none.
     """
+    files = sorted(file for folder in folders() if folder.is_dir() for file in folder.glob("*.json"))
+    stats = [(file, file.stat()) for file in files]
+    return _libraries(tuple((file, stat.st_mtime_ns, stat.st_size) for file, stat in stats))
+
+
+@lru_cache(maxsize=1)
+def _libraries(_files: tuple[tuple[Path, int, int], ...]) -> Sequence[Library]:
+    """All registered libraries, read from files of these times and sizes."""
     return find_libraries(EVERY_LIBRARY, folders())
 
 

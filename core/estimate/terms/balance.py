@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array, IndexArray
+from ...arrays import Array
 from ...body.center_of_mass import mass_weights
 from ...body.kinematics import Body
 from ...body.skeleton import SIDES
@@ -53,9 +53,9 @@ class BalanceTerm:
         return np.asarray(0.5 * size * np.log1p((residual**2).sum(-1) / size))
 
     @cached_property
-    def _feet(self) -> IndexArray:
+    def _feet(self) -> tuple[int, ...]:
         names = {segment.name: segment.joint for segment in self.body.skeleton.segments}
-        return np.array([names[f"foot.{side}"] for side in SIDES], dtype=np.intp)
+        return tuple(names[f"foot.{side}"] for side in SIDES)
 
     def _residual(self, state: ClipState) -> tuple[Array, Array, Array]:
         """(F, 2) in standard deviations, (F, 2) share of each foot in the place, (F, 2, 3) soles' middles."""

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import cv2
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
@@ -16,6 +17,7 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.shell.takes import active_take
 
+FRAMES = 32
 HEIGHT_M, TILT = 1.1, float(np.radians(-9.0))
 
 
@@ -30,23 +32,30 @@ def seen_file(take: Take, points: Array, path: Path) -> Path:
 
 
 def walking_file(take: Take, frames: int, path: Path) -> Path:
-    """Keypoints of someone who comes nearer before a camera that looks down."""
-    away = np.linspace(0.0, 3.5, frames)
-    places = np.column_stack([0.3 * away, 7.0 - away, 0.0 * away])
+    """Keypoints of someone who stands far away, then near, before a camera that looks down."""
+    places = np.where(np.arange(frames)[:, None] < frames // 2, [-0.8, 7.0, 0.0], [0.4, 3.6, 0.0])
     posture = Posture.stack([standing_posture(take.body, place) for place in places])
     pose = CameraPlacement(HEIGHT_M, TILT, 0.0).matrix()
     filmed = replace(take, camera=replace(take.camera, matrix_world=pose))
     return seen_file(filmed, take.body.points(take.body.pose(posture)), path)
 
 
-def test_a_walk_sets_height_and_tilt(plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion) -> None:
-    """The lens that the take knows is kept."""
-    take = active_take(plain)
-    take.stature = plain_take.body.actor.stature_m
-    path = walking_file(plain_take, len(wave_motion.points), plain_take.folder / "walk.json")
-    bpy.ops.keymark.load_keypoints(filepath=str(path))
+@pytest.mark.usefixtures("registered")
+def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
+    """A lens that somebody has set is kept."""
+    clip = tmp_path / "room.mp4"
+    writer = cv2.VideoWriter(
+        str(clip), cv2.VideoWriter_fourcc(*"mp4v"), plain_take.fps, plain_take.camera.resolution
+    )
+    for _ in range(FRAMES):
+        writer.write(np.full((*plain_take.camera.resolution[::-1], 3), 90, np.uint8))
+    writer.release()
+    bpy.ops.keymark.load_footage(filepath=str(clip))
+    take = active_take(bpy.context.scene)
+    take.camera.data.lens, take.stature = plain_take.camera.lens_mm, plain_take.body.actor.stature_m
+    bpy.ops.keymark.load_keypoints(filepath=str(walking_file(plain_take, FRAMES, tmp_path / "walk.json")))
     assert bpy.ops.keymark.camera_from_walk() == {"FINISHED"}
-    take = active_take(plain)
+    take = active_take(bpy.context.scene)
     assert take.camera_height == pytest.approx(HEIGHT_M, abs=0.15)
     assert take.camera_tilt == pytest.approx(TILT, abs=np.radians(2.5))
     assert take.camera.data.lens == pytest.approx(plain_take.camera.lens_mm) and take.camera_findings

@@ -305,3 +305,14 @@ def test_a_damaged_file_of_catalogs_is_named_where_it_is(own: Path, assets: Path
         bpy.ops.keymark.install_library(library="small")
     assert str(assets / "blender_assets.cats.txt") in str(caught.value)
     assert [file.name for file in assets.iterdir()] == ["blender_assets.cats.txt"]
+
+
+def test_libraries_are_the_same_objects_until_a_file_changes(
+    own: Path, library: Library, tmp_path: Path
+) -> None:
+    """What was made of them is kept by the objects."""
+    imported(library, tmp_path)
+    first = registry_files.all_libraries()
+    assert registry_files.all_libraries() is first
+    imported(replace(library, identifier="another", title="Another"), tmp_path)
+    assert [each.identifier for each in registry_files.all_libraries()] == ["another", "small"]

@@ -33,6 +33,7 @@ class Context:
     def __init__(self, scene: bpy.types.Scene) -> None:
         """A wide sidebar."""
         self.scene, self.region = scene, SimpleNamespace(width=2000)
+        self.window_manager = bpy.context.window_manager
         self.preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
 
 

@@ -132,6 +132,16 @@ def test_a_region_that_nobody_wears_is_named_and_left_out(
     assert min(errors_m(found, truth)) < 0.16
 
 
+def test_keypoints_that_no_body_explains_lead_to_an_answer_all_the_same(libraries: Libraries) -> None:
+    """A detector saw points all over the picture, and there is no marker to leave out."""
+    truth = performed(0.0)
+    seen = detected(truth, 6)
+    wild = np.random.default_rng(6).uniform(20.0, 220.0, size=seen.pixel.shape)
+    found = find_frame_poses(shown(hidden(film(truth)), replace(seen, pixel=wild)), libraries)
+    assert found.contradictions
+    assert found.candidates[0].confidence < 0.4
+
+
 def test_between_good_keyframes_their_posture_stays(libraries: Libraries) -> None:
     """What keyframes tell is one more hypothesis, and near them the likeliest."""
     motion = exercise(45)

@@ -29,8 +29,8 @@ def keyframes(posed: list[int], found: list[int]) -> list[Keyframe]:
 @pytest.mark.parametrize(
     ("posed", "found", "section"),
     [
-        ([20, 40, 60], [25, 35, 45], Section(20, 60, (25, 35, 45))),  # up to decided ones
-        ([40], [10, 20, 50], Section(10, 99, (20, 50))),  # beyond a second a found one bounds it
+        ([20, 40, 60], [30, 35, 45], Section(20, 60, (30, 35, 45))),  # up to decided ones
+        ([40], [10, 20, 50], Section(10, 99, (20, 50))),  # beyond half a second a found one bounds it
         ([40], [5, 90], Section(0, 99, (5, 90))),  # but always beyond one
         ([40], [50], Section(40, 99, (50,))),  # nowhere without one
         ([40], [], Section(40, 40, ())),
