@@ -27,7 +27,7 @@ from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.registry import SHIPPED, find_libraries  # noqa: E402
-from keymark.core.library.texts import EVERY_LIBRARY  # noqa: E402
+from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
 from keymark.core.posing.frame_search import knowledge  # noqa: E402

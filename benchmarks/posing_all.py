@@ -19,7 +19,7 @@ from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.registry import SHIPPED, find_libraries  # noqa: E402
-from keymark.core.library.texts import EVERY_LIBRARY  # noqa: E402
+from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.progress import run  # noqa: E402

@@ -20,7 +20,7 @@ load_project()
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.registry import SHIPPED, find_libraries  # noqa: E402
-from keymark.core.library.texts import EVERY_LIBRARY  # noqa: E402
+from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.posing.section import section_around, take_around  # noqa: E402

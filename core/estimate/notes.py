@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
-from ..library.texts import COMPOSED
+from ..library.several_libraries import COMPOSED
 from ..prior.keyframes import Matched
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence

@@ -15,7 +15,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
-from ..library.texts import COMPOSED
+from ..library.several_libraries import COMPOSED
 from ..observation.regions import RegionModel
 from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate

@@ -12,7 +12,8 @@ from ..files.json_file import read_json, shown
 from ..files.json_folder import ENDING, is_other_format, is_path, json_files
 from .library import Library
 from .library_file import LARGEST_BYTES, SCHEMA, library_from_json, read_library
-from .texts import EVERY_LIBRARY, checked_identifier
+from .several_libraries import EVERY_LIBRARY
+from .texts import checked_identifier
 
 SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
 """The libraries that come with Keymark."""

@@ -8,14 +8,11 @@ from functools import lru_cache
 from ..errors import InputError
 from ..files.control_characters import is_control_character
 from ..files.json_file import shown
+from .several_libraries import COMPOSED, EVERY_LIBRARY
 
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60
 """Characters of a name at most; the name of a Blender data-block holds 63 bytes."""
-EVERY_LIBRARY = "auto"
-"""Stands for all libraries where one is named; hence no valid identifier."""
-COMPOSED = "composed"
-"""Stands for the library of a posture put together from parts of several; hence no valid identifier."""
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
     "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "

@@ -22,8 +22,8 @@ def explained_shares(given: MatchInput, frames: IndexArray, posture: Posture) ->
         posture: (T,) their postures.
 
     Returns:
-        (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and (T, A) how far each is
-        off in standard deviations of performers' differences; NaN where it is not seen.
+        (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
+        (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
     """
     places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
     likelihoods = frame_likelihoods(given.camera, given.evidence, frames, None, 1.0)

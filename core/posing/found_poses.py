@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
 from ..footage.reading import Reading
-from ..library.texts import COMPOSED
+from ..library.several_libraries import COMPOSED
 from ..matching.candidates import MatchedFrame
 from ..matching.matched_keyframes import with_matched
 from ..take.take import Take

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..body.posture import Posture
-from ..library.texts import COMPOSED
+from ..library.several_libraries import COMPOSED
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
 from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import find_images
-from ..library.texts import COMPOSED, EVERY_LIBRARY
+from ..library.several_libraries import COMPOSED, EVERY_LIBRARY
 from .character_settings import CharacterSettings
 from .conversion_settings import ConversionSettings
 from .description import Description, keypoint_files

@@ -10,7 +10,7 @@ from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
 from ..files.safe_path import safe_path
-from ..library.texts import EVERY_LIBRARY
+from ..library.several_libraries import EVERY_LIBRARY
 from .character_settings import CharacterSettings, read_character_settings
 from .evidence_kinds import evidence_mistake, in_order
 from .methods import METHODS

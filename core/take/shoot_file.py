@@ -9,7 +9,7 @@ from ..files.fields import Fields
 from ..files.inherited_fields import COMMENT_PREFIX
 from ..files.json_file import read_json, shown
 from ..files.paths import absolute_path
-from ..library.texts import EVERY_LIBRARY
+from ..library.several_libraries import EVERY_LIBRARY
 
 SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.several_libraries import EVERY_LIBRARY
 from .usage import UsageError
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:
     """Offer candidates at a scene frame, the one that the actor shows first, in place of all others."""
-    from ...core.library.texts import COMPOSED
+    from ...core.library.several_libraries import COMPOSED
     from ..matching.match_edits import add_candidate
 
     offered = take.offered

@@ -8,7 +8,7 @@ from ...core.errors import InputError
 from ...core.library.library import Library
 from ...core.library.library_file import write_library
 from ...core.library.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.several_libraries import EVERY_LIBRARY
 from . import user_folder
 
 

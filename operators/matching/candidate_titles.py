@@ -4,7 +4,7 @@ from math import degrees
 
 import bpy
 
-from ...core.library.texts import COMPOSED
+from ...core.library.several_libraries import COMPOSED
 from ..shell.messages import label
 
 NOTICEABLE_TURN_DEG = 15.0

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.body.human import HUMAN
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.several_libraries import EVERY_LIBRARY
 from ..library.registry import library_items
 from ..shell.found_frames import match_at
 

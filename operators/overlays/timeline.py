@@ -10,7 +10,7 @@ import numpy as np
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
 from ..shell.found_frames import doubtful_matches
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames
+from ..shell.keyed_frames import have_frames, matched_frames, posed_frames
 from ..shell.lru_cache import LruCache
 from ..shell.messages import label
 from ..shell.results import FootageSpeed, reading_of, review_of, speed_of
@@ -143,15 +143,14 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     proposed = [proposal.frame for proposal in take.proposals] if settings.show_proposals else []
     posed = posed_frames(take) if weak or proposed else ()
     if weak:
-        frames = np.array([frame for frame in weak if not has_frame(posed, frame)], dtype=np.float64)
-        items += weak_pointers(frames, timeline)
+        frames = np.array(weak, dtype=np.float64)
+        items += weak_pointers(frames[~have_frames(posed, frames)], timeline)
     shown_speed = speed if settings.show_speed else None
     matched = matched_frames(take) if settings.show_matches else ()
-    still = [frame for frame in proposed if not has_frame(matched, frame)]
-    if still:
-        frames = np.array(still, dtype=np.float64)
-        done = np.array([has_frame(posed, frame) for frame in still])
-        items += proposals(frames, _level(frames, shown_speed), done, timeline)
+    if proposed:
+        frames = np.array(proposed, dtype=np.float64)
+        still = frames[~have_frames(matched, frames)]
+        items += proposals(still, _level(still, shown_speed), have_frames(posed, still), timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
         found = take.matching.matches

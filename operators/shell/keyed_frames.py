@@ -5,8 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
+from numpy.typing import ArrayLike
 
+from ...core.arrays import BoolArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
@@ -69,6 +72,16 @@ def has_frame(frames: Sequence[float], frame: float) -> bool:
     """Whether ascending frames contain one within `SAME_FRAME`."""
     after = bisect_left(frames, frame)
     return any(abs(near - frame) < SAME_FRAME for near in frames[max(0, after - 1) : after + 1])
+
+
+def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
+    """Which of the wanted frames (K,) ascending frames contain, as `has_frame` tells of one."""
+    asked, known = np.asarray(wanted, dtype=np.float64), np.asarray(frames, dtype=np.float64)
+    if not len(known):
+        return np.zeros(len(asked), dtype=bool)
+    after = np.searchsorted(known, asked)
+    near = np.stack([known[np.maximum(after - 1, 0)], known[np.minimum(after, len(known) - 1)]])
+    return np.asarray((np.abs(near - asked) < SAME_FRAME).any(axis=0))
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:

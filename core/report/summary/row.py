@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
-from ...library.texts import COMPOSED
+from ...library.several_libraries import COMPOSED
 from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 from ...take.used_evidence import UsedEvidence

@@ -6,7 +6,7 @@ Measured on one processor of 2023 with clips of 320 x 240 to 1280 x 720; another
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from ...library.texts import EVERY_LIBRARY
+from ...library.several_libraries import EVERY_LIBRARY
 from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 
 SECONDS_A_TAKE = 0.9

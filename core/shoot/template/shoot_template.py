@@ -4,7 +4,7 @@ from typing import Any
 
 from ...files.fields import listed
 from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
-from ...library.texts import EVERY_LIBRARY
+from ...library.several_libraries import EVERY_LIBRARY
 from ...take.evidence_kinds import MARKERS
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize

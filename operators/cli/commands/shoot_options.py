@@ -2,7 +2,7 @@
 
 import argparse
 
-from ....core.library.texts import EVERY_LIBRARY
+from ....core.library.several_libraries import EVERY_LIBRARY
 from ....core.take.methods import METHODS
 from .evidence_options import add_evidence, add_keypoint_names
 

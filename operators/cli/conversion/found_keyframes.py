@@ -6,7 +6,7 @@ from typing import Any
 
 from ....core.estimate.reconstruct import Reconstruction, reconstruct
 from ....core.library.library import Library
-from ....core.library.texts import EVERY_LIBRARY
+from ....core.library.several_libraries import EVERY_LIBRARY
 from ....core.posing.found_poses import FoundPoses, with_found
 from ....core.posing.match_clip import match_clip
 from ....core.posing.pose_clip import pose_clip

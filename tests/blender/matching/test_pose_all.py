@@ -9,7 +9,7 @@ import pytest
 from _found import shown
 from _scene_state import differences, scene_state
 from keymark.core.errors import InputError
-from keymark.core.library.texts import COMPOSED
+from keymark.core.library.several_libraries import COMPOSED
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.candidate_posture import candidate_posture

@@ -157,7 +157,9 @@ def test_a_take_that_names_its_keypoints_gets_them_there(tmp_path: Path) -> None
 def test_ctrl_c_ends_the_program_too(clip: Path) -> None:
     """SIGINT to the command line alone, as a farm sends it: its program does not go on."""
     boot = (
-        "import sys; sys.path.insert(0, sys.argv.pop(1)); import _boot; _boot.load_package();"
+        # A shell that starts tests in the background has them ignore the signal.
+        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
+        "sys.path.insert(0, sys.argv.pop(1)); import _boot; _boot.load_package();"
         "from keymark.operators.cli.main import main; sys.exit(main(sys.argv[1:]))"
     )
     words = [sys.executable, "-c", boot, str(FAKE.parent), "detect", str(clip), "--detector", command("hang")]

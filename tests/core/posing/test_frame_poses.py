@@ -17,7 +17,7 @@ from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.library.library import Library
 from keymark.core.library.registry import SHIPPED, find_libraries
-from keymark.core.library.texts import EVERY_LIBRARY
+from keymark.core.library.several_libraries import EVERY_LIBRARY
 from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.posing.frame_poses import FramePoses, find_frame_poses
 from keymark.core.posing.frame_search import knowledge
