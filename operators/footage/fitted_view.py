@@ -64,8 +64,9 @@ def _fit(address: int) -> None:
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.as_pointer() == address and area.type == "VIEW_3D":
-                wanted = _wanted(area, window.scene)
-                if wanted is not None and may_move(_shown(area), _fitted.get(address)):
-                    fit_beside_sidebar(area, window.scene.render, find_take(window.scene).camera.data)
-                    _fitted[address] = wanted
-                    area.tag_redraw()
+                take, wanted = find_take(window.scene), _wanted(area, window.scene)
+                if take is None or wanted is None or not may_move(_shown(area), _fitted.get(address)):
+                    return
+                fit_beside_sidebar(area, window.scene.render, take.camera.data)
+                _fitted[address] = wanted
+                area.tag_redraw()
