@@ -9,9 +9,8 @@ from collections.abc import Callable
 
 import bpy
 
-from .keyed_frames import keyframes_of
 from .placement_guess import placement_is_guess
-from .takes import find_take, has_lost_actor, present_actor
+from .takes import find_take, present_actor
 
 _chosen: dict[tuple[str, str], tuple[bool, bool]] = {}
 """By a take's identifier and a step: whether it was behind when a person chose, and whether it is open."""
@@ -27,10 +26,13 @@ def _footage_is_behind(take: bpy.types.PropertyGroup) -> bool:
 
 
 def _posing_has_begun(take: bpy.types.PropertyGroup) -> bool:
-    """There is an actor, and frames of it are proposed or keyed."""
-    if present_actor(take) is None or has_lost_actor(take):
-        return False
-    return bool(len(take.proposals)) or bool(keyframes_of(take))
+    """Frames are proposed or keyed, be the actor there or gone."""
+    return bool(len(take.proposals)) or take.keyframe_action is not None
+
+
+def _is_posed(take: bpy.types.PropertyGroup) -> bool:
+    """The same with the actor in the scene."""
+    return present_actor(take) is not None and _posing_has_begun(take)
 
 
 def _is_finished(take: bpy.types.PropertyGroup) -> bool:
@@ -47,7 +49,7 @@ def _is_on_a_character(take: bpy.types.PropertyGroup) -> bool:
 STEPS: dict[str, Callable[[bpy.types.PropertyGroup], bool]] = {
     "footage": _footage_is_behind,
     "follow": _posing_has_begun,
-    "actor": _posing_has_begun,
+    "actor": _is_posed,
     "keyframes": _is_finished,
     "reconstruct": _is_finished,
     "review": _is_finished,

@@ -37,9 +37,9 @@ def test_steps_fold_once_the_work_has_left_them_behind(tiny_take: Take) -> None:
     take.finish.outdated = True
     assert folded(take) == begun
     bpy.data.objects.remove(take.armature)
-    assert folded(take) == {"footage"}
+    assert folded(take) == {"footage", "follow"}
     take.clip_state.missing = True
-    assert folded(take) == set()
+    assert folded(take) == {"follow"}
 
 
 def test_what_a_person_opens_stays_open_until_the_step_changes(opened: bpy.types.Scene) -> None:
