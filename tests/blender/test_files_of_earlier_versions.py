@@ -65,6 +65,10 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return scene.keymark.takes[scene.keymark.active_take]
 
 
+DROPPED = ("].matching.ranking",)
+"""Properties of then that nothing needs any more: libraries are not ranked, all of them take part."""
+
+
 def found(scene: bpy.types.Scene, path: str) -> Any:
     """The value under a path of a scene's properties, as JSON."""
     value: Any = scene
@@ -115,7 +119,7 @@ def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> N
     differing = [
         f"{path}: {value} became {found(scene, path)}"
         for path, value in expected.items()
-        if not is_same(found(scene, path), value)
+        if not any(name in path for name in DROPPED) and not is_same(found(scene, path), value)
     ]
     assert differing == []
 

@@ -62,7 +62,7 @@ def test_the_most_doubtful_is_posed_next_and_those_around_it_are_found_anew(
     found = bench.measure(trial, ())
     assert asked == [
         {"posed": (), "between": None, "frames": None},
-        {"posed": (16,), "between": (0, 23), "frames": (0, 8, 23)},
+        {"posed": (0, 16), "between": (0, 23), "frames": (8, 23)},  # the first is too far off, and holds
         {"posed": (8, 16), "between": (0, 8), "frames": (0,)},
     ]  # nothing is left around the last two
     assert [score.keyframes for score in found.scores] == [4] * 5
