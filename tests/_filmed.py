@@ -1,13 +1,20 @@
 """An album of the performer of `_scene`, drawn part by part before a static, cluttered background."""
 
+from functools import cache
+
 import cv2
 import numpy as np
-from _scene import BODY, CAMERA
+from _scene import BODY, CAMERA, exercise
 from keymark.core.body.posture import Posture
 from keymark.core.footage.clips.album import Album
 from keymark.core.observation.contours import ContourModel
 from keymark.core.observation.part_map import part_map
 
+FRAMES = 46
+FRAME = np.arange(FRAMES)
+POSED = np.array([0, 15, 30, 45])
+"""The frames of the keyframes."""
+TRUTH = exercise(FRAMES)
 NOISE_LEVELS = 3.0
 FINER = 3
 
@@ -42,3 +49,9 @@ def photograph(posture: Posture, shake_px: int = 0, seed: int = 3) -> Album:
         image = image + rng.normal(0.0, NOISE_LEVELS, size=image.shape)
         album.add(frame, np.clip(np.round(image), 0, 255).astype(np.uint8))
     return album
+
+
+@cache
+def album() -> Album:
+    """Pictures of the true motion."""
+    return photograph(TRUTH)

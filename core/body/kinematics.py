@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 from . import rotations
 from .actor import Actor
 from .human import HUMAN
@@ -61,6 +61,18 @@ class Pose:
         jacobian = flat.reshape(*world.shape, -1)
         jacobian *= self.posture.skeleton.moved_by[list(joints)][:, None, :]
         return np.asarray(jacobian)
+
+    def along_jacobian(self, joints: Sequence[int] | IndexArray, world: Array, direction: Array) -> Array:
+        """d (direction · world) / d tangent (..., N, D) of points (..., N, 3), each fixed in a joint's frame.
+
+        Args:
+            joints: (N,) the joints.
+            world: (..., N, 3) the points [m].
+            direction: (..., N, 3) a vector for each, which does not turn with the body.
+        """
+        # direction · (v + ω × p) is direction · v + (p × direction) · ω.
+        wrench = np.concatenate([direction, rotations.cross(world, direction)], axis=-1)
+        return np.asarray((wrench @ self.screws) * self.posture.skeleton.moved_by[joints])
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,7 +39,7 @@ from .frame_residuals import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .performer_placement import ground_place
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
-from .terms.term import student_weight
+from .terms.term import student_cost, student_weight
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
@@ -226,8 +226,8 @@ class _Problem:
         rows = self._rows(x)
         degrees, image = RegionNoise().degrees, 0.0
         for residual, information in rows.groups:
-            size = degrees * residual.shape[-1]
-            image += 0.5 * size * np.log1p((residual**2 * information).sum(-1) / size).sum()
+            squared = (residual**2 * information).sum(-1)
+            image += student_cost(squared, degrees, residual.shape[-1]).sum()
         return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * rows.height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
@@ -244,7 +244,7 @@ class _Problem:
 
     def _stands(self, x: Array) -> bool:
         model = self.model(x)
-        predicted = model.evaluate(self._pose(x, model), self.frame)
+        predicted = model.evaluate(self._pose(x, model.body), self.frame)
         apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
         width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
         explained = np.nan_to_num(apart) <= np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX)
@@ -255,13 +255,10 @@ class _Problem:
         deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
         return bool(explained.all() and near[sure].all() and deviations.max() <= MOST_DEVIATIONS)
 
-    def _pose(self, x: Array, model: RegionModel) -> Pose:
-        return self._pose_of(x, model.body)
-
     def _off_px(self, x: Array) -> tuple[Array, Array]:
         """Differences (N, 2) of predicted and seen keypoints [px], and their variances (N,) [px²]."""
         model = self.keypoint_model(x)
-        off = (model.pixels(self._pose_of(x, model.body), self.frame) - self.points.pixel)[0]
+        off = (model.pixels(self._pose(x, model.body), self.frame) - self.points.pixel)[0]
         places = [USUAL_PLACES[name] for name in self.point_names]
         std_m = np.array([np.hypot(place.place_std_m, place.error_std_m) for place in places])
         sure = np.maximum(self.points.confidence[0], LEAST_CONFIDENCE)
@@ -273,12 +270,12 @@ class _Problem:
         depth = float(self.camera.depth(self.place, int(self.frame[0])))
         return self.camera.focal_px / max(depth, 0.1)
 
-    def _pose_of(self, x: Array, body: Body) -> Pose:
+    def _pose(self, x: Array, body: Body) -> Pose:
         return body.pose(self.posture(x, body))
 
     def _rows(self, x: Array) -> "_Rows":
         model = self.model(x)
-        pose = self._pose(x, model)
+        pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame)
         residual, _ = feature_rows(self.observed, predicted)
         noise = RegionNoise()
@@ -316,7 +313,7 @@ class _Problem:
     def _jacobians(self, x: Array, rows: "_Rows") -> tuple[Array, Array, Array]:
         """Jacobians of the regions' rows (M, 5, X), the keypoints' (N, 2, X) and the height (X,)."""
         model, points = self.model(x), self.keypoint_model(x)
-        pose = self._pose(x, model)
+        pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame, jacobian=True)
         _, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None

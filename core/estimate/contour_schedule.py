@@ -96,7 +96,7 @@ def all_located(body: Body, marked: tuple[str, ...]) -> bool:
 
 def _points_locate(keypoints: Keypoints) -> bool:
     """Whether keypoints show the ends of all limbs, and the trunk, in most frames."""
-    seen = np.isfinite(keypoints.pixel).all(axis=-1).mean(axis=0) if len(keypoints.names) else np.zeros(0)
+    seen = keypoints.seen.mean(axis=0)
     best = {name: 0.0 for group in ENDS for name in group}
     for name, share in zip(keypoints.names, seen.tolist(), strict=True):
         best[name] = max(best.get(name, 0.0), share)

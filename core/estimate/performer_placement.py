@@ -6,6 +6,8 @@ performer. Both are weighed against each other. Where nothing is seen the body i
 holds it well.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -75,49 +77,61 @@ def place_standing(
     Returns:
         A single posture.
     """
-    rotation, location = camera.pose(frame)
+    rotation, _ = camera.pose(frame)
     heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
     standing = standing_posture(body, heading_rad=heading)
     seen = None if keypoints is None else principal_keypoints(keypoints).pixel[0]
     if seen is not None and np.isfinite(seen[_TRUNK_POINTS]).any():
-        return _on_floor(*_by_keypoints(body, camera, frame, standing, seen), standing, body)
-    known = _usable(regions, segments)
-    if regions is None or not known.any():
+        known = _TRUNK_POINTS & np.isfinite(seen).all(axis=-1)
+
+        def by_points(there: Posture) -> tuple[Array, float]:
+            shown, _ = camera.project(body.points(body.pose(there)), frame)
+            return _center(shown, known), _relative_span(shown, seen)
+
+        return _by_size(body, camera, frame, standing, _center(seen, known), by_points)
+    usable = _usable(regions, segments)
+    if regions is None or not usable.any():
         return _in_the_middle(body, camera, frame, standing)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
-    centroid = _center(regions.centroid[0], known)
-    _, direction = camera.rays(centroid, frame)
-    distance = _usual_distance(body, camera)
-    offset = np.zeros(3)
-    for _ in range(ROUNDS):
-        there = _at(standing, location + distance * direction)
+    centroid, area = regions.centroid[0], regions.area[0]
+
+    def by_regions(there: Posture) -> tuple[Array, float]:
         shown = model.evaluate(body.pose(Posture.stack([there])), np.array([frame]))
-        # The regions' center lies off the hips, by the same offset there as here.
-        _, ray = camera.rays(_center(shown.centroid[0], known), frame)
-        offset = (ray - direction) * distance
-        ratio = _relative_size(
-            segments, known, shown.centroid[0], shown.area[0], regions.centroid[0], regions.area[0]
-        )
-        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
-    return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
+        ratio = _relative_size(segments, usable, shown.centroid[0], shown.area[0], centroid, area)
+        return _center(shown.centroid[0], usable), ratio
+
+    return _by_size(body, camera, frame, standing, _center(centroid, usable), by_regions)
 
 
-def _by_keypoints(
-    body: Body, camera: Camera, frame: int, standing: Posture, seen: Array
-) -> tuple[Array, Array, float]:
-    """Hips by the size of the principal points `seen` (P, 2) [px], line of sight and distance."""
-    known = _TRUNK_POINTS & np.isfinite(seen).all(axis=-1)
+def _by_size(
+    body: Body,
+    camera: Camera,
+    frame: int,
+    standing: Posture,
+    center: Array,
+    shown_from: Callable[[Posture], tuple[Array, float]],
+) -> Posture:
+    """The standing body where it is as large in the picture as what was seen.
+
+    Args:
+        body: The actor's body.
+        camera: The camera.
+        frame: The frame's index in the clip.
+        standing: The body that stands anywhere.
+        center: (2,) middle of what was seen [px].
+        shown_from: Middle (2,) [px] of the same of a body that stands somewhere, and the ratio of its size to
+            the one seen.
+    """
     _, location = camera.pose(frame)
-    _, direction = camera.rays(_center(seen, known), frame)
+    _, direction = camera.rays(center, frame)
     distance, offset = _usual_distance(body, camera), np.zeros(3)
     for _ in range(ROUNDS):
-        there = _at(standing, location + distance * direction)
-        shown, _ = camera.project(body.points(body.pose(there)), frame)
-        _, ray = camera.rays(_center(shown, known), frame)
+        shown, ratio = shown_from(_at(standing, location + distance * direction))
+        # What is seen has its middle off the hips, by the same offset there as here.
+        _, ray = camera.rays(shown, frame)
         offset = (ray - direction) * distance
-        ratio = _relative_span(shown, seen)
         distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
-    return location + distance * direction - offset, direction, distance
+    return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
 
 
 def _relative_span(shown: Array, seen: Array) -> float:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
-from ..footage.keypoints.body_points import mirrored_point
+from ..footage.keypoints.body_points import mirror_images
 from ..footage.keypoints.keypoints import Keypoints
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
@@ -88,11 +88,7 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
     """The keypoints with those of `swapped` (F, N) exchanged with their mirror image's."""
     if not swapped.any():
         return keypoints
-    index = {key: i for i, key in enumerate(zip(keypoints.names, keypoints.sources, strict=True))}
-    partner = [
-        index.get((mirrored_point(name), source), i)
-        for i, (name, source) in enumerate(zip(keypoints.names, keypoints.sources, strict=True))
-    ]
+    partner = mirror_images(keypoints.names, keypoints.sources)
     either = swapped | swapped[:, partner]
     return replace(
         keypoints,

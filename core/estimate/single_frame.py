@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
-from ..footage.keypoints.body_points import mirrored_point
+from ..footage.keypoints.body_points import mirror_images
 from ..footage.region_tracks import ExpectedRegions
 from ..observation import depths
 from ..observation.regions import RegionModel
@@ -90,9 +90,7 @@ def exchanged(
     points: ObservedKeypoints, names: tuple[str, ...], sources: tuple[str, ...]
 ) -> ObservedKeypoints:
     """The keypoints with left and right exchanged; a point without a mirror image stays."""
-    known = list(zip(names, sources, strict=True))
-    other = [(mirrored_point(name), source) for name, source in known]
-    partner = [known.index(pair) if pair in known else own for own, pair in enumerate(other)]
+    partner = mirror_images(names, sources)
     return ObservedKeypoints(
         points.pixel[:, partner], points.confidence[:, partner], points.depth_m[:, partner]
     )

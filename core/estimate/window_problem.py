@@ -47,7 +47,6 @@ class WindowProblem:
     def __post_init__(self) -> None:
         """Assemble the terms."""
         self.terms = window_terms(self.clip, self.window, self.state)
-        self.contours_doubt = 1.0
 
     def follow_markers(self) -> Part[None]:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
@@ -69,7 +68,6 @@ class WindowProblem:
                     self.state.posture, self.state.frame, search, self.clip.step_s
                 )
                 self.terms.append((yield from scaled(shifts, measured, measured)))
-                self.contours_doubt = UNMARKED_DOUBT
             yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
@@ -99,7 +97,8 @@ class WindowProblem:
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
-        yield from self._assemble(equations, 1.0, self.contours_doubt)
+        unmarked = any(isinstance(term, AxialTerm) for term in self.terms)
+        yield from self._assemble(equations, 1.0, UNMARKED_DOUBT if unmarked else 1.0)
         factorized = equations.matrix.factorize()
         yield
         blocks = factorized.covariance_blocks()[kept, :dofs, :dofs]

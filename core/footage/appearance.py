@@ -203,10 +203,15 @@ def _overlap(one: Array, other: Array) -> float:
     return float(np.exp(root).sum() / np.sqrt(scale))
 
 
+def histogram_cells(pixels: Image, bits: int) -> IndexArray:
+    """Cell of pixels (..., 3) in a histogram of so many bits a channel."""
+    reduced = (pixels >> (8 - bits)).astype(np.intp)
+    return np.asarray((reduced[..., 0] << 2 * bits) | (reduced[..., 1] << bits) | reduced[..., 2])
+
+
 def _cells(pixels: Image) -> IndexArray:
     """Histogram cell of pixels (..., 3), coarser than the cells of the markers' color model."""
-    reduced = (pixels >> (8 - BITS)).astype(np.intp)
-    return np.asarray((reduced[..., 0] << 2 * BITS) | (reduced[..., 1] << BITS) | reduced[..., 2])
+    return histogram_cells(pixels, BITS)
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import correlate1d
 
 from ..arrays import Array, Image, IndexArray
-from .appearance import NO_PART, UNSEEN, paired
+from .appearance import NO_PART, UNSEEN, histogram_cells, paired
 
 BANDS = 6
 """Bands of a part's length."""
@@ -70,21 +71,15 @@ def learn_band_colors(
 
 def band_cells(pixels: Image) -> IndexArray:
     """Histogram cell of pixels (..., 3)."""
-    reduced = (pixels >> (8 - BITS)).astype(np.intp)
-    return np.asarray((reduced[..., 0] << 2 * BITS) | (reduced[..., 1] << BITS) | reduced[..., 2])
+    return histogram_cells(pixels, BITS)
 
 
 def _densities(counts: Array) -> Array:
     """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
     grid = counts.reshape(*counts.shape[:-1], LEVELS, LEVELS, LEVELS)
     for axis in (-3, -2, -1):
-        padded = np.concatenate(
-            [np.take(grid, [0], axis), grid, np.take(grid, [LEVELS - 1], axis)], axis=axis
-        )
-        grid = sum(
-            share * np.take(padded, np.arange(LEVELS) + shift, axis) for shift, share in enumerate(BLUR)
-        )
-    smoothed = np.asarray(grid).reshape(counts.shape)
+        grid = correlate1d(grid, BLUR, axis=axis, mode="nearest")
+    smoothed = grid.reshape(counts.shape)
     total = smoothed.sum(axis=-1, keepdims=True)
     share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / CELLS)
     return np.asarray((1.0 - UNSEEN) * share + UNSEEN / CELLS)

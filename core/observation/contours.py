@@ -13,7 +13,6 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
-from ..body.rotations import cross
 from ..footage.camera import Camera
 from .occlusion import PartOutlines, part_outlines
 from .silhouette import View, view_pieces
@@ -121,9 +120,7 @@ class ContourModel:
     def normal_jacobian(self, predicted: ContourPrediction, normal: Array, pose: Pose) -> Array:
         """(F, N, D) d (normal · pixel) / d tangent for given normals (F, N, 2) [px per m or rad]."""
         force = (normal[..., None, :] @ predicted.slope)[..., 0, :]
-        wrench = np.concatenate([force, cross(predicted.world, force)], axis=-1)
-        moved = pose.posture.skeleton.moved_by[self.parts.joint[self.part_of]]
-        return np.asarray((wrench @ pose.screws) * moved)
+        return pose.along_jacobian(self.parts.joint[self.part_of], predicted.world, force)
 
 
 def _taper(share: Array) -> Array:

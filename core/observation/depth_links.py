@@ -13,7 +13,6 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..body.posture import Posture
-from ..body.rotations import cross
 from ..body.skeleton import SIDES
 from .keypoints import KeypointModel
 
@@ -77,8 +76,7 @@ class DepthLinks:
         used = np.flatnonzero(self.ends.any(axis=0))
         world = model.world(pose)[:, used]
         axis = model.camera.depth_jacobian(world, frame[:, None])
-        rows = np.concatenate([axis, cross(world, axis)], axis=-1) @ pose.screws
-        return np.asarray(self.ends[:, used] @ (rows * pose.posture.skeleton.moved_by[model.joint[used]]))
+        return np.asarray(self.ends[:, used] @ pose.along_jacobian(model.joint[used], world, axis))
 
 
 def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:

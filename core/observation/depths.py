@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
-from ..body.rotations import cross
 from ..footage.camera import Camera
 
 DEPTH_VARIANCE_M2 = 0.1
@@ -36,9 +35,7 @@ def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
     """Derivative of the depths by the posture's tangent step, (..., P, D); arguments as `evaluate`."""
     points = body.points(pose)
     axis = camera.depth_jacobian(points, _per_point(frame))  # (..., P, 3)
-    # axis · (v + ω × p) is axis · v + (p × axis) · ω.
-    rows = np.concatenate([axis, cross(points, axis)], axis=-1) @ pose.screws
-    return np.asarray(rows * body.skeleton.moved_by[[point.joint for point in body.skeleton.points]])
+    return pose.along_jacobian([point.joint for point in body.skeleton.points], points, axis)
 
 
 def _per_point(frame: ArrayLike | None) -> IndexArray | None:

@@ -10,7 +10,6 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.body_volume import PieceStack
 from ..body.kinematics import Pose
-from ..body.rotations import cross
 from ..footage.camera import Camera
 
 FREE, UNKNOWN = -1, -2
@@ -69,6 +68,4 @@ class LimbAxes:
         """
         slope = self.camera.project_jacobian(world, frame[:, None])
         force = (direction[..., None, :] @ slope)[..., 0, :]
-        wrench = np.concatenate([force, cross(world, force)], axis=-1)
-        moved = pose.posture.skeleton.moved_by[self.parts.joint]
-        return np.asarray((wrench @ pose.screws) * moved)
+        return pose.along_jacobian(self.parts.joint, world, force)

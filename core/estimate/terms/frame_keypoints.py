@@ -13,7 +13,7 @@ from ...observation.depth_links import DepthLinks
 from ...observation.keypoints import KeypointModel
 from ..clip_state import ClipState
 from .keypoints import KeypointTerm
-from .term import NormalEquations, student_weight
+from .term import NormalEquations, student_cost, student_weight
 
 DEGREES = 4.0
 
@@ -83,6 +83,5 @@ def _add_rows(
 
 
 def _cost(error: Array, used: BoolArray) -> Array:
-    size = DEGREES * error.shape[-1]
     squared = np.where(used[..., None], error, 0.0) ** 2
-    return np.asarray((0.5 * size * np.log1p(squared.sum(-1) / size)).sum(-1))
+    return np.asarray(student_cost(squared.sum(-1), DEGREES, error.shape[-1]).sum(-1))

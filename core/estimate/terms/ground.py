@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array, IndexArray
 from ..clip_state import ClipState
-from .term import NormalEquations, student_weight
+from .term import NormalEquations, student_cost, student_weight
 
 DEGREES = 3.0
 """Of Student's t: leaps and stairs are forgiven."""
@@ -39,7 +39,7 @@ class GroundTerm:
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of Student's t, up to a constant."""
         residual, _ = self._residual(state)
-        return np.asarray(0.5 * DEGREES * np.log1p(residual**2 / DEGREES))
+        return student_cost(residual**2, DEGREES, 1)
 
     def _residual(self, state: ClipState) -> tuple[Array, IndexArray]:
         """(F,) in standard deviations, and which point it is."""

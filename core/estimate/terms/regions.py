@@ -14,7 +14,7 @@ from ...arrays import Array, IndexArray
 from ...footage.region_tracks import RegionTracks
 from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
-from .term import NormalEquations, student_weight
+from .term import NormalEquations, student_cost, student_weight
 
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
@@ -197,8 +197,7 @@ class RegionTerm:
         squared = np.nan_to_num(residual) ** 2 * information
         cost = np.zeros(squared.shape[:2])
         for group in GROUPS:
-            size = self.noise.degrees * (group.stop - group.start)
-            cost += 0.5 * size * np.log1p(squared[..., group].sum(-1) / size)
+            cost += student_cost(squared[..., group].sum(-1), self.noise.degrees, group.stop - group.start)
         contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
         return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
 

@@ -92,3 +92,9 @@ def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> A
         count: Rows in each group.
     """
     return np.asarray(degrees / (degrees + squared / np.maximum(count, 1)))
+
+
+def student_cost(squared: Array, degrees: float, count: int) -> Array:
+    """Negative logarithm of Student's t of groups of rows, up to a constant; see `student_weight`."""
+    size = degrees * count
+    return np.asarray(0.5 * size * np.log1p(squared / size))

@@ -4,6 +4,8 @@ The principal points of the skeleton, and what detectors add: face, spine, hands
 the performer's own.
 """
 
+from collections.abc import Sequence
+
 from ...body.human import HUMAN
 from ...body.skeleton import SIDES
 
@@ -22,3 +24,12 @@ def mirrored_point(name: str) -> str:
     """The same point on the other side of the body; a point in the middle is its own mirror image."""
     stem, dot, side = name.rpartition(".")
     return f"{stem}.{'R' if side == 'L' else 'L'}" if dot else name
+
+
+def mirror_images(names: Sequence[str], sources: Sequence[str]) -> list[int]:
+    """For each keypoint the index of the one that its source has on the other side; its own without one."""
+    index = {key: i for i, key in enumerate(zip(names, sources, strict=True))}
+    return [
+        index.get((mirrored_point(name), source), i)
+        for i, (name, source) in enumerate(zip(names, sources, strict=True))
+    ]

@@ -1,12 +1,11 @@
 """Contours found in pictures that were drawn from a known motion."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from _filmed import photograph
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _filmed import FRAME, FRAMES, POSED, TRUTH, album, photograph
+from _scene import BODY, CAMERA, SEGMENTS, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.contour_evidence import learn_contours
@@ -16,17 +15,6 @@ from keymark.core.footage.clips.album import Album
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import Preview, run
-
-FRAMES = 46
-POSED = np.array([0, 15, 30, 45])
-TRUTH = exercise(FRAMES)
-FRAME = np.arange(FRAMES)
-
-
-@cache
-def album() -> Album:
-    """Pictures of the true motion."""
-    return photograph(TRUTH)
 
 
 def measure(posture: Posture, keyframes: np.ndarray) -> ContourTerm:

@@ -4,8 +4,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from _filmed import photograph
-from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
+from _filmed import FRAME, FRAMES, POSED, TRUTH, album, photograph
+from _scene import BODY, CAMERA, SEGMENTS, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.contour_evidence import ContourEvidence, learn_contours
@@ -19,17 +19,6 @@ from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
-
-FRAMES = 46
-POSED = np.array([0, 15, 30, 45])
-TRUTH = exercise(FRAMES)
-FRAME = np.arange(FRAMES)
-
-
-@cache
-def album() -> Album:
-    """Pictures of the true motion."""
-    return photograph(TRUTH)
 
 
 def solve(pictures: Album | None, posed: Posture = TRUTH) -> WholeClipResult:

@@ -1,7 +1,6 @@
 """Matching a library with tracks of a performer of other proportions and another way of moving."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,23 +10,10 @@ from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.core.footage.reading import Reading
 from keymark.core.library.library import Library
-from keymark.core.library.library_file import read_library
 from keymark.core.posing.found_poses import with_found
 from keymark.core.posing.match_clip import match_clip
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
-
-
-@pytest.fixture(scope="module")
-def walking(repository: Path) -> Library:
-    """The shipped library."""
-    return read_library(repository / "presets" / "keyframes" / "walking.json")
-
-
-@pytest.fixture(scope="module")
-def squatting(repository: Path) -> Library:
-    """Another shipped library."""
-    return read_library(repository / "presets" / "keyframes" / "squatting_lifting.json")
 
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])

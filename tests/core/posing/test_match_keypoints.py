@@ -1,7 +1,6 @@
 """Matching a library with keypoints beside markers or instead of them."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.library.library import Library
-from keymark.core.library.library_file import read_library
 from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.posing.match_clip import match_clip
 from keymark.core.progress import run
@@ -25,18 +23,6 @@ NAMES = (
     *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
 )  # fmt: skip
 MIRRORED = [NAMES.index(mirrored_point(name)) for name in NAMES]
-
-
-@pytest.fixture(scope="module")
-def walking(repository: Path) -> Library:
-    """The shipped library."""
-    return read_library(repository / "presets" / "keyframes" / "walking.json")
-
-
-@pytest.fixture(scope="module")
-def squatting(repository: Path) -> Library:
-    """Another shipped library."""
-    return read_library(repository / "presets" / "keyframes" / "squatting_lifting.json")
 
 
 def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:

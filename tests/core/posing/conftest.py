@@ -1,0 +1,19 @@
+"""Two of the shipped libraries."""
+
+from pathlib import Path
+
+import pytest
+from keymark.core.library.library import Library
+from keymark.core.library.library_file import read_library
+
+
+@pytest.fixture(scope="package")
+def walking(repository: Path) -> Library:
+    """The shipped library."""
+    return read_library(repository / "presets" / "keyframes" / "walking.json")
+
+
+@pytest.fixture(scope="package")
+def squatting(repository: Path) -> Library:
+    """Another shipped library."""
+    return read_library(repository / "presets" / "keyframes" / "squatting_lifting.json")
