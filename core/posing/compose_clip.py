@@ -19,11 +19,14 @@ from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates
+from ..library.library import Library
+from .library_belief import part_beliefs
+from .mean_posture import mean_postures
 from .part_features import HEADINGS, StanceFeatures
 from .part_pools import LIMBS, PartPools
 from .posed_costs import PosedCosts
 
-PART_SCALE = 0.5
+PART_SCALE = 0.4
 """Deviation of a composed body from the performer, relative to that of another performer's posture."""
 WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
 """Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
@@ -55,6 +58,7 @@ def compose_frames(
     stances: StanceFeatures,
     sampled: IndexArray,
     floor_m: float | None,
+    libraries: Sequence[Library] = (),
 ) -> Part[Composition]:
     """Compose the postures of some frames.
 
@@ -67,7 +71,7 @@ def compose_frames(
     """
     evidence, camera = given.evidence, given.camera
     time_s = evidence.tracks.time_s[sampled]
-    tempering = min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+    own_weight = tempering(time_s)
     rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
     if _posed_at_both_ends(given, sampled):  # the place is known, then, and what lies between is soon found
         known = given.constraints
@@ -89,7 +93,7 @@ def compose_frames(
         row = int(np.searchsorted(sampled, frame))
         if row < len(sampled) and sampled[row] == frame:
             hips, points = posed.hips[index], posed.points[index]
-            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, tempering)
+            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, own_weight)
             if swapped:
                 swapped[row] = costs[row]
     path: ComposedPath | None = None
@@ -105,20 +109,33 @@ def compose_frames(
             _states(own, others, rough[rows], shares), begun, 0.8 * ended + 0.2 * begun
         )
         step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
-        weight = min(1.0, float(np.median(np.diff(time_s[rows]))) / CORRELATION_S)
+        weight = tempering(time_s[rows])
         found = best_path(stances, states, own, others, time_s[rows], weight, step_m)
         path = yield from scaled(found, 0.8 * ended + 0.2 * begun, ended)
         at = zip(path.hips, sampled[rows], strict=True)
         depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
         rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
+        if not is_last and libraries:
+            first = mean_postures(pools, stances, states, path.stance, path.hips, path.limbs, path.posterior, path.limb_posterior)
+            beliefs = yield from scaled(part_beliefs(given, libraries, stances, sampled, first, floor_m), ended, ended)
+            for row, belief in enumerate(beliefs):
+                costs[row].belief = belief
+                if swapped:
+                    swapped[row].belief = belief
     assert path is not None
-    posture = pools.composed(
-        path.stance // HEADINGS,
-        {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)},
-        stances.heading_rad[path.stance % HEADINGS],
-        path.hips,
-    )
+    import os
+    if os.environ.get("MAPONLY"):
+        posture = pools.composed(path.stance // HEADINGS, {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)}, stances.heading_rad[path.stance % HEADINGS], path.hips)
+    else:
+        posture = mean_postures(
+            pools, stances, states, path.stance, path.hips, path.limbs, path.posterior, path.limb_posterior
+        )
     return Composition(path, states, posture, floor_m)
+
+
+def tempering(time_s: Array) -> float:
+    """Weight of one of several frames at some times (T,), as what makes one doubtful makes its neighbors doubtful."""
+    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def _every_second(count: int) -> IndexArray:

@@ -41,6 +41,8 @@ class ComposedPath:
     """(T, 4), in the order of `LIMBS`."""
     posterior: list[SingleArray]
     """T arrays (K,) of the probabilities of each frame's states."""
+    limb_posterior: dict[str, Array]
+    """(T, L) probability of each limb's parts on the stances, by limb."""
 
 
 def best_path(
@@ -81,9 +83,9 @@ def best_path(
     hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)], dtype=float)
     swapped = [bool(each.exchanged[row]) for each, row in zip(states, best, strict=True)]
     said = [others[i] if swap else cost for i, (cost, swap) in enumerate(zip(costs, swapped, strict=True))]
-    limbs = limb_paths(stances, said, stance, hips, time_s, tempering)
+    limbs, parts = limb_paths(stances, said, stance, hips, time_s, tempering)
     yield 1.0
-    return ComposedPath(stance, hips, limbs, posterior)
+    return ComposedPath(stance, hips, limbs, posterior, parts)
 
 
 def limb_paths(
@@ -93,8 +95,8 @@ def limb_paths(
     hips: Array,
     time_s: Array,
     tempering: float,
-) -> IndexArray:
-    """(T, 4) the likeliest limbs on given stances at given places (T, 3)."""
+) -> tuple[IndexArray, dict[str, Array]]:
+    """(T, 4) the likeliest limbs on given stances at given places (T, 3), and each part's probability."""
     tables: list[dict[str, SingleArray]] = []
     for cost, own, place in zip(costs, stance, hips, strict=True):
         relative = (place[None] - cost.location).astype(np.float32)
@@ -115,9 +117,12 @@ def limb_paths(
         ]
 
     weight = np.float32(tempering)
+    posterior: dict[str, Array] = {}
     for column, limb in enumerate(LIMBS):
         own_costs = [weight * table[limb][0] for table in tables]
-        found[:, column] = cheapest_path(own_costs, steps(limb, [slice(None)] * len(stance)))
+        all_steps = steps(limb, [slice(None)] * len(stance))
+        found[:, column] = cheapest_path(own_costs, all_steps)
+        posterior[limb] = np.array(path_posteriors(own_costs, all_steps), dtype=float)
     chosen = []
     for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
         relative = (place[None] - cost.location).astype(np.float32)
@@ -127,7 +132,7 @@ def limb_paths(
     both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
     for side, limb in enumerate(LEGS):
         found[:, LIMBS.index(limb)] = [own[pick] for own, pick in zip(rows[side], both[side], strict=True)]
-    return found
+    return found, posterior
 
 
 def cheapest_pairs(

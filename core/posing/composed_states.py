@@ -18,6 +18,7 @@ from ..body.limbs import TRUNK, limb_of
 from ..matching.emissions import EXCHANGED_COST
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
+from .part_belief import PartBelief
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
 from .part_features import HEADINGS, StanceFeatures, limb_points
 from .part_pools import ARM, LIMBS
@@ -82,6 +83,7 @@ class FrameCosts:
         self.sight = np.asarray(likelihood.sight, dtype=np.float32)
         self.share = np.float32(likelihood.share)
         self.markers = len(likelihood.unclipped)
+        self.belief: PartBelief | None = None
 
     def states(self, depths_m: Array) -> FrameStates:
         """The states that explain the frame best, at some distances from the camera, the middle one first."""
@@ -143,6 +145,8 @@ class FrameCosts:
         features = self.stances.features
         local = features.place[stance]
         cost = np.array(features.cost[stance])
+        if self.belief is not None:
+            cost += self.belief.stance[stance]
         for column, observed in enumerate(features.observed):
             at = local[:, column] + places
             cost += self._point_cost(observed, at @ self.rows[observed].T)
@@ -162,6 +166,8 @@ class FrameCosts:
         features = self.stances.limbs[limb]
         turn, origin = self.stances.frame_of(limb, stance)
         cost = self.stances.limb_cost[limb][stance // HEADINGS]
+        if self.belief is not None:
+            cost = cost + self.belief.limbs[limb]
         for column, observed in enumerate(features.observed):
             if self.likelihood.weight[observed] == 0.0:
                 continue

@@ -25,7 +25,7 @@ from ..prior.keyframes import Keyframe
 from ..progress import Job, Progress, stretch, within
 from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take
-from .compose_clip import Composition, compose_frames
+from .compose_clip import Composition, compose_frames, tempering
 from .composed_candidates import composed_candidates
 from .explained import contradicting, explained_shares
 from .found_poses import FoundPoses
@@ -76,7 +76,7 @@ def pose_clip(
     with threadpool_limits(limits=1, user_api="blas"):
         given = match_input(take, reading, keyframe_count)
         yield Progress("Learning the parts of postures", 0.0)
-        search = _Search(take, part_pools(usable, take.body), floor_m, between, frames)
+        search = _Search(take, part_pools(usable, take.body), floor_m, between, frames, usable)
         found = yield from stretch(search.poses(given, reading), 0.05, 1.0)
         again = None
         if between is None:
@@ -99,6 +99,7 @@ class _Search:
     floor_m: float | None
     between: tuple[int, int] | None
     frames: Sequence[int] | None
+    libraries: Sequence[Library]
 
     def poses(self, given: MatchInput, reading: Reading) -> Job[FoundPoses]:
         """The postures by one reading of the clip."""
@@ -115,7 +116,7 @@ class _Search:
         sampled = sampled_frames(
             given.evidence.tracks, np.concatenate([given.keyframes, given.constraints.frames])
         )
-        composing = compose_frames(given, self.pools, stances, sampled, floor_m)
+        composing = compose_frames(given, self.pools, stances, sampled, floor_m, self.libraries if __import__('os').environ.get('BELIEF') else ())
         composed = yield from within("Composing postures", composing, 0.0, COMPOSED_SHARE)
         fitting = _fitted(take, work, sampled, composed)
         postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)
@@ -140,7 +141,9 @@ class _Search:
 
 def _fitted(take: Take, work: PosingInput, sampled: IndexArray, composed: Composition) -> Job[Posture]:
     """(F,) the composed postures held against the footage; posed frames stay."""
-    given, scale = work.given, np.ones(len(sampled))
+    given = work.given
+    time_s = given.evidence.tracks.time_s[sampled]
+    scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(time_s)))  # neighbors err alike
     own = [composed.posture[row] for row in range(len(sampled))]
     for frame, posture in zip(given.constraints.frames, given.constraints.postures, strict=True):
         row = int(np.searchsorted(sampled, frame))
