@@ -24,7 +24,7 @@ from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.posing.section import section_around, take_around  # noqa: E402
-from keymark.core.prior.keyframes import Keyframe, Matched  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
@@ -115,11 +115,7 @@ def improved(take: Take, index: int, trial: Trial, libraries: Sequence[Library],
     around = take_around(take, section)
     job = pose_clip(around, trial.reading, libraries, floor_m, between=ends, frames=section.changed)
     found = run(job)
-    anew: dict[int, Keyframe] = {}
-    for frame in found.frames:
-        best = frame.candidates[0]
-        said = Matched(found.library, best.name, best.mirrored, best.confidence)
-        anew[frame.index] = Keyframe(frame.index, best.posture, matched=said)
+    anew = {frame.index: found.keyframe(frame) for frame in found.frames}
     keyframes = (anew.get(one.index, one) if one.matched is not None else one for one in take.keyframes)
     return replace(take, keyframes=tuple(keyframes))
 

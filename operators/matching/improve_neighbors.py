@@ -60,7 +60,6 @@ def _pose_anew(
 ) -> int:
     from ...core.posing.pose_clip import pose_clip
     from ...core.posing.section import section_around, take_around
-    from ...core.prior.keyframes import Keyframe, Matched
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import all_libraries
     from .found_result import write_found
@@ -78,13 +77,9 @@ def _pose_anew(
     between = section.first, section.last
     job = pose_clip(take, reading, all_libraries(), floor_m, between=between, frames=section.changed)
     found = run(job)
-    keyframes: list[Keyframe] = []
-    for each in found.frames:
-        if each.index in section.changed:
-            chosen = each.candidates[0]
-            said = Matched(found.library, chosen.name, chosen.mirrored, chosen.confidence)
-            keyframes.append(Keyframe(each.index, chosen.posture, matched=said))
-            matching.matches.remove(match_at(settings, float(frames[each.index])))
+    keyframes = [found.keyframe(each) for each in found.frames]
+    for each in keyframes:
+        matching.matches.remove(match_at(settings, float(frames[each.index])))
     write_found(settings, SceneClip(take, reading, frames, notes), keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)
