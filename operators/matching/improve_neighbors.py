@@ -10,6 +10,7 @@ import numpy as np
 from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..keypoints.evidence import followed_markers
+from ..markers.ignored_regions import ignored_regions
 from ..shell.found_frames import match_at
 from ..shell.results import reading_of
 from ..shell.takes import footage_of
@@ -44,14 +45,14 @@ def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup,
 
 
 def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading | None":
-    """The kept reading, if it is of this footage and these markers."""
+    """The kept reading, if it is of this footage, these markers and these ignored regions."""
     from ...core.footage.reading_key import of_same_footage, reading_key
 
     reading = reading_of(take)
     if reading is None or take.clip_state.missing:
         return None
     footage = footage_of(scene, take)
-    key = reading_key(footage.path, footage.rate, followed_markers(take), None)
+    key = reading_key(footage.path, footage.rate, followed_markers(take), None, ignored_regions(take))
     return reading if of_same_footage(reading.key, key) else None
 
 
