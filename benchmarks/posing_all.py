@@ -14,8 +14,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from matching import FITTING, matched
-from takes import chosen_takes, load_project, write_results
-from trials import KEYPOINTS, Trial, read_unposed, with_keypoints
+from takes import load_project, write_results
+from trials import Trial, unposed_trials
 
 load_project()
 
@@ -184,15 +184,8 @@ def main(arguments: list[str]) -> int:
     )
     options = parser.parse_args(arguments)
     libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
-    results: dict[str, Measured] = {}
-    for name, folder in chosen_takes(options.takes, plain=options.keypoints).items():
-        if options.keypoints and not (folder / KEYPOINTS).is_file():
-            continue
-        print(f"{name} ...", file=sys.stderr, flush=True)
-        trial = read_unposed(folder)
-        results[name] = measure(
-            name, with_keypoints(trial, folder) if options.keypoints else trial, libraries
-        )
+    trials = unposed_trials(options.takes, options.keypoints, plain=options.keypoints)
+    results = {name: measure(name, trial, libraries) for name, trial in trials}
     as_dictionaries = {name: asdict(found) for name, found in results.items()}
     file = "posing_all_keypoints" if options.keypoints else "posing_all"
     write_results(file, table(results), json.dumps(as_dictionaries, indent=1))

@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from keyframing import exact_postures, hand_posed
-from takes import chosen_takes, load_project, write_results
-from trials import KEYPOINTS, Trial, read_unposed, with_keypoints
+from takes import load_project, write_results
+from trials import Trial, unposed_trials
 
 load_project()
 
@@ -158,15 +158,8 @@ def main(arguments: list[str]) -> int:
     )
     options = parser.parse_args(arguments)
     libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
-    takes: dict[str, Measured] = {}
-    for name, folder in chosen_takes(options.takes).items():
-        if options.keypoints and not (folder / KEYPOINTS).is_file():
-            continue
-        print(f"{name} ...", file=sys.stderr, flush=True)
-        trial = read_unposed(folder)
-        takes[name] = measure(with_keypoints(trial, folder) if options.keypoints else trial, libraries)
-    if not takes:
-        raise SystemExit(f"none of the takes has {KEYPOINTS}")
+    trials = unposed_trials(options.takes, options.keypoints)
+    takes = {name: measure(trial, libraries) for name, trial in trials}
     results = {name: {**asdict(found), "corrections": found.corrections} for name, found in takes.items()}
     name = "posing_economy_keypoints" if options.keypoints else "posing_economy"
     write_results(name, table(takes), json.dumps(results, indent=1))
