@@ -220,7 +220,7 @@ def _is_composed(take: Take) -> bool:
 
 
 def _found_ankle(take: Take, prior: Posture) -> Array | None:
-    """(F,) height of the lower ankle by keyframes put together from parts [m]; None where there are others."""
+    """(F,) height of the lower ankle by keyframes composed of parts [m]; None where there are others."""
     if not _is_composed(take):
         return None
     index = np.array(take.keyframe_indices, dtype=np.intp)
