@@ -4,7 +4,7 @@ import bpy
 
 from ..overlays.style import candidate_icon
 from ..shell.messages import label
-from .candidate_titles import candidate_title, is_mirror_image
+from .candidate_titles import candidate_title
 
 PERCENT_UNITS = 2.1
 
@@ -39,7 +39,7 @@ def draw_candidates(layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, 
             depress=index == match.chosen,
         )
         button.candidate = index
-        if is_mirror_image(match, candidate):
+        if candidate.mirrored:
             row.label(text="", icon="MOD_MIRROR")
         said = row.row()
         said.ui_units_x = PERCENT_UNITS

@@ -16,12 +16,12 @@ PAIRS = {("arm.L", "arm.R"): "arms", ("leg.L", "leg.R"): "legs"}
 def candidate_title(match: bpy.types.PropertyGroup, candidate: bpy.types.PropertyGroup) -> str:
     """What tells a candidate from the first one: its turn, then the name of its posture.
 
-    Postures that were composed have the name of one that their trunk resembles, which is the same for most
-    frames: instead the limbs are named that are elsewhere than the first one's.
+    Postures that were composed have the name of one that they resemble, which often is the same for all:
+    instead the limbs are named that are elsewhere.
     """
     angle, what = degrees(candidate.turned), str(candidate.name)
-    if match.library == COMPOSED:
-        what = _elsewhere(match, candidate)
+    if match.library == COMPOSED and candidate.limbs:
+        what = label("other {limbs}", limbs=", ".join(_limbs(candidate.limbs.split())))
     if abs(angle) < NOTICEABLE_TURN_DEG:
         return what[:1].upper() + what[1:]
     if abs(angle) > 180.0 - NOTICEABLE_TURN_DEG:
@@ -29,20 +29,6 @@ def candidate_title(match: bpy.types.PropertyGroup, candidate: bpy.types.Propert
     if angle > 0.0:
         return label("{angle:.0f}° left: {posture}", angle=angle, posture=what)
     return label("{angle:.0f}° right: {posture}", angle=-angle, posture=what)
-
-
-def is_mirror_image(match: bpy.types.PropertyGroup, candidate: bpy.types.PropertyGroup) -> bool:
-    """Whether a candidate is the mirror image of the posture that it is named after."""
-    return bool(candidate.mirrored) and match.library != COMPOSED
-
-
-def _elsewhere(match: bpy.types.PropertyGroup, candidate: bpy.types.PropertyGroup) -> str:
-    """Words for the limbs that a composed candidate has elsewhere than the first one."""
-    if candidate == match.candidates[0]:
-        return label("as found")
-    if not candidate.limbs:
-        return label("little different")
-    return label("other {limbs}", limbs=", ".join(_limbs(candidate.limbs.split())))
 
 
 def _limbs(names: list[str]) -> list[str]:

@@ -8,7 +8,6 @@ from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
-from .candidate_titles import candidate_title, is_mirror_image
 
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
@@ -32,8 +31,8 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         number.label(text=f"{item.frame:g}", translate=False)
         shown = item.candidate
         icon = ICONS.get(state) or found_icon(take, item)
-        row.label(text=candidate_title(item, shown), icon=icon, translate=False)
-        if is_mirror_image(item, shown):
+        row.label(text=shown.name, icon=icon, translate=False)
+        if shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
         said = row.row()
         said.ui_units_x = PERCENT_UNITS
