@@ -1,6 +1,6 @@
 """Found keyframes, on the keyframe Action beside the animator's own.
 
-A keyframe counts as matched only while all its keys are as they were written. As soon as the animator changes
+A keyframe counts as found only while all its keys are as they were written. As soon as the animator changes
 one, or moves it to another frame, the posture there is the animator's: corrections need no confirmation.
 """
 
