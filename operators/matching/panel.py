@@ -65,7 +65,7 @@ class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
         if len(matching.matches):
             _draw_counts(column, context, take)
             column.template_list(
-                "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=3, maxrows=5
+                "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
             )
             _draw_jumps(column, take)
             _draw_candidates(column, context, take)
@@ -111,9 +111,9 @@ def _draw_candidates(
 ) -> None:
     """Draw the candidates of the chosen frame as buttons in their figures' colors, and what can be done."""
     matching = take.matching
-    if matching.active_match >= len(matching.matches):
+    if matching.shown_match >= len(matching.matches):
         return
-    match = matching.matches[matching.active_match]
+    match = matching.matches[matching.shown_match]
     box = layout.column(align=True)
     draw_candidates_head(box, context, match)
     draw_candidates(box, match, "keymark.replace_match")

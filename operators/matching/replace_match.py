@@ -32,9 +32,9 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
-        if matching is None or matching.active_match >= len(matching.matches):
+        if matching is None or matching.shown_match >= len(matching.matches):
             return str(cls.__doc__)
-        match = matching.matches[matching.active_match]
+        match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
             return str(cls.__doc__)
         said = candidate_title(match, match.candidates[properties.candidate])

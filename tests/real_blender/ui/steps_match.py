@@ -43,7 +43,7 @@ def choose(person: Person) -> Steps[None]:
     if doubtful:
         words = ("only_doubtful=True",)
     yield from person.hands.click_button(command, *words)
-    match = person.take.matching.matches[person.take.matching.active_match]
+    match = person.take.matching.matches[person.take.matching.shown_match]
     expect(person.scene.frame_current == round(match.frame), "the chosen frame is not shown")
     yield from person.hands.click_button("keymark.look_from_side")
     yield from turns(5)
