@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.library.several_libraries import COMPOSED
 from ..overlays.style import candidate_icon
 from ..shell.messages import label
 from .candidate_titles import candidate_title
@@ -39,7 +40,7 @@ def draw_candidates(layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, 
             depress=index == match.chosen,
         )
         button.candidate = index
-        if candidate.mirrored:
+        if candidate.mirrored and match.library != COMPOSED:
             row.label(text="", icon="MOD_MIRROR")
         said = row.row()
         said.ui_units_x = PERCENT_UNITS

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.library.several_libraries import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label
@@ -29,10 +30,11 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         number = row.row()
         number.ui_units_x = FRAME_UNITS
         number.label(text=f"{item.frame:g}", translate=False)
+        icon, words = how_sure(take, item) if state == "FOUND" else (ICONS[state], "")
         shown = item.candidate
-        icon = ICONS.get(state) or found_icon(take, item)
-        row.label(text=shown.name, icon=icon, translate=False)
-        if shown.mirrored:
+        named = item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else words, icon=icon, translate=False)
+        if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
         said = row.row()
         said.ui_units_x = PERCENT_UNITS
@@ -41,15 +43,15 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         said.label(text=words, translate=False)
 
 
-def found_icon(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> str:
-    """Icon of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
+def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
+    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN"
+        return "VIEW_PAN", label("chosen")
     if contradictions_at(take, match.frame):
-        return "ERROR"
+        return "ERROR", label("contradicted")
     if match.confidence < DOUBTFUL:
-        return "QUESTION"
-    return "CHECKMARK" if match.confidence >= SURE else "DOT"
+        return "QUESTION", label("doubtful")
+    return ("CHECKMARK", label("sure")) if match.confidence >= SURE else ("DOT", label("likely"))
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):

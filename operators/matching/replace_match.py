@@ -61,20 +61,20 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         match.chosen, match.by_hand = self.candidate, True
         key_candidate(take, match)
         match.go_to(context.scene)
-        frame, posture = float(match.frame), match.candidate.name
+        frame, number = float(match.frame), self.candidate + 1
         note_contradictions(take, frame, ())
         improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
         if improved:
             say(
                 self,
                 "INFO",
-                "Frame {frame:g} shows {posture} now; {improved} found ones around it were posed anew",
+                "Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
                 frame=frame,
-                posture=posture,
+                number=number,
                 improved=improved,
             )
         else:
-            say(self, "INFO", "Frame {frame:g} shows {posture} now", frame=frame, posture=posture)
+            say(self, "INFO", "Frame {frame:g} shows candidate {number}", frame=frame, number=number)
         return None
 
 

@@ -170,13 +170,15 @@ def test_a_candidate_is_named_by_what_tells_it_from_the_first(found: Group, wave
     """The limbs of a composed posture, whose name is often the same; a library's own name; a turn before."""
     last = found.matching.matches[2]
     first, other = last.candidates
-    assert candidate_title(last, first) == "Wave 12"
+    assert candidate_title(last, first) == "As found"
     assert candidate_title(last, other) == "Other arms"
     other.turned = 0.8
-    assert candidate_title(last, other) == "46° left: other arms"
+    assert candidate_title(last, other) == "46° left: arms"
     other.turned = -3.1
-    assert candidate_title(last, other) == "Turned round: other arms"
+    assert candidate_title(last, other) == "Turned round: arms"
     other.limbs, other.turned = "arm.R leg.L leg.R", 0.0
     assert candidate_title(last, other) == "Other right arm, legs"
+    other.limbs = ""
+    assert candidate_title(last, other) == "Nearly as found"
     last.library = "waves"
     assert candidate_title(last, other) == "Back"
