@@ -1,4 +1,4 @@
-"""A session's middle without posing: found keyframes, one of them corrected, and the motion."""
+"""A session's middle without posing: found keyframes, a choice among candidates, and the motion."""
 
 from driver import Steps, expect, turns
 from person import Person, keymark
@@ -57,25 +57,6 @@ def choose(person: Person) -> Steps[None]:
     expect(left == count, f"of {count} found keyframes {left} are left")
 
 
-def correct(person: Person) -> Steps[None]:
-    """Pose one frame as the performer stands there, which improves the found ones around it."""
-    frames = keymark("operators.shell.keyed_frames")
-    found, first = frames.matched_frames(person.take), person.known.frame_start
-    keyframe = min(
-        person.known.keyframes,
-        key=lambda each: min(abs(each.index + first - frame) for frame in found[1:-1] or found),
-    )
-    frame = keyframe.index + first
-    person.scene.frame_set(frame)
-    person.step_done(f"Go to frame {frame}")
-    keymark("operators.bridge.pose").write_posture(person.take.armature, keyframe.posture)
-    person.step_done(f"Pose frame {frame}")
-    yield from person.undoable("storing the correction", lambda: _store(person))
-    expect(frames.posed_frames(person.take) == (float(frame),), "the correction does not count as posed")
-    expect(len(frames.keyframes_of(person.take)) >= len(found), "found keyframes are lost")
-    yield from person.look("corrected")
-
-
 def reconstruct(person: Person) -> Steps[None]:
     """The motion, from keyframes that were found."""
     yield from person.undoable("reconstructing", lambda: job(person, "keymark.reconstruct"))
@@ -92,7 +73,3 @@ def _match(person: Person) -> Steps[None]:
 
 def _take(person: Person, candidate: int) -> Steps[None]:
     yield from person.hands.click_button("keymark.replace_match", f"candidate={candidate}")
-
-
-def _store(person: Person) -> Steps[None]:
-    yield from person.hands.click_button("keymark.store_keyframe")
