@@ -13,7 +13,8 @@ from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_h
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
 FRAME_UNITS = 1.6
-ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+"""Icon and words of what is no found keyframe any more."""
 
 
 class KEYMARK_UL_matches(RowList, bpy.types.UIList):
@@ -30,28 +31,29 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         number = row.row()
         number.ui_units_x = FRAME_UNITS
         number.label(text=f"{item.frame:g}", translate=False)
-        icon, words = how_sure(take, item) if state == "FOUND" else (ICONS[state], "")
+        is_found = state == "FOUND"
+        icon, words = how_sure(take, item) if is_found else STATES[state]
         shown = item.candidate
-        named = item.library != COMPOSED  # a composed one has the name of any that it resembles
-        row.label(text=shown.name if named else words, icon=icon, translate=False)
+        named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else label(words), icon=icon, translate=False)
         if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
-        said = row.row()
-        said.ui_units_x = PERCENT_UNITS
-        said.alignment = "RIGHT"
-        words = {"POSED": label("posed"), "GONE": label("no key")}.get(state, percent(item.confidence))
-        said.label(text=words, translate=False)
+        if is_found:
+            said = row.row()
+            said.ui_units_x = PERCENT_UNITS
+            said.alignment = "RIGHT"
+            said.label(text=percent(item.confidence), translate=False)
 
 
 def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
     """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN", label("chosen")
+        return "VIEW_PAN", "chosen"
     if contradictions_at(take, match.frame):
-        return "ERROR", label("contradicted")
+        return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
-        return "QUESTION", label("doubtful")
-    return ("CHECKMARK", label("sure")) if match.confidence >= SURE else ("DOT", label("likely"))
+        return "QUESTION", "doubtful"
+    return ("CHECKMARK", "sure") if match.confidence >= SURE else ("DOT", "likely")
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):

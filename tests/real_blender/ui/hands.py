@@ -11,6 +11,8 @@ ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
 STEP_PX = 13
 """Buttons are about 20 px high."""
+MARGIN_PX = 6
+"""Beside what panels show, in the sidebar still."""
 PAGES = 10
 """More than any sidebar is long."""
 
@@ -246,9 +248,9 @@ class Hands:
         return str(manager.clipboard)
 
     def scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
-        """Turn the wheel over a sidebar."""
+        """Turn the wheel over a sidebar, at its margin: over a list it would scroll that."""
         region = self.region(kind, "UI")
-        yield from self.move(region.x + 0.4 * region.width, region.y + 0.5 * region.height)
+        yield from self.move(region.x + MARGIN_PX, region.y + 0.5 * region.height)
         for _ in range(notches):
             self.window.event_simulate(type=wheel, value="PRESS", x=self.x, y=self.y)
         yield from turns(4)

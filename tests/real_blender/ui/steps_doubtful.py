@@ -43,7 +43,7 @@ def doubtful(person: Person) -> Steps[None]:
 
 
 def _decide(person: Person) -> Steps[None]:
-    """Choose the best candidate, turn and flip where that helps, and store or accept the frame."""
+    """Choose the best candidate, turn and flip where that helps, each keyed at once, or accept the frame."""
     matching, hands = person.take.matching, person.hands
     match = matching.matches[matching.shown_match]
     frame, done = round(match.frame), [f"{_error(person):.2f} m"]
@@ -52,19 +52,15 @@ def _decide(person: Person) -> Steps[None]:
     if best != match.chosen and errors[best] < BETTER * errors[match.chosen]:
         yield from hands.click_button("keymark.replace_match", f"candidate={best}")
         done.append(f"candidate {best + 1}: {_error(person):.2f} m")
-    corrected = False
     facing = _facing(person, _seen(person))
     if facing != _facing(person, _shown(person)):
-        corrected = yield from _turned(person, facing)
-        done += [f"turned: {_error(person):.2f} m"] * corrected
+        kept = yield from _turned(person, facing)
+        done += [f"turned: {_error(person):.2f} m"] * kept
     wrong = [joint for joint, end in LIMBS.items() if _off(person, end) > 2.0 * RIGHT_M]
     if wrong and _error(person) > RIGHT_M:
         flipped = yield from _flipped(person, wrong)
         done += [f"flipped {' and '.join(flipped)}: {_error(person):.2f} m"] * bool(flipped)
-        corrected |= bool(flipped)
-    if corrected:
-        yield from hands.click_button("keymark.store_keyframe")
-    elif len(done) == 1:
+    if len(done) == 1:
         yield from hands.click_button("keymark.accept_match")
     print(f"Frame {frame}: {', '.join(done)}", flush=True)
     now = keymark("operators.shell.found_frames").doubtful_matches(person.take)
