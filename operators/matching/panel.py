@@ -120,10 +120,11 @@ def _draw_candidates(
     match = matching.matches[matching.shown_match]
     box = layout.column(align=True)
     draw_candidates_head(box, context, match)
-    draw_candidates(box, match, "keymark.replace_match")
+    is_found = state_of(take, match) == "FOUND"
+    draw_candidates(box, match, "keymark.replace_match", is_found)
     row = layout.row(align=True)
     accept = row.row(align=True)
-    accept.enabled = state_of(take, match) == "FOUND"
+    accept.enabled = is_found
     accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
 
