@@ -36,8 +36,6 @@ from .second_reading import is_better, read_again
 
 COMPOSED_SHARE, FITTED_SHARE = 0.8, 0.98
 """Shares of the work after which postures are composed, and fitted to the footage."""
-DOUBTFUL = 0.5
-"""Confidence below which a keyframe is called doubtful."""
 
 
 def pose_clip(
@@ -134,7 +132,7 @@ class _Search:
             postures,
             fit,
             composed.floor_m,
-            _reason(found, fit),
+            f"the postures explain {fit:.0%} of the footage",
             _contradictions(take, work, sampled, off),
             between=self.between,
         )
@@ -206,10 +204,3 @@ def _contradictions(
         if wrong:
             found[int(sampled[row]) + work.first] = wrong
     return found
-
-
-def _reason(frames: Sequence[MatchedFrame], fit: float) -> str:
-    """Sentence for people on how sure the postures are."""
-    doubtful = sum(frame.candidates[0].confidence < DOUBTFUL for frame in frames)
-    said = "none is doubtful" if not doubtful else f"{doubtful} of {len(frames)} keyframes are doubtful"
-    return f"the postures explain {fit:.0%} of the footage; {said}"

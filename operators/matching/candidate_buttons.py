@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.library.several_libraries import COMPOSED
 from ..overlays.style import candidate_icon
 from ..shell.messages import label
 from .candidate_titles import candidate_title
@@ -25,8 +26,17 @@ def draw_candidates_head(
     head.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
 
 
-def draw_candidates(layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, operator: str) -> None:
-    """Draw a row for each candidate, whose button calls an operator with its index."""
+def draw_candidates(
+    layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, operator: str, is_shown: bool = True
+) -> None:
+    """Draw a row for each candidate, whose button calls an operator with its index.
+
+    Args:
+        layout: Where they are drawn.
+        match: Their frame.
+        operator: The operator.
+        is_shown: Whether the frame has one of them; if not, it was posed in another way.
+    """
     for index, candidate in enumerate(match.candidates):
         row = layout.row(align=True)
         button = row.operator(
@@ -36,10 +46,10 @@ def draw_candidates(layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, 
             ),
             translate=False,
             icon=candidate_icon(index),
-            depress=index == match.chosen,
+            depress=is_shown and index == match.chosen,
         )
         button.candidate = index
-        if candidate.mirrored:
+        if candidate.mirrored and match.library != COMPOSED:
             row.label(text="", icon="MOD_MIRROR")
         said = row.row()
         said.ui_units_x = PERCENT_UNITS

@@ -16,19 +16,30 @@ PAIRS = {("arm.L", "arm.R"): "arms", ("leg.L", "leg.R"): "legs"}
 def candidate_title(match: bpy.types.PropertyGroup, candidate: bpy.types.PropertyGroup) -> str:
     """What tells a candidate from the first one: its turn, then the name of its posture.
 
-    Postures that were composed have the name of one that they resemble, which often is the same for all:
-    instead the limbs are named that are elsewhere.
+    Postures that were composed have the name of one that they resemble, which often is the same for all and
+    tells a person little: instead the limbs are named that are elsewhere.
     """
-    angle, what = degrees(candidate.turned), str(candidate.name)
-    if match.library == COMPOSED and candidate.limbs:
-        what = label("other {limbs}", limbs=", ".join(_limbs(candidate.limbs.split())))
-    if abs(angle) < NOTICEABLE_TURN_DEG:
-        return what[:1].upper() + what[1:]
-    if abs(angle) > 180.0 - NOTICEABLE_TURN_DEG:
-        return label("Turned round: {posture}", posture=what)
-    if angle > 0.0:
-        return label("{angle:.0f}° left: {posture}", angle=angle, posture=what)
-    return label("{angle:.0f}° right: {posture}", angle=-angle, posture=what)
+    turn = _turn(degrees(candidate.turned))
+    if match.library != COMPOSED:
+        named = str(candidate.name)
+        return label("{turn}: {posture}", turn=turn, posture=named) if turn else named[:1].upper() + named[1:]
+    limbs = ", ".join(_limbs(candidate.limbs.split()))
+    if turn:
+        return label("{turn}: {limbs}", turn=turn, limbs=limbs) if limbs else turn
+    if limbs:
+        return label("Other {limbs}", limbs=limbs)
+    return label("As found") if candidate == match.candidates[0] else label("Nearly as found")
+
+
+def _turn(angle_deg: float) -> str:
+    """Words for a turn to the left; none where it is hardly seen."""
+    if abs(angle_deg) < NOTICEABLE_TURN_DEG:
+        return ""
+    if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
+        return label("Turned round")
+    if angle_deg > 0.0:
+        return label("{angle:.0f}° left", angle=angle_deg)
+    return label("{angle:.0f}° right", angle=-angle_deg)
 
 
 def _limbs(names: list[str]) -> list[str]:

@@ -44,7 +44,7 @@ class FindOperator(FloorSettings, JobOperator):
         self.report({"INFO"}, take.matching.reason)
         count, doubtful = count_found(take)
         if doubtful:
-            take.matching.active_match = doubtful_matches(take)[0]
+            take.matching.shown_match = doubtful_matches(take)[0]
             say(
                 self,
                 "WARNING",

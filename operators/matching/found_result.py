@@ -97,7 +97,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
         if not kept[index]:
             note_contradictions(take, matching.matches[index].frame, ())
             matching.matches.remove(index)
-    for name in ("reason", "fit", "floor_found", "last_match"):
+    for name in ("reason", "fit", "floor_found", "active_match"):
         matching.property_unset(name)
     invalidate_keyed_frames()
     return len(undecided)

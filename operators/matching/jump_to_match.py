@@ -51,7 +51,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         if wanted is None:
             say(self, "INFO", "No found keyframe is in doubt")
             return {"CANCELLED"}
-        take.matching.active_match = wanted
+        take.matching.shown_match = wanted
         return None
 
     def _doubtful(self, take: bpy.types.PropertyGroup) -> int | None:

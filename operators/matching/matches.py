@@ -34,6 +34,6 @@ def chosen_match(take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
         InputError: There is none.
     """
     matching = take.matching
-    if not 0 <= matching.active_match < len(matching.matches):
+    if not 0 <= matching.shown_match < len(matching.matches):
         raise InputError("no found keyframe is chosen; pose all first, and choose a frame in the list")
-    return matching.matches[matching.active_match]
+    return matching.matches[matching.shown_match]

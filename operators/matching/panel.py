@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.library.several_libraries import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label
@@ -12,7 +13,8 @@ from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_h
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
 FRAME_UNITS = 1.6
-ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+"""Icon and words of what is no found keyframe any more."""
 
 
 class KEYMARK_UL_matches(RowList, bpy.types.UIList):
@@ -29,27 +31,29 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         number = row.row()
         number.ui_units_x = FRAME_UNITS
         number.label(text=f"{item.frame:g}", translate=False)
+        is_found = state == "FOUND"
+        icon, words = how_sure(take, item) if is_found else STATES[state]
         shown = item.candidate
-        icon = ICONS.get(state) or found_icon(take, item)
-        row.label(text=shown.name, icon=icon, translate=False)
-        if shown.mirrored:
+        named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else label(words), icon=icon, translate=False)
+        if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
-        said = row.row()
-        said.ui_units_x = PERCENT_UNITS
-        said.alignment = "RIGHT"
-        words = {"POSED": label("posed"), "GONE": label("no key")}.get(state, percent(item.confidence))
-        said.label(text=words, translate=False)
+        if is_found:
+            said = row.row()
+            said.ui_units_x = PERCENT_UNITS
+            said.alignment = "RIGHT"
+            said.label(text=percent(item.confidence), translate=False)
 
 
-def found_icon(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> str:
-    """Icon of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
+def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
+    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN"
+        return "VIEW_PAN", "chosen"
     if contradictions_at(take, match.frame):
-        return "ERROR"
+        return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
-        return "QUESTION"
-    return "CHECKMARK" if match.confidence >= SURE else "DOT"
+        return "QUESTION", "doubtful"
+    return ("CHECKMARK", "sure") if match.confidence >= SURE else ("DOT", "likely")
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
@@ -65,7 +69,7 @@ class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
         if len(matching.matches):
             _draw_counts(column, context, take)
             column.template_list(
-                "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=3, maxrows=5
+                "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
             )
             _draw_jumps(column, take)
             _draw_candidates(column, context, take)
@@ -111,15 +115,16 @@ def _draw_candidates(
 ) -> None:
     """Draw the candidates of the chosen frame as buttons in their figures' colors, and what can be done."""
     matching = take.matching
-    if matching.active_match >= len(matching.matches):
+    if matching.shown_match >= len(matching.matches):
         return
-    match = matching.matches[matching.active_match]
+    match = matching.matches[matching.shown_match]
     box = layout.column(align=True)
     draw_candidates_head(box, context, match)
-    draw_candidates(box, match, "keymark.replace_match")
+    is_found = state_of(take, match) == "FOUND"
+    draw_candidates(box, match, "keymark.replace_match", is_found)
     row = layout.row(align=True)
     accept = row.row(align=True)
-    accept.enabled = state_of(take, match) == "FOUND"
+    accept.enabled = is_found
     accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
 

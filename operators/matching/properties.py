@@ -47,17 +47,17 @@ def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
     matching.library_name = _libraries(matching, None)[number][0]
 
 
-def _active_match(matching: bpy.types.PropertyGroup) -> int:
+def _shown_match(matching: bpy.types.PropertyGroup) -> int:
     """The found keyframe of the current frame; elsewhere the one that was chosen last."""
     scene = matching.id_data
     take = next((take for take in scene.keymark.takes if take.matching == matching), None)
     here = -1 if take is None else match_at(take, scene.frame_current_final)
-    return here if here >= 0 else min(matching.last_match, max(len(matching.matches) - 1, 0))
+    return here if here >= 0 else min(matching.active_match, max(len(matching.matches) - 1, 0))
 
 
 def _choose_match(matching: bpy.types.PropertyGroup, index: int) -> None:
     """Go to the frame of the found keyframe that was clicked in the list."""
-    matching.last_match = index
+    matching.active_match = index
     if index < len(matching.matches):
         matching.matches[index].go_to(matching.id_data)
 
@@ -192,14 +192,14 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         precision=4,
     )
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
-    last_match: bpy.props.IntProperty(
+    active_match: bpy.props.IntProperty(
         name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}
     )
-    active_match: bpy.props.IntProperty(
+    shown_match: bpy.props.IntProperty(
         name="Found Keyframe",
         description="The found keyframe of the current frame; choosing one goes there",
         min=0,
-        get=_active_match,
+        get=_shown_match,
         set=_choose_match,
     )
 

@@ -34,9 +34,9 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
             remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
             invalidate_keyed_frames()
         note_contradictions(take, frame, ())
-        removed = matching.active_match
+        removed = matching.shown_match
         matching.matches.remove(removed)
-        matching.active_match = max(0, min(removed, len(matching.matches) - 1))
+        matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
         say(self, "INFO", "Removed the found keyframe at frame {frame:g}", frame=frame)
 
 

@@ -32,9 +32,9 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
-        if matching is None or matching.active_match >= len(matching.matches):
+        if matching is None or matching.shown_match >= len(matching.matches):
             return str(cls.__doc__)
-        match = matching.matches[matching.active_match]
+        match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
             return str(cls.__doc__)
         said = candidate_title(match, match.candidates[properties.candidate])
@@ -61,20 +61,20 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         match.chosen, match.by_hand = self.candidate, True
         key_candidate(take, match)
         match.go_to(context.scene)
-        frame, posture = float(match.frame), match.candidate.name
+        frame, number = float(match.frame), self.candidate + 1
         note_contradictions(take, frame, ())
         improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
         if improved:
             say(
                 self,
                 "INFO",
-                "Frame {frame:g} shows {posture} now; {improved} found ones around it were posed anew",
+                "Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
                 frame=frame,
-                posture=posture,
+                number=number,
                 improved=improved,
             )
         else:
-            say(self, "INFO", "Frame {frame:g} shows {posture} now", frame=frame, posture=posture)
+            say(self, "INFO", "Frame {frame:g} shows candidate {number}", frame=frame, number=number)
         return None
 
 

@@ -26,6 +26,8 @@ TALL_M = 1.7
 """Height of a figure by which lines get thinner where it is small [m]."""
 ABOVE = 6.0
 """Distance of a figure's number from the point that it stands above [px]."""
+BESIDE = 16.0
+"""Distance at which the numbers of two figures, as high as this, can both be read [px]."""
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -95,7 +97,7 @@ def over_footage(
 
 
 def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
-    """The figures of all candidates but the chosen one, each with its number where it differs most from that.
+    """The figures of all candidates but the chosen one, each with its number where it differs from that.
 
     Args:
         positions: (N, 13, 2) region pixels of the candidates' points, NaN where not seen.
@@ -107,6 +109,7 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
     style = Style(settings.opacity, settings.line_width, scale, body_scale(heights / TALL_M, scale))
     width = LIMB * style.width * style.body_scale
     items: list[Item] = []
+    taken: list[Array] = []
     for index, figure in enumerate(positions):
         if index == chosen:
             continue
@@ -117,8 +120,25 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
             Stroke(lines[is_right], style.color(CORE), CORE_SHARE * width),
         ]
         apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
-        x, y = figure[int(apart.argmax())]
         if apart.max() >= 0.0:
-            above = float(y) + ABOVE * scale
-            items.append(Label(str(index + 1), float(x), above, (*color[:3], 1.0), "middle"))
+            x, y = _number_place(figure, apart, taken, BESIDE * scale)
+            taken.append(np.array([x, y]))
+            items.append(Label(str(index + 1), x, y + ABOVE * scale, (*color[:3], 1.0), "middle"))
     return items
+
+
+def _number_place(figure: Array, apart: Array, taken: list[Array], beside: float) -> tuple[float, float]:
+    """The point [px] of a figure above which its number stands.
+
+    Args:
+        figure: (13, 2) its points [px].
+        apart: (13,) their distances from those of the chosen figure [px], negative where not seen.
+        taken: Where other figures' numbers stand.
+        beside: Distance from those that is enough [px].
+    """
+    order = [point for point in np.argsort(-apart, kind="stable") if apart[point] >= 0.0]
+    free = (
+        point for point in order if all(np.linalg.norm(figure[point] - other) >= beside for other in taken)
+    )
+    x, y = figure[next(free, order[0])]
+    return float(x), float(y)

@@ -31,7 +31,7 @@ def alone(found: Group) -> None:
 
 def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motion) -> None:
     """It is keyed as found, nothing is in doubt any more, and choosing the first again brings that back."""
-    found.matching.active_match = 0
+    found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     match = found.matching.matches[0]
     assert (match.matched.posture, match.matched.mirrored) == ("Back", True)
@@ -46,7 +46,7 @@ def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motio
 
 def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
     """Accepted, a frame is posed; removed, it is no keyframe."""
-    found.matching.active_match = 1
+    found.matching.shown_match = 1
     before = shown(found, 7)
     bpy.ops.keymark.accept_match()
     assert (posed_frames(found), matched_frames(found)) == ((7.0,), (1.0, 13.0))
@@ -61,7 +61,7 @@ def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
 
 def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) -> None:
     """A changed keyframe and a chosen candidate stay; then there is nothing left to remove."""
-    found.matching.active_match = 0
+    found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     bpy.context.scene.frame_set(7)
     bpy.ops.keymark.store_keyframe()
@@ -106,12 +106,12 @@ def test_found_keyframes_are_gone_through_in_order(found: Group) -> None:
 def test_the_chosen_one_is_that_of_the_current_frame(found: Group) -> None:
     """Choosing goes there, going there chooses; between two the last one stays chosen."""
     scene, matching = bpy.context.scene, found.matching
-    matching.active_match = 1
+    matching.shown_match = 1
     assert scene.frame_current == 7
     scene.frame_set(13)
-    assert matching.active_match == 2
+    assert matching.shown_match == 2
     scene.frame_set(10)
-    assert matching.active_match == 1
+    assert matching.shown_match == 1
 
 
 def test_every_step_is_undone_and_redone(unposed: Group, given: SimpleNamespace) -> None:
@@ -170,13 +170,15 @@ def test_a_candidate_is_named_by_what_tells_it_from_the_first(found: Group, wave
     """The limbs of a composed posture, whose name is often the same; a library's own name; a turn before."""
     last = found.matching.matches[2]
     first, other = last.candidates
-    assert candidate_title(last, first) == "Wave 12"
+    assert candidate_title(last, first) == "As found"
     assert candidate_title(last, other) == "Other arms"
     other.turned = 0.8
-    assert candidate_title(last, other) == "46° left: other arms"
+    assert candidate_title(last, other) == "46° left: arms"
     other.turned = -3.1
-    assert candidate_title(last, other) == "Turned round: other arms"
+    assert candidate_title(last, other) == "Turned round: arms"
     other.limbs, other.turned = "arm.R leg.L leg.R", 0.0
     assert candidate_title(last, other) == "Other right arm, legs"
+    other.limbs = ""
+    assert candidate_title(last, other) == "Nearly as found"
     last.library = "waves"
     assert candidate_title(last, other) == "Back"

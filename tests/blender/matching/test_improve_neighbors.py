@@ -45,12 +45,12 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
 def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleNamespace) -> None:
     """A candidate that was chosen holds from then on, though it counts as found."""
     asked = len(given.frames)
-    found.matching.active_match = 0
+    found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     assert given.frames[asked] == (6, 12)
     take = active_take(bpy.context.scene)
     chosen = shown(take, 1)
-    take.matching.active_match = 1
+    take.matching.shown_match = 1
     bpy.ops.keymark.accept_match()
     assert given.frames[asked + 1] == (12,) and given.between[-1] == (6, 12)
     assert [each.index for each in given.takes[-1].keyframes] == [0, 6]

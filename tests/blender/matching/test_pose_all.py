@@ -49,7 +49,7 @@ def test_doubtful_ones_are_said_and_shown(
     assert "3 keyframes found, 1 of them doubtful" in capfd.readouterr().out
     take = active_take(bpy.context.scene)
     assert count_found(take) == (3, 1)
-    assert bpy.context.scene.frame_current == 7 and take.matching.active_match == 1
+    assert bpy.context.scene.frame_current == 7 and take.matching.shown_match == 1
     given.confidences = dict.fromkeys((0, 6, 12), 0.9)
     bpy.context.scene.frame_set(3)
     bpy.ops.keymark.pose_all()
@@ -107,9 +107,9 @@ def test_a_candidate_that_a_person_chose_stays(
 ) -> None:
     """With its entry, in its place, and it is handed on like a posed one."""
     found.matching.improve_neighbors = False
-    found.matching.active_match = 1
+    found.matching.shown_match = 1
     bpy.ops.keymark.replace_match(candidate=1)
-    found.matching.active_match = 0
+    found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)

@@ -77,6 +77,22 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
     assert all(candidate_icon(index) in icons for index in range(9))
 
 
+def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy.types.Scene) -> None:
+    """Of figures in one place each has its number above another joint; where none is free, above one."""
+    points = candidates.candidate_points(active_take(opened).armature, match)
+    positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
+    settings = SimpleNamespace(opacity=0.5, line_width=1.5)
+    many = np.concatenate([positions[:1], np.repeat(positions[1:2], 4, axis=0)])
+    numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
+    places = np.array([[number.x, number.y] for number in numbers])
+    apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(4, 1)]
+    assert len(numbers) == 4 and apart.min() >= candidates.BESIDE
+    tiny = 0.01 * many
+    tiny[1:, 0] += 1.0
+    numbers = [item for item in candidates.picture(tiny, 0, settings) if isinstance(item, Label)]
+    assert len({(number.x, number.y) for number in numbers}) == 1
+
+
 def test_points_that_are_not_seen_are_left_out() -> None:
     """A figure behind the viewer is none, and has no number."""
     positions = np.full((2, 13, 2), np.nan)

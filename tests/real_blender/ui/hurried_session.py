@@ -1,4 +1,4 @@
-"""A person in a hurry: from the clip to a motion by Pose All and one correction, counting clicks.
+"""A person in a hurry: from the clip to a motion by Pose All and a few corrections, counting clicks.
 
 Usage: as of session.py, without a step. Nothing is cancelled or undone on the way.
 """
@@ -9,6 +9,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
+import steps_doubtful  # noqa: E402
 import steps_match  # noqa: E402
 import steps_prepare  # noqa: E402
 from driver import Camera, Steps, drive  # noqa: E402
@@ -19,7 +20,7 @@ STEPS = (
     steps_prepare.markers,
     steps_prepare.actor,
     steps_match.pose_all,
-    steps_match.correct,
+    steps_doubtful.doubtful,
     steps_match.reconstruct,
 )
 

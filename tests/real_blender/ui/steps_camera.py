@@ -1,5 +1,7 @@
 """The camera of the session's first step: found from lines and from the performer, by mouse and keys."""
 
+from typing import Any
+
 import bpy
 import numpy as np
 from driver import Steps, expect, turns
@@ -8,6 +10,10 @@ from person import Person, keymark
 
 KNOWN_M = 1.2
 """Height of something that stands on the floor, wholly in the picture."""
+ASIDE_M = (0.9, 0.7, 0.5, 0.3)
+"""How far beside the performer a line is drawn: as far as the picture shows it well."""
+SHOWN = 0.5
+"""Least share of such a line that the picture shows."""
 EDGE = 0.03
 """Share of the picture at its edges in which nothing is drawn."""
 TILT_DEGREES, HEIGHT_M = 3.0, 0.2
@@ -49,21 +55,31 @@ def _lines(person: Person) -> list[NDArray[np.float64]]:
     ahead = np.array([-np.sin(heading), np.cos(heading), 0.0])
     right, up = np.array([ahead[1], -ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     foot = known.keyframes[0].posture.translation * [1.0, 1.0, 0.0]
-    plumb = [(foot + side * right + 0.1 * up, foot + side * right + 1.9 * up) for side in (-0.9, 0.9)]
-    level = [(foot + side * right - ahead, foot + side * right + ahead) for side in (-0.6, 0.7)]
-    return [_shown(person, *line) for line in (*plumb, *level, (foot, foot + KNOWN_M * up))]
+    plumb, level = (0.1 * up, 1.9 * up), (-ahead, ahead)
+    drawn = [_beside(known, foot, side * right, line) for line in (plumb, level) for side in (-1.0, 1.0)]
+    height = _shown(known, foot, foot + KNOWN_M * up)
+    expect(height is not None, "the known height is not in the picture")
+    return [*drawn, height]
 
 
-def _shown(person: Person, start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The ends of what the picture shows of a line in the world."""
-    camera = person.known.camera
-    pixel: NDArray[np.float64] = camera.project(start + np.linspace(0.0, 1.0, 200)[:, None] * (end - start))[
-        0
-    ]
-    size = np.array(camera.resolution)
+def _beside(
+    known: Any, foot: NDArray[np.float64], side: NDArray[np.float64], line: tuple[NDArray[np.float64], ...]
+) -> NDArray[np.float64]:
+    """What the picture shows of a line on one side of the performer."""
+    places = (foot + aside * side for aside in ASIDE_M)
+    shown = (_shown(known, *(place + end for end in line)) for place in places)
+    found = next((ends for ends in shown if ends is not None), None)
+    expect(found is not None, "a line that the person would draw is not in the picture")
+    return found
+
+
+def _shown(known: Any, start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """The ends of what the picture shows of a line in the world; None where that is too little."""
+    shares = np.linspace(0.0, 1.0, 200)[:, None]
+    pixel: NDArray[np.float64] = known.camera.project(start + shares * (end - start))[0]
+    size = np.array(known.camera.resolution)
     inside = ((pixel > EDGE * size) & (pixel < (1.0 - EDGE) * size)).all(axis=1)
-    expect(inside.sum() > 20, "a line that the person would draw is not in the picture")
-    return pixel[inside][[0, -1]]
+    return pixel[inside][[0, -1]] if inside.mean() > SHOWN else None
 
 
 def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:

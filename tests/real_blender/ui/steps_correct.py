@@ -5,7 +5,7 @@ import numpy as np
 from driver import Steps, expect, turns, until
 from person import Person, keymark
 
-DRAGGED_PX = (34.0, 26.0)
+DRAGGED_PX = 42.0
 NEAR_PX = 3.0
 """How near to the mouse a dragged joint must be seen."""
 MOVED_M = 0.03
@@ -56,9 +56,10 @@ def seen(person: Person, joint: str) -> tuple[float, float]:
 
 
 def dragged(person: Person, joint: str) -> Steps[None]:
-    """Drag a joint, which must then lie under the mouse."""
-    start = seen(person, joint)
-    end = start[0] + DRAGGED_PX[0], start[1] + DRAGGED_PX[1]
+    """Drag a joint toward its shoulder, where it can come; it must then lie under the mouse."""
+    start = np.array(seen(person, joint))
+    toward = np.array(seen(person, joint.replace("wrist", "shoulder"))) - start
+    end = start + DRAGGED_PX * toward / np.linalg.norm(toward)
     yield from person.hands.drag(start, end)
     off = np.linalg.norm(np.subtract(seen(person, joint), end))
     expect(off < NEAR_PX, f"the joint is {off:.1f} px beside the mouse")

@@ -1,4 +1,4 @@
-"""A session's middle without posing: found keyframes, one of them corrected, and the motion."""
+"""A session's middle without posing: found keyframes, a choice among candidates, and the motion."""
 
 from driver import Steps, expect, turns
 from person import Person, keymark
@@ -43,7 +43,7 @@ def choose(person: Person) -> Steps[None]:
     if doubtful:
         words = ("only_doubtful=True",)
     yield from person.hands.click_button(command, *words)
-    match = person.take.matching.matches[person.take.matching.active_match]
+    match = person.take.matching.matches[person.take.matching.shown_match]
     expect(person.scene.frame_current == round(match.frame), "the chosen frame is not shown")
     yield from person.hands.click_button("keymark.look_from_side")
     yield from turns(5)
@@ -55,25 +55,6 @@ def choose(person: Person) -> Steps[None]:
     yield from person.hands.click_button("keymark.look_from_side")
     left = keymark("operators.shell.found_frames").count_found(person.take)[0]
     expect(left == count, f"of {count} found keyframes {left} are left")
-
-
-def correct(person: Person) -> Steps[None]:
-    """Pose one frame as the performer stands there, which improves the found ones around it."""
-    frames = keymark("operators.shell.keyed_frames")
-    found, first = frames.matched_frames(person.take), person.known.frame_start
-    keyframe = min(
-        person.known.keyframes,
-        key=lambda each: min(abs(each.index + first - frame) for frame in found[1:-1] or found),
-    )
-    frame = keyframe.index + first
-    person.scene.frame_set(frame)
-    person.step_done(f"Go to frame {frame}")
-    keymark("operators.bridge.pose").write_posture(person.take.armature, keyframe.posture)
-    person.step_done(f"Pose frame {frame}")
-    yield from person.undoable("storing the correction", lambda: _store(person))
-    expect(frames.posed_frames(person.take) == (float(frame),), "the correction does not count as posed")
-    expect(len(frames.keyframes_of(person.take)) >= len(found), "found keyframes are lost")
-    yield from person.look("corrected")
 
 
 def reconstruct(person: Person) -> Steps[None]:
@@ -92,7 +73,3 @@ def _match(person: Person) -> Steps[None]:
 
 def _take(person: Person, candidate: int) -> Steps[None]:
     yield from person.hands.click_button("keymark.replace_match", f"candidate={candidate}")
-
-
-def _store(person: Person) -> Steps[None]:
-    yield from person.hands.click_button("keymark.store_keyframe")

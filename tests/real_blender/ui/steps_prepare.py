@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+import cv2
 import numpy as np
 from driver import Steps, expect, turns, until
 from mathutils import Matrix
@@ -10,10 +11,12 @@ from numpy.typing import NDArray
 from person import Person, keymark
 from steps_camera import find_camera
 
-FARTHEST_COLOR = 40.0
-"""Between a pixel of a sleeve and the sleeve's color over the whole clip, of 255."""
+FARTHEST_COLOR = 25.0
+"""Between a sleeve's color in one frame and over the whole clip, made equally bright, of 255."""
 HIGHER_PX = 100
 """What the timeline is made higher by."""
+ABOUT_PX = 5
+"""Side of the square about a click that a person sees wholly on the sleeve."""
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its color, as a share of the picture's width."""
 
@@ -92,11 +95,11 @@ def markers(person: Person) -> Steps[None]:
 
 
 def check_colors(person: Person) -> None:
-    """Expect every marker to have nearly the color of its sleeve."""
-    apart = [
-        np.abs(255.0 * np.array(marker.color) - style.color_srgb).max()
-        for marker, style in zip(person.take.markers, person.known.markers, strict=True)
-    ]
+    """Expect every marker to have nearly the color of its sleeve, be it in shade where it was picked."""
+    apart = []
+    for marker, style in zip(person.take.markers, person.known.markers, strict=True):
+        picked, known = np.array(marker.color), np.array(style.color_srgb, dtype=float)
+        apart.append(float(np.abs(picked * (known @ picked) / (picked @ picked) - known).max()))
     expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
 
 
@@ -172,8 +175,8 @@ def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     """A pixel [px] of the current frame where a person would click for a marker.
 
-    That is where the sleeve's color is nearest to what it is known to be, around where the first keyframe
-    has the middle of the limb.
+    That is where the colors about it are nearest to what the sleeve's is known to be, around where the first
+    keyframe has the middle of the limb.
     """
     known = person.known
     style, keyframe = known.markers[number], known.keyframes[0]
@@ -191,6 +194,7 @@ def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     pixels = np.stack([columns, rows], axis=-1) + 0.5
     near = np.linalg.norm(pixels - center, axis=-1) < SEARCH_PX * image.shape[1]
     wrong = np.linalg.norm(image[..., ::-1].astype(float) - style.color_srgb, axis=-1)
+    wrong = cv2.blur(wrong, (ABOUT_PX, ABOUT_PX))
     wrong[~near] = np.inf
     return pixels[np.unravel_index(np.argmin(wrong), wrong.shape)]
 
