@@ -1,4 +1,4 @@
-"""Coarse pass over a few frames: the floor's height by single postures, without an order in time."""
+"""Coarse pass over a few frames: the floor's height and a library's fit by single postures, in no order."""
 
 import numpy as np
 
@@ -30,7 +30,7 @@ def floor_height_m(
         frames: Frames to choose from.
         states: The library's postures in all headings.
     """
-    chosen = frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
+    chosen = _few(frames)
     likelihoods = frame_likelihoods(camera, evidence, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
     emissions = [evaluate_emissions(likelihood, states) for likelihood in likelihoods]
     floor_m = _median_height_m(likelihoods, emissions, states)
@@ -40,6 +40,27 @@ def floor_height_m(
     ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
     added = _mean_cost(ground_emissions) - _mean_cost(emissions)
     return 0.0 if added < FLOOR_COST_MARGIN else floor_m
+
+
+def single_posture_cost(
+    camera: Camera, evidence: MatchEvidence, frames: IndexArray, states: StateFeatures, floor_m: float
+) -> float:
+    """Mean negative log likelihood of a frame's best posture, by which libraries are compared.
+
+    Args:
+        camera: The camera.
+        evidence: The markers' regions and the keypoints.
+        frames: Frames to choose from.
+        states: The library's postures in all headings.
+        floor_m: Height of the floor [m].
+    """
+    likelihoods = frame_likelihoods(camera, evidence, _few(frames), floor_m, FLOOR_STD_M)
+    return _mean_cost([evaluate_emissions(likelihood, states) for likelihood in likelihoods])
+
+
+def _few(frames: IndexArray) -> IndexArray:
+    """Evenly chosen ones of some frames."""
+    return frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
 
 
 def _mean_cost(emissions: list[FrameEmissions]) -> float:

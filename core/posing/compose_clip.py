@@ -7,9 +7,11 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body
+from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
+from ..library.library import Library
 from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
 from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.library_match import CORRELATION_S
@@ -19,11 +21,10 @@ from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates
-from ..library.library import Library
-from .library_belief import part_beliefs
+from .library_belief import PartBelief, part_beliefs
 from .mean_posture import mean_postures
-from .part_features import HEADINGS, StanceFeatures
-from .part_pools import LIMBS, PartPools
+from .part_features import StanceFeatures
+from .part_pools import PartPools
 from .posed_costs import PosedCosts
 
 PART_SCALE = 0.4
@@ -32,6 +33,8 @@ WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
 """Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
 NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
 """Distances tried about the first path."""
+SEARCHED_AND_LED = 0.6, 0.7
+"""Shares of a round after which the states are found, and the path through them."""
 SMOOTH_S = 0.6
 """Time over which the rough distance is smoothed."""
 FLOOR_STD_M = 0.06
@@ -58,7 +61,7 @@ def compose_frames(
     stances: StanceFeatures,
     sampled: IndexArray,
     floor_m: float | None,
-    libraries: Sequence[Library] = (),
+    libraries: Sequence[Library],
 ) -> Part[Composition]:
     """Compose the postures of some frames.
 
@@ -68,10 +71,14 @@ def compose_frames(
         stances: Their stances.
         sampled: (T,) which frames.
         floor_m: Height of the floor; None where it is not known.
+        libraries: Those whose whole motions are believed in as far as the clip shows them; not asked between
+            two posed frames.
+
+    Yields:
+        The fraction done.
     """
     evidence, camera = given.evidence, given.camera
     time_s = evidence.tracks.time_s[sampled]
-    own_weight = tempering(time_s)
     rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
     if _posed_at_both_ends(given, sampled):  # the place is known, then, and what lies between is soon found
         known = given.constraints
@@ -83,58 +90,36 @@ def compose_frames(
     if floor_m is None:
         floor_m = floor_height_m(given, stances, sampled, rough)
     yield 0.1
-    costs = frame_costs(given, stances, sampled, floor_m)
-    swapped: list[FrameCosts] = []
-    if len(evidence.points):
-        mirrored = replace(given, evidence=evidence.exchanged())
-        swapped = frame_costs(mirrored, stances, sampled, floor_m)
-    posed = given.constraints
-    for index, frame in enumerate(posed.frames):
-        row = int(np.searchsorted(sampled, frame))
-        if row < len(sampled) and sampled[row] == frame:
-            hips, points = posed.hips[index], posed.points[index]
-            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, own_weight)
-            if swapped:
-                swapped[row] = costs[row]
-    path: ComposedPath | None = None
-    states: list[FrameStates] = []
+    beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
     for turn, shares in enumerate(rounds):
         begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
+        searched, led = (begun + part * (ended - begun) for part in SEARCHED_AND_LED)
         is_last = turn == len(rounds) - 1
-        # The first round is for the place alone; exchanged sides are tried where it is known.
+        # The first round is for the place and the library; exchanged sides are tried where they are known.
         rows = np.arange(len(sampled)) if is_last else _every_second(len(sampled))
-        own = [costs[row] for row in rows]
-        others = swapped if is_last else []
-        states = yield from scaled(
-            _states(own, others, rough[rows], shares), begun, 0.8 * ended + 0.2 * begun
-        )
-        step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
         weight = tempering(time_s[rows])
-        found = best_path(stances, states, own, others, time_s[rows], weight, step_m)
-        path = yield from scaled(found, 0.8 * ended + 0.2 * begun, ended)
-        at = zip(path.hips, sampled[rows], strict=True)
-        depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
-        rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
-        if not is_last and libraries:
-            first = mean_postures(pools, stances, states, path.stance, path.hips, path.limbs, path.posterior, path.limb_posterior)
-            beliefs = yield from scaled(part_beliefs(given, libraries, stances, sampled, first, floor_m), ended, ended)
-            for row, belief in enumerate(beliefs):
-                costs[row].belief = belief
-                if swapped:
-                    swapped[row].belief = belief
-    assert path is not None
-    import os
-    if os.environ.get("MAPONLY"):
-        posture = pools.composed(path.stance // HEADINGS, {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)}, stances.heading_rad[path.stance % HEADINGS], path.hips)
-    else:
-        posture = mean_postures(
-            pools, stances, states, path.stance, path.hips, path.limbs, path.posterior, path.limb_posterior
-        )
+        believed = [beliefs[row] for row in rows]
+        costs = _costs(given, stances, sampled[rows], floor_m, believed, weight)
+        others: list[FrameCosts] = []
+        if is_last and len(evidence.points):
+            mirrored = replace(given, evidence=evidence.exchanged())
+            others = _costs(mirrored, stances, sampled[rows], floor_m, believed, weight)
+        states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
+        step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
+        leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
+        path = yield from scaled(leading, searched, led)
+        posture = mean_postures(pools, stances, states, path)
+        if not is_last:
+            at = zip(path.hips, sampled[rows], strict=True)
+            depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
+            rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
+            telling = part_beliefs(given, libraries, stances, sampled, posture, floor_m)
+            beliefs = yield from scaled(telling, led, ended)
     return Composition(path, states, posture, floor_m)
 
 
 def tempering(time_s: Array) -> float:
-    """Weight of one of several frames at some times (T,), as what makes one doubtful makes its neighbors doubtful."""
+    """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
     return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
@@ -147,14 +132,37 @@ def _posed_at_both_ends(given: MatchInput, sampled: IndexArray) -> bool:
     return {int(sampled[0]), int(sampled[-1])} <= set(map(int, given.constraints.frames))
 
 
-def frame_costs(
-    given: MatchInput, stances: StanceFeatures, frames: IndexArray, floor_m: float | None
+def _costs(
+    given: MatchInput,
+    stances: StanceFeatures,
+    frames: IndexArray,
+    floor_m: float,
+    beliefs: Sequence[PartBelief | None],
+    weight: float,
 ) -> list[FrameCosts]:
-    """What some frames say of stances and limbs."""
+    """What some frames say, each of the given weight; posed ones hold."""
+    costs = frame_costs(given, stances, frames, floor_m, beliefs)
+    posed = given.constraints
+    for index, frame in enumerate(posed.frames):
+        for row in np.flatnonzero(frames == frame):
+            hips, points = posed.hips[index], posed.points[index]
+            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
+    return costs
+
+
+def frame_costs(
+    given: MatchInput,
+    stances: StanceFeatures,
+    frames: IndexArray,
+    floor_m: float | None,
+    beliefs: Sequence[PartBelief | None] | None = None,
+) -> list[FrameCosts]:
+    """What some frames say of stances and limbs, and what a library's motion tells of them."""
     unit = NoiseScales.of(given.evidence)
     scales = replace(unit, centroid=unit.centroid * PART_SCALE)
     likelihoods = frame_likelihoods(given.camera, given.evidence, frames, floor_m, FLOOR_STD_M, scales)
-    return [FrameCosts(each, stances, floor_m) for each in likelihoods]
+    told = [None] * len(likelihoods) if beliefs is None else beliefs
+    return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, told, strict=True)]
 
 
 def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array) -> float:
@@ -192,7 +200,7 @@ def _states(
     found = []
     for index, (cost, depth) in enumerate(zip(costs, rough, strict=True)):
         states = cost.states(depth * np.array(shares))
-        if others and others[index] is not cost:
+        if others and not isinstance(cost, PosedCosts):
             states = states.with_exchanged(others[index].states(depth * np.array(shares[:1])))
         found.append(states)
         yield index / len(costs)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..arrays import Array, SingleArray
 from ..body.kinematics import Body
+from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..matching.candidates import (
     ABOUT_RIGHT_M,
@@ -15,7 +16,7 @@ from ..matching.candidates import (
 )
 from .composed_states import FrameStates
 from .part_features import HEADINGS, StanceFeatures
-from .part_pools import LIMBS, PartPools
+from .part_pools import PartPools
 
 MOST_STATES = 60
 """Candidates are chosen among this many of the most probable states."""

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN
+from ..body.limbs import LIMBS
 from .composed_states import LEGS, FrameCosts, FrameStates, student_cost
 from .part_features import HEADINGS, StanceFeatures
-from .part_pools import LIMBS
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
 TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
@@ -42,7 +42,7 @@ class ComposedPath:
     posterior: list[SingleArray]
     """T arrays (K,) of the probabilities of each frame's states."""
     limb_posterior: dict[str, Array]
-    """(T, L) probability of each limb's parts on the stances, by limb."""
+    """(T, L) probability of each part of a limb on the stances, by limb."""
 
 
 def best_path(

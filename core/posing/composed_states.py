@@ -14,14 +14,14 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.center_of_mass import mass_weights
 from ..body.human import HUMAN
-from ..body.limbs import TRUNK, limb_of
+from ..body.limbs import LIMBS
 from ..matching.emissions import EXCHANGED_COST
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
-from .part_belief import PartBelief
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
-from .part_features import HEADINGS, StanceFeatures, limb_points
-from .part_pools import ARM, LIMBS
+from .library_belief import PartBelief
+from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
+from .part_pools import ARM
 
 MOST_STANCES = 500
 """Stances that limbs are hung on, by how well their torsos fit."""
@@ -34,7 +34,6 @@ MARGIN = 14.0
 DEPTH_STD_M = 0.02
 """How firmly a state keeps to its distance."""
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
-TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == TRUNK]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +73,15 @@ class FrameStates:
 class FrameCosts:
     """Costs of stances and limbs in one frame."""
 
-    def __init__(self, likelihood: FrameLikelihood, stances: StanceFeatures, floor_m: float | None) -> None:
+    def __init__(
+        self,
+        likelihood: FrameLikelihood,
+        stances: StanceFeatures,
+        floor_m: float | None,
+        belief: PartBelief | None = None,
+    ) -> None:
         self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
+        self.belief = belief
         self.axes = np.asarray(likelihood.image_axes, dtype=np.float32)  # (A, 2, 3)
         self.rows = self.axes * np.asarray(likelihood.weight, dtype=np.float32)[:, None, None]
         self.location = np.asarray(likelihood.location, dtype=np.float32)
@@ -83,7 +89,6 @@ class FrameCosts:
         self.sight = np.asarray(likelihood.sight, dtype=np.float32)
         self.share = np.float32(likelihood.share)
         self.markers = len(likelihood.unclipped)
-        self.belief: PartBelief | None = None
 
     def states(self, depths_m: Array) -> FrameStates:
         """The states that explain the frame best, at some distances from the camera, the middle one first."""

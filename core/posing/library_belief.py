@@ -1,52 +1,51 @@
 """What whole motions of the libraries tell of a clip, part by part.
 
-A motion that a library knows ties limbs and moments to each other, which parts composed freely lack: which arm
-swings with which leg, and when. So the libraries nearest to a first composition are matched with the clip as
-wholes, and the one that explains it best makes parts near its own likelier, the more the surer it is. A limb
-that it has wrong is left to the evidence.
+A motion that a library knows ties limbs and moments to each other, which parts composed freely lack: which
+arm swings with which leg, and when. So the library that is nearest to a first composition is matched with the
+clip as a whole, and makes parts near its own likelier, the more the surer the match is. A part that it has
+wrong is left to the evidence: the belief is bounded.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.heading import headings_rad, yawed_at
+from ..body.human import HUMAN
+from ..body.kinematics import Body
+from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..library.library import Library
-from ..matching.library_match import LibraryMatch, match_library, prepare_library
+from ..matching.coarse_pass import single_posture_cost
+from ..matching.library_match import match_library, prepare_library
 from ..matching.match_input import MatchInput
 from ..matching.posture_sequences import library_sequences
 from ..progress import Part, scaled
-from .part_belief import PartBelief
-from .part_features import StanceFeatures, limb_points
-from .part_pools import LIMBS
-from .posed_costs import TRUNK_POINTS
+from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
+from .part_pools import ARM
 
-MOST_PREPARED = 4
-"""Libraries that single frames are compared with: the nearest ones."""
+MOST_COMPARED = 4
+"""Libraries whose single postures are compared with the footage: those nearest to a first composition."""
+COMPARED_SHARE = 0.3
+"""Share of the work after which they are."""
 PERFORMERS_M = 0.10
 """Distance of a part's points between performers at the same moment of a motion."""
 CERTAINTY = 10.0
-"""How many times likelier parts at a match's own places are than others if a match is as likely right as not."""
+"""How many times likelier parts at a match's own places are than others if the match is as likely right as
+not: a pool has some ten parts of each kind within what performers differ by."""
 
 
-def nearest_libraries(given: MatchInput, libraries: Sequence[Library], posture: Posture) -> list[Library]:
-    """The libraries whose postures are nearest to composed ones (T,), the nearest first."""
-    body = given.body
-    shape = _shapes(given, posture)
-    away = []
-    for library in libraries:
-        sequences = library_sequences(library, body)
-        known = _shapes(given, sequences.posture)
-        apart = [np.linalg.norm(known - one, axis=-1).mean(axis=-1).min() for one in shape]
-        away.append(float(np.mean(apart)))
-    return [libraries[row] for row in np.argsort(away)]
+@dataclass(frozen=True, eq=False)
+class PartBelief:
+    """What one frame's parts cost less for being near a match's: 0 far from it, negative near it."""
 
-
-def _shapes(given: MatchInput, posture: Posture) -> Array:
-    ahead = yawed_at(posture, -headings_rad(posture), np.zeros((len(posture.translation), 3)))
-    return np.asarray(given.body.points(given.body.pose(ahead)))
+    stance: SingleArray
+    """(S,) of the stances."""
+    limbs: dict[str, SingleArray]
+    """(L,) of each limb's parts, by limb."""
 
 
 def part_beliefs(
@@ -57,44 +56,68 @@ def part_beliefs(
     posture: Posture,
     floor_m: float,
 ) -> Part[list[PartBelief]]:
-    nearest = nearest_libraries(given, libraries, posture)[:MOST_PREPARED]
-    prepared = []
+    """What the library that fits a clip best tells of some frames.
+
+    Args:
+        given: The take.
+        libraries: All libraries.
+        stances: The stances and limbs of the pools.
+        sampled: (T,) the frames.
+        posture: (N,) a first composition of some frames of the clip.
+        floor_m: Height of the floor.
+
+    Yields:
+        The fraction done.
+    """
+    camera, evidence = given.camera, given.evidence
+    compared = []
+    nearest = nearest_libraries(given.body, libraries, posture)[:MOST_COMPARED]
     for turn, library in enumerate(nearest):
-        prepared.append(prepare_library(given, library))
-        yield 0.3 * (turn + 1) / len(nearest)
-    best = yield from scaled(match_library(given, min(prepared, key=lambda each: each.coarse_pass.cost), floor_m), 0.3, 1.0)
-    sure = float(np.mean([frame.candidates[0].confidence for frame in best.frames]))
-    import os
-    odds = float(os.environ.get("CERT", CERTAINTY)) * sure / (1.0 - sure)
-    if os.environ.get("VERBOSE"): print([l.identifier for l in nearest], best.library.identifier, round(best.fit,2), round(sure,2), round(odds,1))
-    return _beliefs(given, stances, best.postures[sampled], odds)
+        prepared = prepare_library(given, library)
+        cost = single_posture_cost(camera, evidence, sampled, prepared.states, floor_m)
+        compared.append((cost, prepared))
+        yield COMPARED_SHARE * (turn + 1) / len(nearest)
+    _, best = min(compared, key=itemgetter(0))
+    match = yield from scaled(match_library(given, best, floor_m), COMPARED_SHARE, 1.0)
+    sure = float(np.mean([frame.candidates[0].confidence for frame in match.frames]))
+    return _beliefs(given.body, stances, match.postures[sampled], CERTAINTY * sure / (1.0 - sure))
 
 
-def _beliefs(given: MatchInput, stances: StanceFeatures, posture: Posture, odds: float) -> list[PartBelief]:
-    body = given.body
+def nearest_libraries(body: Body, libraries: Sequence[Library], posture: Posture) -> list[Library]:
+    """The libraries by how near they have a posture to each of some (N,), whatever their heading."""
+    shapes = _shapes(body, posture)
+    away = []
+    for library in libraries:
+        known = _shapes(body, library_sequences(library, body).posture)
+        away.append(np.mean([np.linalg.norm(known - one, axis=-1).mean(axis=-1).min() for one in shapes]))
+    return [libraries[row] for row in np.argsort(away, kind="stable")]
+
+
+def _shapes(body: Body, posture: Posture) -> Array:
+    """(N, P, 3) points of postures that are turned to face -Y, the hips at the origin [m]."""
+    facing = yawed_at(posture, -headings_rad(posture), np.zeros_like(posture.translation))
+    return np.asarray(body.points(body.pose(facing)))
+
+
+def _beliefs(body: Body, stances: StanceFeatures, posture: Posture, odds: float) -> list[PartBelief]:
+    """Beliefs in the parts of postures (T,), which are `odds` times likelier than parts far away."""
     pose = body.pose(posture)
-    points = body.points(pose) - posture.translation[:, None]
-    waist = body.skeleton.joint_index("waist")
+    points, origin = (each - posture.translation[:, None] for each in (body.points(pose), pose.origin))
+    waist = HUMAN.joint_index("waist")
     found = []
     for row in range(len(points)):
-        off = stances.features.points[:, TRUNK_POINTS] - points[row, TRUNK_POINTS].astype(np.float32)
         limbs = {}
         for limb in LIMBS:
-            joint = waist if limb.startswith("arm") else 0
-            turn = pose.rotation[row, joint]
-            origin = pose.origin[row, joint] - posture.translation[row]
-            local = (points[row, limb_points(limb)] - origin) @ turn
-            limbs[limb] = _cost(stances.limbs[limb].points - local.astype(np.float32), odds)
-        import os
-        m=os.environ.get('BMODE','all')
-        st=_cost(off, odds)
-        if m=='limbs': st=st*0
-        for l in limbs:
-            if m=='torso' or (m=='legs' and l[:3]=='arm') or (m=='arms' and l[:3]=='leg'): limbs[l]=limbs[l]*0
-        found.append(PartBelief(st, limbs))
+            joint = waist if limb.startswith(ARM) else 0
+            local = (points[row, limb_points(limb)] - origin[row, joint]) @ pose.rotation[row, joint]
+            limbs[limb] = _cost(stances.limbs[limb].points, local, odds)
+        trunk = stances.features.points[:, TRUNK_POINTS]
+        found.append(PartBelief(_cost(trunk, points[row, TRUNK_POINTS], odds), limbs))
     return found
 
 
-def _cost(off: SingleArray, odds: float) -> SingleArray:
-    squared = (off**2).sum(axis=-1).mean(axis=-1) / np.float32(PERFORMERS_M**2)
-    return np.asarray(-np.log1p(np.float32(odds) * np.exp(-0.5 * squared)), dtype=np.float32)
+def _cost(parts: SingleArray, believed: Array, odds: float) -> SingleArray:
+    """(N,) cost of parts (N, Q, 3) near a believed one (Q, 3)."""
+    squared = ((parts - believed.astype(np.float32)) ** 2).sum(axis=-1).mean(axis=-1)
+    nearness = np.exp(np.float32(-0.5 / PERFORMERS_M**2) * squared)
+    return np.asarray(-np.log1p(np.float32(odds) * nearness))

@@ -1,8 +1,8 @@
 """Means of composed postures: what the probable parts near the likeliest ones have in common.
 
-The likeliest path takes one part of a pool a frame, some centimeters from the truth whatever the evidence. The
-mean over the parts near it, by their probabilities, is nearer; parts of another kind, as on the other depth side,
-do not enter.
+The likeliest path takes one part of a pool a frame, some centimeters from the truth whatever is seen. The
+mean of the parts near it, weighed by their probabilities, is nearer; parts of another kind, as those on the
+other depth side, do not enter.
 """
 
 from collections.abc import Sequence
@@ -10,74 +10,80 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
+from ..body.limbs import LIMBS
 from ..body.posture import Posture
+from ..body.skeleton import Skeleton
+from .composed_path import ComposedPath
 from .composed_states import FrameStates
 from .part_features import HEADINGS, StanceFeatures
-from .part_pools import ARM, LIMBS, TORSO, PartPools, part_columns
+from .part_pools import TORSO, PartPools, part_columns
 
 NEAR_M = 0.15
-"""Distance within which parts are called of the same kind: deviation of a Gaussian."""
+"""Parts within about this distance are of one kind: less than there is between a limb's depth sides."""
+LEAST_SHARE = 1e-3
+"""Parts that weigh less than this share of the weightiest are left out."""
 
 
 def mean_postures(
-    pools: PartPools,
-    stances: StanceFeatures,
-    states: Sequence[FrameStates],
-    stance: IndexArray,
-    hips: Array,
-    limbs: IndexArray,
-    state_posterior: Sequence[SingleArray],
-    limb_posterior: dict[str, Array],
+    pools: PartPools, stances: StanceFeatures, states: Sequence[FrameStates], path: ComposedPath
 ) -> Posture:
-    heading = stances.heading_rad
-    likeliest = pools.composed(
-        stance // HEADINGS,
-        {limb: limbs[:, column] for column, limb in enumerate(LIMBS)},
-        heading[stance % HEADINGS],
-        hips,
-    )
-    step = np.zeros((len(stance), likeliest.skeleton.dof_count))
+    """(T,) means of the likely postures around a path.
+
+    Args:
+        pools: All parts.
+        stances: Their stances.
+        states: The T frames' states.
+        path: The path through them.
+    """
+    limbs = {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)}
+    likeliest = _composed(pools, stances, path.stance, limbs, path.hips)
+    skeleton = likeliest.skeleton
+    step = np.zeros((len(path.stance), skeleton.dof_count))
+    torso = [0, 1, 2, *_dofs(skeleton, TORSO)]
     points = stances.features.points
-    none = {limb: np.zeros(1, dtype=np.intp) for limb in LIMBS}
-    torso_dofs = [0, 1, 2, *_dofs(likeliest, TORSO, "")]
-    for row, (own, chance) in enumerate(zip(states, state_posterior, strict=True)):
-        apart = np.linalg.norm(points[own.stance] - points[stance[row]], axis=-1).mean(axis=-1)
-        away = np.linalg.norm(own.hips - hips[row], axis=-1)
-        weight = chance * np.exp(-0.5 * (apart**2 + (0.5*away)**2) / NEAR_M**2)
-        kept = np.flatnonzero(weight > 1e-3 * weight.max())
-        if not len(kept):
-            continue
-        weight = weight[kept] / weight[kept].sum()
-        of = pools.composed(
-            own.stance[kept] // HEADINGS,
-            {limb: np.zeros(len(kept), dtype=np.intp) for limb in LIMBS},
-            heading[own.stance[kept] % HEADINGS],
-            own.hips[kept].astype(float),
-        )
-        delta = of.minus(likeliest[np.full(len(kept), row)])
-        step[row, torso_dofs] = (weight @ delta)[torso_dofs]
-    for column, limb in enumerate(LIMBS):
-        kind, side = limb.split(".")
-        pool = pools.arms if kind == ARM else pools.legs
-        shape = stances.limbs[limb].points
-        dofs = _dofs(likeliest, kind, side)
-        every = pools.composed(
-            np.zeros(len(pool), dtype=np.intp),
-            {one: np.arange(len(pool)) if one == limb else np.zeros(len(pool), dtype=np.intp) for one in LIMBS},
-            np.zeros(len(pool)),
-            np.zeros((len(pool), 3)),
-        )
-        for row, part in enumerate(limbs[:, column]):
-            apart = np.linalg.norm(shape - shape[part], axis=-1).mean(axis=-1)
-            weight = limb_posterior[limb][row] * np.exp(-0.5 * (apart / NEAR_M) ** 2)
-            kept = np.flatnonzero(weight > 1e-3 * weight.max())
-            weight = weight[kept] / weight[kept].sum()
-            delta = every[kept].minus(every[np.full(len(kept), part)])
-            step[row, dofs] = (weight @ delta)[dofs]
+    for row, (own, chance) in enumerate(zip(states, path.posterior, strict=True)):
+        apart = np.linalg.norm(points[own.stance] - points[path.stance[row]], axis=-1).mean(axis=-1)
+        kept, weight = _weights(chance, apart)
+        near = own.chosen(kept)
+        parts = {limb: near.limbs[:, column] for column, limb in enumerate(LIMBS)}
+        others = _composed(pools, stances, near.stance, parts, near.hips.astype(float))
+        step[row, torso] = weight @ others.minus(likeliest[np.full(len(kept), row)])[:, torso]
+    for limb, chosen in limbs.items():
+        kind, _, side = limb.partition(".")
+        dofs = _dofs(skeleton, kind, side)
+        every = _alone(pools, limb, len(stances.limbs[limb].points))
+        shapes = stances.limbs[limb].points
+        for row, part in enumerate(chosen):
+            apart = np.linalg.norm(shapes - shapes[part], axis=-1).mean(axis=-1)
+            kept, weight = _weights(path.limb_posterior[limb][row], apart)
+            step[row, dofs] = weight @ every[kept].minus(every[np.full(len(kept), part)])[:, dofs]
     return likeliest.plus(step)
 
 
-def _dofs(posture: Posture, kind: str, side: str) -> list[int]:
+def _weights(chance: Array | SingleArray, apart_m: Array | SingleArray) -> tuple[IndexArray, Array]:
+    """Which of N parts count, by their probabilities and distances from the likeliest, and their weights."""
+    weight = np.asarray(chance, dtype=float) * np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+    if not weight.any():  # all that is probable is far away
+        weight = np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+    kept = np.flatnonzero(weight >= LEAST_SHARE * weight.max())
+    return kept, weight[kept] / weight[kept].sum()
+
+
+def _composed(
+    pools: PartPools, stances: StanceFeatures, stance: IndexArray, limbs: dict[str, IndexArray], hips: Array
+) -> Posture:
+    """(N,) postures of stances (N,) with limbs (N,), the hips at (N, 3)."""
+    return pools.composed(stance // HEADINGS, limbs, stances.heading_rad[stance % HEADINGS], hips)
+
+
+def _alone(pools: PartPools, limb: str, count: int) -> Posture:
+    """(count,) postures with each of a limb's parts, everything else alike."""
+    none = np.zeros(count, dtype=np.intp)
+    limbs = {other: np.arange(count) if other == limb else none for other in LIMBS}
+    return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
+
+
+def _dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
+    """Degrees of freedom of a part."""
     balls, hinges = part_columns(kind, side)
-    skeleton = posture.skeleton
     return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]

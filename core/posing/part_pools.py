@@ -15,9 +15,9 @@ from ..arrays import Array, IndexArray
 from ..body.heading import headings_rad, yawed_at
 from ..body.human import HUMAN
 from ..body.kinematics import Body
+from ..body.limbs import LIMBS
 from ..body.mirror import mirrored
 from ..body.posture import Posture
-from ..body.skeleton import SIDES
 from ..library.library import Library
 from ..matching.posture_sequences import library_sequences
 
@@ -110,10 +110,6 @@ class PartPools:
             rotations[:, balls], angles[:, hinges] = own.rotations[:, balls], own.angles[:, hinges]
         whole = Posture(chosen.skeleton, np.zeros((len(torso), 3)), rotations, angles)
         return yawed_at(whole, heading_rad, hips)
-
-
-LIMBS = tuple(f"{kind}.{side}" for kind in (ARM, LEG) for side in SIDES)
-"""The four limbs."""
 
 
 @lru_cache(maxsize=16)

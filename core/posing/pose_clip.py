@@ -75,7 +75,7 @@ def pose_clip(
     with threadpool_limits(limits=1, user_api="blas"):
         given = match_input(take, reading, keyframe_count)
         yield Progress("Learning the parts of postures", 0.0)
-        search = _Search(take, part_pools(usable, take.body), floor_m, between, frames, usable)
+        search = _Search(take, usable, part_pools(usable, take.body), floor_m, between, frames)
         found = yield from stretch(search.poses(given, reading), 0.05, 1.0)
         again = None
         if between is None:
@@ -94,11 +94,11 @@ class _Search:
     """What is asked of a clip."""
 
     take: Take
+    libraries: Sequence[Library]
     pools: PartPools
     floor_m: float | None
     between: tuple[int, int] | None
     frames: Sequence[int] | None
-    libraries: Sequence[Library]
 
     def poses(self, given: MatchInput, reading: Reading) -> Job[FoundPoses]:
         """The postures by one reading of the clip."""
@@ -115,7 +115,7 @@ class _Search:
         sampled = sampled_frames(
             given.evidence.tracks, np.concatenate([given.keyframes, given.constraints.frames])
         )
-        composing = compose_frames(given, self.pools, stances, sampled, floor_m, self.libraries if __import__('os').environ.get('BELIEF') else ())
+        composing = compose_frames(given, self.pools, stances, sampled, floor_m, self.libraries)
         composed = yield from within("Composing postures", composing, 0.0, COMPOSED_SHARE)
         fitting = _fitted(take, work, sampled, composed)
         postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)

@@ -3,15 +3,12 @@
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.human import HUMAN
-from ..body.limbs import TRUNK, limb_of
 from ..matching.frame_likelihood import FrameLikelihood
 from .composed_states import FrameCosts, FrameStates
-from .part_features import StanceFeatures, limb_points
+from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
 
 POINT_STD_M = 0.06
 """Distance of a posed point from the nearest part's: what pools are rough by, and a person's error."""
-TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == TRUNK]
 
 
 class PosedCosts(FrameCosts):
