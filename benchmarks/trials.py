@@ -93,7 +93,8 @@ def unposed_trials(names: Sequence[str], keypoints: bool, plain: bool = False) -
 
     Args:
         names: Names or folders of takes; none for all.
-        keypoints: Whether a detector's keypoints are followed as well; takes without any are then left out.
+        keypoints: Whether a detector's keypoints are followed as well; takes without any are then left out,
+            else those without markers.
         plain: Whether takes in plain clothes are among all.
 
     Raises:
@@ -105,8 +106,10 @@ def unposed_trials(names: Sequence[str], keypoints: bool, plain: bool = False) -
         raise SystemExit(f"none of the takes has {KEYPOINTS}")
     for name, folder in chosen.items():
         print(f"{name} ...", file=sys.stderr, flush=True)
-        trial = read_unposed(folder)
-        yield name, with_keypoints(trial, folder) if keypoints else trial
+        if keypoints:
+            yield name, with_keypoints(read_unposed(folder), folder)
+        elif read_take(folder).markers:
+            yield name, read_unposed(folder)
 
 
 def with_keypoints(trial: Trial, folder: Path) -> Trial:
