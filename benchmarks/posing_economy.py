@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from keyframing import exact_postures, hand_posed
-from takes import chosen_takes, load_project, write_results
-from trials import KEYPOINTS, Trial, read_unposed, with_keypoints
+from takes import load_project, write_results
+from trials import Trial, unposed_trials
 
 load_project()
 
@@ -24,7 +24,7 @@ from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.posing.section import section_around, take_around  # noqa: E402
-from keymark.core.prior.keyframes import Keyframe, Matched  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
@@ -115,11 +115,7 @@ def improved(take: Take, index: int, trial: Trial, libraries: Sequence[Library],
     around = take_around(take, section)
     job = pose_clip(around, trial.reading, libraries, floor_m, between=ends, frames=section.changed)
     found = run(job)
-    anew: dict[int, Keyframe] = {}
-    for frame in found.frames:
-        best = frame.candidates[0]
-        said = Matched(found.library, best.name, best.mirrored, best.confidence)
-        anew[frame.index] = Keyframe(frame.index, best.posture, matched=said)
+    anew = {frame.index: found.keyframe(frame) for frame in found.frames}
     keyframes = (anew.get(one.index, one) if one.matched is not None else one for one in take.keyframes)
     return replace(take, keyframes=tuple(keyframes))
 
@@ -162,15 +158,8 @@ def main(arguments: list[str]) -> int:
     )
     options = parser.parse_args(arguments)
     libraries = find_libraries(EVERY_LIBRARY, [SHIPPED])
-    takes: dict[str, Measured] = {}
-    for name, folder in chosen_takes(options.takes).items():
-        if options.keypoints and not (folder / KEYPOINTS).is_file():
-            continue
-        print(f"{name} ...", file=sys.stderr, flush=True)
-        trial = read_unposed(folder)
-        takes[name] = measure(with_keypoints(trial, folder) if options.keypoints else trial, libraries)
-    if not takes:
-        raise SystemExit(f"none of the takes has {KEYPOINTS}")
+    trials = unposed_trials(options.takes, options.keypoints)
+    takes = {name: measure(trial, libraries) for name, trial in trials}
     results = {name: {**asdict(found), "corrections": found.corrections} for name, found in takes.items()}
     name = "posing_economy_keypoints" if options.keypoints else "posing_economy"
     write_results(name, table(takes), json.dumps(results, indent=1))

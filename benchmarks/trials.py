@@ -1,9 +1,11 @@
 """One take to test methods on: its markers are tracked once, and results are compared with its truth."""
 
+import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from takes import load_project
+from takes import chosen_takes, load_project
 
 load_project()
 
@@ -84,6 +86,27 @@ def read_unposed(folder: Path) -> Trial:
     return Trial(
         take, reading, read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count), ()
     )
+
+
+def unposed_trials(names: Sequence[str], keypoints: bool, plain: bool = False) -> Iterator[tuple[str, Trial]]:
+    """Named takes, or all with truth, each with its name and read without its keyframes.
+
+    Args:
+        names: Names or folders of takes; none for all.
+        keypoints: Whether a detector's keypoints are followed as well; takes without any are then left out.
+        plain: Whether takes in plain clothes are among all.
+
+    Raises:
+        SystemExit: No take is left.
+    """
+    takes = chosen_takes(names, plain)
+    chosen = {name: at for name, at in takes.items() if not keypoints or (at / KEYPOINTS).is_file()}
+    if not chosen:
+        raise SystemExit(f"none of the takes has {KEYPOINTS}")
+    for name, folder in chosen.items():
+        print(f"{name} ...", file=sys.stderr, flush=True)
+        trial = read_unposed(folder)
+        yield name, with_keypoints(trial, folder) if keypoints else trial
 
 
 def with_keypoints(trial: Trial, folder: Path) -> Trial:

@@ -214,9 +214,14 @@ def _whole_clip(
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
+def _is_composed(take: Take) -> bool:
+    """Whether all keyframes were put together from parts."""
+    return all(key.matched is not None and key.matched.library == COMPOSED for key in take.keyframes)
+
+
 def _found_ankle(take: Take, prior: Posture) -> Array | None:
-    """(F,) height of the lower ankle by keyframes put together from parts; None where there are others."""
-    if not all(key.matched is not None and key.matched.library == COMPOSED for key in take.keyframes):
+    """(F,) height of the lower ankle by keyframes composed of parts [m]; None where there are others."""
+    if not _is_composed(take):
         return None
     index = np.array(take.keyframe_indices, dtype=np.intp)
     return found_ankle_m(take.body, prior[index], index, prior.batch[0])
@@ -248,7 +253,7 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0
-    if _found_ankle(take, result.posture) is not None:
+    if _is_composed(take):
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)

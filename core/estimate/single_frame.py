@@ -50,8 +50,6 @@ class FrameFit:
     """Indices of the markers that the posture does not explain."""
     keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
     """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
-    keypoint_before_px: Array = field(default_factory=lambda: np.zeros(0))
-    """(N,) the same for the believed posture."""
     misplaced_points: tuple[str, ...] = ()
     """Body points of the keypoints that the posture does not explain."""
     cost: float = 0.0
@@ -172,7 +170,6 @@ class _Descent:
             before.marker_px,
             found.markers,
             found.keypoint_px,
-            before.keypoint_px,
             found.points,
             float(least[chosen]),
         )

@@ -188,7 +188,7 @@ class _Problem:
         return _Residuals(np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled]))
 
     def descend(self) -> Array:
-        """The most probable x, from the likeliest starts."""
+        """The most probable x (X,), from the likeliest starts."""
         headings = np.arange(STARTS) * np.pi / STARTS if self.has_level_lines else np.zeros(1)
         starts = np.zeros((len(headings) * len(START_TILTS_RAD), len(self.believed_std)))
         starts[:, PARAMETERS.index(TILT)] = np.tile(START_TILTS_RAD, len(headings))
@@ -199,7 +199,7 @@ class _Problem:
         return min((self.descend_from(starts[index], nothing) for index in order), key=self._cost)
 
     def descend_from(self, start: Array, kept: IndexArray) -> Array:
-        """The most probable x near a start, with the parameters of these indices as they were."""
+        """The most probable x (X,) near a start (X,), with the parameters of these indices as they were."""
         begin = start.copy()
         begin[kept] = 0.0
         free = np.setdiff1d(np.arange(len(start)), kept)

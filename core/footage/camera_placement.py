@@ -74,7 +74,7 @@ class CameraPlacement:
 
 
 def heading_rad(matrix_world: ArrayLike) -> float:
-    """Heading of a camera's pose (4, 4) about the world's Z, 0 where it looks along +Y [rad]."""
+    """Heading of a camera's pose (4, 4) or orientation (3, 3) about the world's Z, 0 along +Y [rad]."""
     matrix = np.asarray(matrix_world, dtype=np.float64)
     ahead = -matrix[:2, 2]
     if hypot(*ahead) < STRAIGHT_DOWN:  # what is up in the picture lies ahead on the floor, or behind

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from .camera import Camera
+from .camera_placement import heading_rad
 
 REACH_M = 8
 """Lines lie so far to each side of the floor's part that is looked at."""
@@ -65,10 +66,8 @@ def _reach(height_m: float, ahead: Array) -> float:
 
 def _level(rotation: Array) -> Array:
     """(2,) unit direction over the floor in which a camera looks."""
-    ahead = -rotation[:2, 2]
-    if np.linalg.norm(ahead) < 1e-6:  # straight down or up
-        ahead = rotation[:2, 1]
-    return np.asarray(ahead / max(float(np.linalg.norm(ahead)), 1e-12))
+    heading = heading_rad(rotation)
+    return np.array([-np.sin(heading), np.cos(heading)])
 
 
 def _horizon(camera: Camera, frame: int | None) -> Array:

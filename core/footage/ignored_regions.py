@@ -65,7 +65,7 @@ class IgnoredPixels:
 
 
 def is_ignored(mask: Image) -> BoolArray:
-    """Which pixels of a mask, made smaller or not, are ignored."""
+    """(rows, columns) which pixels of a mask, made smaller or not, are ignored."""
     return np.asarray(2 * mask.astype(np.int64) > IGNORED)
 
 

@@ -67,19 +67,8 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     upright &= _on_floor(ankle[:, 1], np.linalg.norm(head - ankle, axis=-1), fps)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
-    ones = np.ones(len(chosen))
-    return Uprights(
-        ankle[chosen],
-        head[chosen],
-        height["ankle"] * ones,
-        (height["head"] - height["ankle"]) * ones,
-        PIXEL_SHARE * size,
-        LENGTH_STD * ones,
-        LEAN_STD_RAD * ones,
-        common_std=float(np.hypot(STATURE_STD, DETECTOR_STD)),
-        common_lean_rad=COMMON_LEAN_RAD,
-        doubtful=True,
-    )
+    heights_m, common_std = (height["ankle"], height["head"]), float(np.hypot(STATURE_STD, DETECTOR_STD))
+    return _uprights(ankle[chosen], head[chosen], heights_m, PIXEL_SHARE * size, common_std)
 
 
 def standing_regions(tracks: RegionTracks, segments: tuple[str, ...], body: Body, fps: float) -> Uprights:
@@ -106,20 +95,34 @@ def standing_regions(tracks: RegionTracks, segments: tuple[str, ...], body: Body
     on_floor = _on_floor(shins[:, 1], size, fps)
     chosen = _apart(whole & level & np.asarray(tall) & on_floor, fps)
     height = _heights(body)
-    middle = {
-        "shin": 0.5 * (height["knee"] + height["ankle"]),
-        "trunk": 0.5 * (height["hip"] + height["shoulder"]),
-    }
-    ones = np.ones(len(chosen))
+    middle_m = 0.5 * (height["knee"] + height["ankle"]), 0.5 * (height["hip"] + height["shoulder"])
+    pixel_std = np.maximum(REGION_STD_PX, PIXEL_SHARE * size[chosen])
+    common_std = float(np.hypot(STATURE_STD, REGION_COMMON_STD))
+    return _uprights(shins[chosen], trunk[chosen], middle_m, pixel_std, common_std)
+
+
+def _uprights(
+    lower_px: Array, upper_px: Array, heights_m: tuple[float, float], pixel_std: Array, common_std: float
+) -> Uprights:
+    """One body at N moments, by two of its points.
+
+    Args:
+        lower_px: (N, 2) the lower one [px].
+        upper_px: (N, 2) the one above it [px].
+        heights_m: Height of each above the floor [m].
+        pixel_std: (N,) standard deviation of a point [px].
+        common_std: Share by which all lengths may be off together.
+    """
+    ones, (lower_m, upper_m) = np.ones(len(pixel_std)), heights_m
     return Uprights(
-        shins[chosen],
-        trunk[chosen],
-        middle["shin"] * ones,
-        (middle["trunk"] - middle["shin"]) * ones,
-        np.maximum(REGION_STD_PX, PIXEL_SHARE * size[chosen]),
+        lower_px,
+        upper_px,
+        lower_m * ones,
+        (upper_m - lower_m) * ones,
+        pixel_std,
         LENGTH_STD * ones,
         LEAN_STD_RAD * ones,
-        common_std=float(np.hypot(STATURE_STD, REGION_COMMON_STD)),
+        common_std=common_std,
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )

@@ -1,7 +1,7 @@
 """Match of one library with a clip: posture, heading, place and confidence of every frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
 from .candidates import MatchedFrame, frame_candidates
-from .coarse_pass import FLOOR_STD_M, CoarsePass, coarse_pass
+from .coarse_pass import FLOOR_STD_M, floor_height_m
 from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features, with_exchanged
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .hidden_markov_model import HiddenMarkovModel
@@ -50,56 +50,47 @@ class LibraryMatch:
 
 @dataclass(frozen=True, eq=False)
 class PreparedLibrary:
-    """A library on the performer's body, after the coarse pass."""
+    """A library on the performer's body."""
 
     library: Library
     sequences: PostureSequences
     moments: MarkerMoments
     states: StateFeatures
-    sampled: IndexArray
-    """(T,) the sampled frames."""
-    coarse_pass: CoarsePass
 
 
 def prepare_library(match_input: MatchInput, library: Library) -> PreparedLibrary:
-    """Put a library on the performer's body and do the coarse pass."""
+    """Put a library on the performer's body."""
     sequences = library_sequences(library, match_input.body)
     moments = marker_moments(match_input.body, match_input.evidence, sequences.posture)
-    states = state_features(moments, HEADINGS)
-    return PreparedLibrary(library, sequences, moments, states, *_coarse_pass(match_input, states))
+    return PreparedLibrary(library, sequences, moments, state_features(moments, HEADINGS))
 
 
-def repeat_coarse_pass(match_input: MatchInput, prepared: PreparedLibrary) -> PreparedLibrary:
-    """The library on the same body, after a coarse pass over other regions of the same markers."""
-    sampled, first = _coarse_pass(match_input, prepared.states)
-    return replace(prepared, sampled=sampled, coarse_pass=first)
-
-
-def _coarse_pass(match_input: MatchInput, states: StateFeatures) -> tuple[IndexArray, CoarsePass]:
-    always = np.concatenate([match_input.keyframes, match_input.constraints.frames])
-    sampled = sampled_frames(match_input.evidence.tracks, always)
-    return sampled, coarse_pass(match_input.camera, match_input.evidence, sampled, states)
-
-
-def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: float) -> Part[LibraryMatch]:
+def match_library(
+    match_input: MatchInput, prepared: PreparedLibrary, floor_m: float | None
+) -> Part[LibraryMatch]:
     """Find a library's postures in footage.
 
     Args:
-        match_input: The take.
+        match_input: The take; posed keyframes tell the height of the floor where it is not known.
         prepared: The library, see `prepare_library`.
-        floor_m: Height of the floor.
+        floor_m: Height of the floor [m]; None where it is not known.
 
     Yields:
         The fraction done.
     """
-    tracks, sampled = match_input.evidence.tracks, prepared.sampled
+    evidence, tracks, posed = match_input.evidence, match_input.evidence.tracks, match_input.constraints
+    sampled = sampled_frames(tracks, np.concatenate([match_input.keyframes, posed.frames]))
+    if floor_m is None:
+        floor_m = posed.floor_m()
+    if floor_m is None:
+        floor_m = floor_height_m(match_input.camera, evidence, sampled, prepared.states)
     tempering = min(1.0, float(np.median(np.diff(tracks.time_s[sampled]))) / CORRELATION_S)
     table = SequenceTable(prepared.sequences, prepared.moments)
-    unit = NoiseScales.of(match_input.evidence)
-    first = yield from _solve(match_input, prepared, table, floor_m, tempering, unit, 0.0)
+    unit = NoiseScales.of(evidence)
+    first = yield from _solve(match_input, prepared, table, sampled, floor_m, tempering, unit, 0.0)
     noise_scales = first.refinement.noise_scales(first.refined)
-    second = yield from _solve(match_input, prepared, table, floor_m, tempering, noise_scales, 0.45)
-    posteriors, _ = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
+    second = yield from _solve(match_input, prepared, table, sampled, floor_m, tempering, noise_scales, 0.45)
+    posteriors = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
     refined = second.refined
     postures = _every_frame(table, refined, sampled, tracks.frame_count)
     explained = _explained_share(second.refinement, refined, noise_scales)
@@ -129,13 +120,14 @@ def _solve(
     match_input: MatchInput,
     prepared: PreparedLibrary,
     table: SequenceTable,
+    sampled: IndexArray,
     floor_m: float,
     tempering: float,
     noise_scales: NoiseScales,
     begun: float,
 ) -> Part[_Solution]:
     """Find and refine the most probable path, given the noise scales; 0.45 of the work."""
-    evidence, sampled, states = match_input.evidence, prepared.sampled, prepared.states
+    evidence, states = match_input.evidence, prepared.states
     time_s, posed = evidence.tracks.time_s[sampled], match_input.constraints
     hypotheses = list(
         zip(

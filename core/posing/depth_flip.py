@@ -8,11 +8,11 @@ import numpy as np
 from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body
-from ..body.limbs import TRUNK
+from ..body.limbs import LIMBS, TRUNK
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from .dragged import planted
-from .limb_chain import LIMBS, LimbChain, limb_chain, swing
+from .limb_chain import LimbChain, limb_chain, swing
 from .limb_in_sight import DISTINCT_M, LimbInSight, depths_m, sight_lines, ways_in_sight
 from .reach import Pull, pulled
 from .sight_lines import SightLine

@@ -39,5 +39,5 @@ def explained_shares(given: MatchInput, frames: IndexArray, posture: Posture) ->
 
 
 def contradicting(off: Array) -> BoolArray:
-    """Which of some distances in standard deviations are no difference between performers."""
+    """Which of (T, A) distances in standard deviations, NaN where not seen, are no performers' difference."""
     return np.asarray(np.nan_to_num(off) > CONTRADICTING)

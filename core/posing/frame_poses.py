@@ -16,12 +16,12 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import fit_frame
 from ..library.library import Library
-from ..matching.candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate
+from ..matching.candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate, distinct_rows
 from ..prior.frame_prior import FramePrior
 from .frame_belief import belief_costs, believed_fit
 from .frame_confidence import frame_confidence
 from .frame_contradictions import unexplained, unworn_marker
-from .frame_search import Hypotheses, Knowledge, distinct, knowledge, points_from_hips, refined, search
+from .frame_search import Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
 from .frame_shown import FrameShown
 from .known_postures import part_shapes
 
@@ -124,7 +124,7 @@ def _candidates(
     order = np.argsort(-share, kind="stable")
     if kept:
         order = np.concatenate([[leading], order])
-    chosen = distinct(points, order, APART_M, MOST_MEANS)
+    chosen = distinct_rows(points, order, APART_M, MOST_MEANS)
     means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
     start = Hypotheses(means, found.cost[chosen], found.torso[chosen], found.exchanged[chosen])
     final = refined(known, shown, start, floor_m)
@@ -133,7 +133,7 @@ def _candidates(
         final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
     made = []
     ended = points_from_hips(body, final.posture)
-    for rank in distinct(ended, np.arange(len(chosen)), DISTINCT_M, MOST_CANDIDATES):
+    for rank in distinct_rows(ended, np.arange(len(chosen)), DISTINCT_M, MOST_CANDIDATES):
         posture = final.posture[int(rank)]
         name, flipped = _nearest(known, posture)
         sure = frame_confidence(float(share[chosen[rank]]), float(final.cost[rank]))

@@ -21,6 +21,7 @@ from ..estimate.terms.assembly import free_frame_terms
 from ..estimate.terms.regions import FEATURES, RegionNoise, limb_widths
 from ..estimate.terms.term import total_cost
 from ..library.library import Library
+from ..matching.candidates import distinct_rows
 from ..matching.emissions import EXCHANGED_COST
 from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.noise_scales import NoiseScales
@@ -141,7 +142,7 @@ def _starts(
         np.concatenate([each.torso for each in found]),
         np.concatenate([each.exchanged for each in found]),
     )
-    kept = distinct(
+    kept = distinct_rows(
         points_from_hips(known.pools.body, every.posture), np.argsort(every.cost), DISTINCT_M, count
     )
     return _chosen(every, kept), every.cost[kept], floor_m
@@ -227,14 +228,3 @@ def _chosen(given: Hypotheses, rows: IndexArray) -> Hypotheses:
 def points_from_hips(body: Body, posture: Posture) -> Array:
     """(S, P, 3) principal points relative to the hips [m]."""
     return np.asarray(body.points(body.pose(posture)) - posture.translation[:, None])
-
-
-def distinct(points: Array, order: IndexArray, apart_m: float, most: int) -> IndexArray:
-    """Rows of points (S, P, 3) that are farther than this from each other on average, the first in order."""
-    kept: list[int] = []
-    for row in map(int, order):
-        if not kept or np.linalg.norm(points[kept] - points[row], axis=-1).mean(axis=-1).min() > apart_m:
-            kept.append(row)
-        if len(kept) == most:
-            break
-    return np.array(kept, dtype=np.intp)

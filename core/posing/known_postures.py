@@ -13,14 +13,13 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.heading import headings_rad, yaw_rotation, yawed_at
 from ..body.kinematics import Body, Pose
-from ..body.limbs import TRUNK, limb_of
+from ..body.limbs import LIMBS, TRUNK, limb_of
 from ..body.mirror import mirrored
 from ..body.posture import Posture
 from ..errors import InputError
 from ..library.library import Library
 from ..library.transfer import transferred
 
-LIMBS = ("arm.L", "arm.R", "leg.L", "leg.R")
 PARTS = (TRUNK, *LIMBS)
 CARRIERS = {"arm": "waist", "leg": "pelvis"}
 """Joint that carries a limb, by its kind."""

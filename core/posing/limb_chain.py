@@ -17,7 +17,6 @@ from ..body.skeleton import Skeleton
 
 STEMS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 """Principal points of each kind of limb: root, middle and end. The first two are joints as well."""
-LIMBS = tuple(f"{kind}.{side}" for kind in STEMS for side in ("L", "R"))
 NO_BEND = 1e-6
 """Sine of a bend below which it has no plane."""
 
@@ -45,7 +44,7 @@ class LimbChain:
 
 @lru_cache(maxsize=32)
 def limb_chain(skeleton: Skeleton, name: str) -> LimbChain:
-    """A limb by its name, one of `LIMBS`; KeyError for another."""
+    """A limb by its name, one of `body/limbs.LIMBS`; KeyError for another."""
     kind, _, side = name.partition(".")
     points = tuple(f"{stem}.{side}" for stem in STEMS[kind])
     root, middle = (skeleton.joint_index(point) for point in points[:2])

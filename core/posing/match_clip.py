@@ -7,13 +7,7 @@ from threadpoolctl import threadpool_limits
 from ..errors import InputError
 from ..footage.reading import Reading
 from ..library.library import Library
-from ..matching.library_match import (
-    LibraryMatch,
-    PreparedLibrary,
-    match_library,
-    prepare_library,
-    repeat_coarse_pass,
-)
+from ..matching.library_match import LibraryMatch, PreparedLibrary, match_library, prepare_library
 from ..matching.match_input import MatchInput, match_input
 from ..progress import Job, Progress, stretch, within
 from ..take.take import Take
@@ -62,9 +56,7 @@ def match_clip(
         better = yield from stretch(reading_again, FIRST_ROUND_SHARE, FIRST_ROUND_SHARE)
         if better is not None:
             given = match_input(take, better, keyframe_count)
-            again = yield from _found(
-                given, repeat_coarse_pass(given, prepared), floor_m, FIRST_ROUND_SHARE, 1.0
-            )
+            again = yield from _found(given, prepared, floor_m, FIRST_ROUND_SHARE, 1.0)
             found = replace(again, reading=better) if is_better(again, found) else found
     yield Progress(f"Matching {library.title}", 1.0)
     return found
@@ -74,10 +66,7 @@ def _found(
     given: MatchInput, prepared: PreparedLibrary, floor_m: float | None, begun: float, done: float
 ) -> Job[FoundPoses]:
     """The match of a library that is prepared."""
-    if floor_m is None:
-        floor_m = given.constraints.floor_m()
-    floor = prepared.coarse_pass.floor_m if floor_m is None else floor_m
-    job = match_library(given, prepared, floor)
+    job = match_library(given, prepared, floor_m)
     match: LibraryMatch = yield from within(f"Matching {prepared.library.title}", job, begun, done)
     reason = f"{match.library.title} explains {match.fit:.0%} of the footage"
     return FoundPoses(

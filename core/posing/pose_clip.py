@@ -55,7 +55,8 @@ def pose_clip(
         libraries: What is known of postures: each limb may come from another one.
         floor_m: Height of the floor in the world [m]; None where it is not known.
         keyframe_count: Number of frames to find keyframes at; 10 per 100 frames where None.
-        between: First and last frame of the clip to look at, both posed; the whole clip where None.
+        between: First and last frame of the clip to look at; those of the two that are posed hold. The whole
+            clip where None.
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
 
     Yields:

@@ -61,7 +61,10 @@ class SightLine:
         return np.stack([foot - half * self.direction, foot + half * self.direction])
 
     def within(self, place: Array, center: Array, radii_m: tuple[float, float]) -> Array:
-        """The place nearest to one on the line whose distance from a center lies between two radii [m]."""
+        """The place (3,) near the line whose distance from a center (3,) lies between two radii [m].
+
+        It is the place on the line nearest to another (3,), or else the nearest to that at such a distance.
+        """
         on_line = self.nearest(place)
         least, most = radii_m
         away = float(np.linalg.norm(on_line - center))

@@ -14,10 +14,11 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.heading import facing_rad, headings_rad, yaw_rotation, yawed_in_place
 from ..body.kinematics import Body
+from ..body.limbs import LIMBS
 from ..body.mirror import mirrored, other_side
 from ..body.posture import Posture
 from ..footage.camera import Camera
-from .limb_chain import LIMBS, limb_chain
+from .limb_chain import limb_chain
 from .limb_in_sight import sight_lines, strain_of, ways_in_sight
 from .reach import Pull, pulled
 from .sight_lines import SightLine

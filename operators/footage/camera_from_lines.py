@@ -9,7 +9,7 @@ from ...core.errors import InputError, KeymarkError
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import FootageView, footage_view
+from ..shell.footage_view import FootageView, view_of_footage_under
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import camera, footage, idle
@@ -188,16 +188,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
 
     def _view(self, context: bpy.types.Context) -> FootageView | None:
         """The view of the footage under the mouse."""
-        x, y = self._place
-        for area in context.screen.areas:
-            for region in area.regions:
-                inside = 0 <= x - region.x < region.width and 0 <= y - region.y < region.height
-                view = (
-                    footage_view(context.scene, active_take(context.scene), area, region) if inside else None
-                )
-                if view is not None:
-                    return view
-        return None
+        return view_of_footage_under(context, active_take(context.scene), *self._place)
 
     def _pixel(self, view: FootageView) -> Pixel:
         """The footage pixel under the mouse, which may lie beside the picture."""

@@ -10,7 +10,7 @@ from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.takes import active_take
-from .properties import FLOORS
+from .properties import FloorSettings
 
 if TYPE_CHECKING:
     from .found_result import FoundResult
@@ -19,23 +19,10 @@ READ = 0.5
 """Share of the job at which the clip is read."""
 
 
-class FindOperator(JobOperator):
+class FindOperator(FloorSettings, JobOperator):
     """Mixin of an operator that finds keyframes: `start` gives a job that returns a `FoundResult`."""
 
     requirements = (footage, camera, actor, points_to_follow, all_colors, idle)
-
-    floor: bpy.props.EnumProperty(
-        name="Floor",
-        description="Source of the floor's height, which determines the performer's distance",
-        items=FLOORS,
-    )
-    floor_height: bpy.props.FloatProperty(
-        name="Floor Height",
-        description="Height of the floor that the performer stands on",
-        subtype="DISTANCE",
-        precision=4,
-        default=0.0,
-    )
 
     @property
     def floor_m(self) -> float | None:

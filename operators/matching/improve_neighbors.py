@@ -10,6 +10,7 @@ import numpy as np
 from ...core.errors import KeymarkError
 from ...core.progress import run
 from ..keypoints.evidence import followed_markers
+from ..markers.ignored_regions import ignored_regions
 from ..shell.found_frames import match_at
 from ..shell.results import reading_of
 from ..shell.takes import footage_of
@@ -44,14 +45,14 @@ def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup,
 
 
 def _reading(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Reading | None":
-    """The kept reading, if it is of this footage and these markers."""
+    """The kept reading, if it is of this footage, these markers and these ignored regions."""
     from ...core.footage.reading_key import of_same_footage, reading_key
 
     reading = reading_of(take)
     if reading is None or take.clip_state.missing:
         return None
     footage = footage_of(scene, take)
-    key = reading_key(footage.path, footage.rate, followed_markers(take), None)
+    key = reading_key(footage.path, footage.rate, followed_markers(take), None, ignored_regions(take))
     return reading if of_same_footage(reading.key, key) else None
 
 
@@ -60,7 +61,6 @@ def _pose_anew(
 ) -> int:
     from ...core.posing.pose_clip import pose_clip
     from ...core.posing.section import section_around, take_around
-    from ...core.prior.keyframes import Keyframe, Matched
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import all_libraries
     from .found_result import write_found
@@ -78,13 +78,9 @@ def _pose_anew(
     between = section.first, section.last
     job = pose_clip(take, reading, all_libraries(), floor_m, between=between, frames=section.changed)
     found = run(job)
-    keyframes: list[Keyframe] = []
-    for each in found.frames:
-        if each.index in section.changed:
-            chosen = each.candidates[0]
-            said = Matched(found.library, chosen.name, chosen.mirrored, chosen.confidence)
-            keyframes.append(Keyframe(each.index, chosen.posture, matched=said))
-            matching.matches.remove(match_at(settings, float(frames[each.index])))
+    keyframes = [found.keyframe(each) for each in found.frames]
+    for each in keyframes:
+        matching.matches.remove(match_at(settings, float(frames[each.index])))
     write_found(settings, SceneClip(take, reading, frames, notes), keyframes, found)
     scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
     return len(keyframes)

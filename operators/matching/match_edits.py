@@ -5,11 +5,10 @@ from math import pi
 
 import bpy
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
 from ...core.body.actor import Actor
-from ...core.body.heading import facing_rad
+from ...core.body.heading import headings_rad, yaw_rotation
 from ...core.body.human import HUMAN
 from ...core.body.kinematics import Body
 from ...core.body.limbs import TRUNK, limb_of
@@ -54,7 +53,7 @@ def add_candidate(
 
 def _limbs_elsewhere(posture: Posture, first: Posture, apart_rad: float) -> list[str]:
     """Limbs whose joints are elsewhere on the body than the first posture's, which faces another way."""
-    back = Rotation.from_euler("z", -apart_rad).as_matrix()
+    back = yaw_rotation(-apart_rad)
     own, other = (ANYBODY.points(ANYBODY.pose(each)) - each.translation for each in (posture, first))
     distance = np.linalg.norm(own @ back.T - other, axis=-1)
     elsewhere = {
@@ -64,8 +63,8 @@ def _limbs_elsewhere(posture: Posture, first: Posture, apart_rad: float) -> list
 
 
 def _heading(posture: Posture) -> float:
-    """The direction the hips face, about the vertical [rad]."""
-    return facing_rad(posture.rotations[0] @ np.array([0.0, -1.0, 0.0]))
+    """The heading of a single posture [rad]."""
+    return float(headings_rad(Posture.stack([posture]))[0])
 
 
 def key_matches(take: bpy.types.PropertyGroup, frames: Array, postures: Sequence[Posture]) -> None:

@@ -135,21 +135,9 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
         scene.frame_set(whole, subframe=self.frame - whole)
 
 
-class KEYMARK_PG_matching(bpy.types.PropertyGroup):
-    """Settings and results of finding a take's keyframes."""
+class FloorSettings:
+    """Mixin of properties: the floor that performers stand on while they are sought."""
 
-    library_name: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier of the library to match with; the numbers of menu items may change",
-        options={"HIDDEN"},
-    )
-    library: bpy.props.EnumProperty(
-        name="Library",
-        description="Library that the footage is matched with",
-        items=_libraries,
-        get=_library_number,
-        set=_set_library,
-    )
     floor: bpy.props.EnumProperty(
         name="Floor",
         description="Source of the floor's height, which determines the performer's distance",
@@ -163,6 +151,23 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         default=0.0,
         soft_min=-5.0,
         soft_max=5.0,
+    )
+
+
+class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
+    """Settings and results of finding a take's keyframes."""
+
+    library_name: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of the library to match with; the numbers of menu items may change",
+        options={"HIDDEN"},
+    )
+    library: bpy.props.EnumProperty(
+        name="Library",
+        description="Library that the footage is matched with",
+        items=_libraries,
+        get=_library_number,
+        set=_set_library,
     )
     improve_neighbors: bpy.props.BoolProperty(
         name="Improve Neighbors",

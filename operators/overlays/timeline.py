@@ -1,4 +1,4 @@
-"""Overlay of Timeline and Dope Sheet: speed in the footage, proposed and matched keyframes, confidence."""
+"""Overlay of Timeline and Dope Sheet: speed in the footage, proposed and found keyframes, confidence."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -232,7 +232,7 @@ def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) 
 
 
 def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
-    """Squares on the graph at matched keyframes: hollow for doubtful ones, filled for sure ones."""
+    """Squares on the graph at found keyframes: hollow for doubtful ones, filled for sure ones."""
     x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
     marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))

@@ -1,4 +1,4 @@
-"""Scene frames of keyframes, posed and matched, cached so that redraws need not read the keys."""
+"""Scene frames of keyframes, posed and found, cached so that redraws need not read the keys."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ class KeyedFrames:
 
     all: tuple[float, ...] = ()
     untouched: tuple[float, ...] = ()
-    """Those whose keys are unchanged since matching wrote them."""
+    """Those whose keys are unchanged since they were found."""
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
@@ -31,12 +31,12 @@ _keyed: dict[tuple[int, int], KeyedFrames] = {}
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames of a take's keyframes, posed and matched, in ascending order."""
+    """Return the scene frames of a take's keyframes, posed and found, in ascending order."""
     return _keyed_of(take).all
 
 
 def matched_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that were matched with a library and not changed since, in ascending order."""
+    """Return the scene frames that were found in the footage and not changed since, in ascending order."""
     known = {round(match.frame, 3) for match in take.matching.matches}
     return tuple(frame for frame in _keyed_of(take).untouched if frame in known)
 

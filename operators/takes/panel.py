@@ -12,10 +12,10 @@ from .next_step import next_step
 from .upgrade import is_newer
 
 STEPS = (
-    ("FILE_MOVIE", "Footage: load the clip, or open a take"),
+    ("FILE_MOVIE", "Footage: load the clip, say where the camera stood"),
     ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
     ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
-    ("KEY_HLT", "Keyframes: match a library, or pose the actor"),
+    ("KEY_HLT", "Keyframes: pose all, then correct the doubtful ones"),
     ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
     ("OVERLAY", "Review: see where another keyframe helps"),
     ("CHECKMARK", "Finish: bake, mark as asset, export"),

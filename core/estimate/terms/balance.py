@@ -15,7 +15,7 @@ from ...body.kinematics import Body
 from ...body.skeleton import SIDES
 from ...body.soles import sole_places
 from ..clip_state import ClipState
-from .term import NormalEquations, student_weight
+from .term import NormalEquations, student_cost, student_weight
 
 DEGREES = 3.0
 """Of Student's t: whoever runs, leaps, kicks or leans on something is forgiven."""
@@ -49,8 +49,7 @@ class BalanceTerm:
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of Student's t, up to a constant."""
         residual, _, _ = self._residual(state)
-        size = 2.0 * DEGREES
-        return np.asarray(0.5 * size * np.log1p((residual**2).sum(-1) / size))
+        return student_cost((residual**2).sum(-1), DEGREES, 2)
 
     @cached_property
     def _feet(self) -> tuple[int, ...]:

@@ -179,7 +179,7 @@ def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
             "beside found ones a few are enough.",
         ],
         "keyframes": EVERY_LIBRARY,
-        "//floor_m": "height of the floor where the matrix above says how high the camera stood",
+        "//floor_m": "height of the floor in the world; 0 where height_m above is the height over it",
         "floor_m": 0.0,
     }
 

@@ -7,6 +7,8 @@ import pytest
 from _found import shown
 from _scene_state import differences, scene_state
 from keymark.core.errors import InputError
+from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.operators.markers.ignored_regions import add_ignored_regions
 from keymark.operators.matching.improve_neighbors import improve_neighbors
 from keymark.operators.shell import results
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
@@ -74,6 +76,16 @@ def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
     bpy.ops.keymark.remove_found()
     assert improve_neighbors(bpy.context, active_take(scene), 7.0) == 0
     assert len(given.frames) == asked + 1
+
+
+def test_regions_that_are_no_marker_are_part_of_what_was_read(unposed: Group, given: SimpleNamespace) -> None:
+    """With them found and improved alike; with one more since, the footage was read as it is not followed."""
+    add_ignored_regions(unposed, (IgnoredRegion(box=(1.0, 1.0, 4.0, 4.0)),))
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert improve_neighbors(bpy.context, take, 7.0) == 2
+    add_ignored_regions(take, (IgnoredRegion(box=(1.0, 1.0, 5.0, 5.0)),))
+    assert improve_neighbors(bpy.context, take, 7.0) == 0
 
 
 def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given: SimpleNamespace) -> None:
