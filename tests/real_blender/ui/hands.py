@@ -9,8 +9,10 @@ from driver import Steps, expect, turns, until
 
 ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
-STEP_PX = 13
+STEP_PX = 16
 """Buttons are about 20 px high."""
+NOTCHES = 15
+"""Of the wheel, of about 40 px each: nearly all that a sidebar shows, so that nothing is passed over."""
 MARGIN_PX = 6
 """Beside what panels show, in the sidebar still."""
 PAGES = 10
@@ -189,7 +191,7 @@ class Hands:
                 found = yield from self._search(kind, copy, wanted, shares)
                 seen = self._showing(kind)
                 if found is None:
-                    yield from self.scroll(kind, "WHEELDOWNMOUSE", 8)
+                    yield from self.scroll(kind, "WHEELDOWNMOUSE", NOTCHES)
                     if self._showing(kind) == seen:
                         break
             if found is not None:
