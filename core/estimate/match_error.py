@@ -28,12 +28,14 @@ JOINT_STD_DEG = {
 """Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
 PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
 """Usual error of the place across and along the line of sight [m]."""
-UNDETERMINED_DEPTH_M = 0.10
-"""Error of points along the line of sight beyond the estimate's own covariance [m].
+SURE_STD_M, UNSURE_STD_M = np.array([0.02, 0.07]), np.array([0.07, 0.16])
+"""Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
+keyframe that is certain and near one that is certainly wrong.
 
 A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
-like one turned to the other: a library's decision there is right or wrong, which a covariance about it does
-not show. About the value that takes with truth have where nothing was posed."""
+like one turned to the other: what was found there is right or wrong, which a covariance about it does not
+show. In 25 recordings with truth where nothing was posed, errors along the line of sight were 13 cm where the
+confidence was below 0.7, 9 cm at 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm."""
 SIZE_STD = 0.05
 """Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
 lie farther in or out than joints. All frames share it."""
@@ -97,18 +99,29 @@ def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
 
 
 def undetermined_covariance(
-    points: Array, camera: Camera, index: IndexArray, match_scale: Array, place_std_m: Array | float = 0.0
+    points: Array,
+    camera: Camera,
+    index: IndexArray,
+    match_scale: Array,
+    confidence: Array,
+    place_std_m: Array | float = 0.0,
 ) -> Array:
-    """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that matched keyframes leave undetermined.
+    """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
     Args:
         points: Places in the world [m].
         camera: The camera.
         index: (K,) the keyframes' indices in the clip, in order.
-        match_scale: (K,) size of the matched ones' error, relative to a usual one; 0 for posed ones.
+        match_scale: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones.
+        confidence: (K,) probability that each is about right.
         place_std_m: (F,) error of the whole performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
-    std_m = np.hypot(UNDETERMINED_DEPTH_M, place_std_m) * np.interp(frame, index, match_scale)
-    return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])
+    along = sight[..., :, None] * sight[..., None, :]
+    sure = confidence[:, None]
+    std_m = match_scale[:, None] * np.sqrt(sure * SURE_STD_M**2 + (1.0 - sure) * UNSURE_STD_M**2)
+    across_m, along_m = (np.interp(frame, index, own) for own in std_m.T)
+    along_m = np.hypot(along_m, np.interp(frame, index, match_scale) * place_std_m)
+    variance = np.square([across_m, along_m])[:, :, None, None, None]
+    return np.asarray(variance[0] * (np.eye(3) - along) + variance[1] * along)

@@ -257,7 +257,8 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
         lower = motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
-    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, place_std_m)
+    sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
+    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 

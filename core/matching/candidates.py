@@ -17,7 +17,7 @@ ABOUT_RIGHT_M = 0.10
 """Mean distance of the points, the hips aligned, within which a match is about right."""
 PROBABILITY_BOUNDS = 0.02, 0.98
 """Probabilities are clipped to these before their odds are taken."""
-INTERCEPT, SHARE_COEFFICIENT = -3.3, 1.0 / 3.0
+MATCHED = -3.3, 1.0 / 3.0, 1.0
 """Logistic regression, rounded, of being about right, on 23 matches of 15 takes with truth, with right and
 wrong libraries: of 393 postures said to be up to 30, 50, 70 and 85 % sure, 13, 40, 73 and 93 % were."""
 
@@ -93,18 +93,19 @@ def frame_candidates(
     return MatchedFrame(index, tuple(found))
 
 
-def confidence(share: float, explained: float) -> float:
+def confidence(share: float, explained: float, coefficients: tuple[float, float, float] = MATCHED) -> float:
     """Probability that a posture is about right.
 
     A posture that beats all others of the library may still be wrong: the library may hold no right one,
     which shows in how badly the markers fit.
 
     Args:
-        share: Posterior probability of the posture and of those near it, among all of the library.
-        explained: Share of the frame that the match explains, 0 to 1.
+        share: Posterior probability of the posture and of those near it, among all that are known.
+        explained: Share of the frame that the posture explains, 0 to 1.
+        coefficients: Of a logistic regression: the constant, and those of both logarithms of odds.
     """
     odds = [np.log(value / (1.0 - value)) for value in np.clip([share, explained], *PROBABILITY_BOUNDS)]
-    return float(1.0 / (1.0 + np.exp(-(INTERCEPT + SHARE_COEFFICIENT * odds[0] + odds[1]))))
+    return float(1.0 / (1.0 + np.exp(-(np.array(coefficients) @ (1.0, *odds)))))
 
 
 def _shape(path: StatePath, postures: Posture) -> Array:

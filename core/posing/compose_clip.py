@@ -71,8 +71,8 @@ def compose_frames(
         stances: Their stances.
         sampled: (T,) which frames.
         floor_m: Height of the floor; None where it is not known.
-        libraries: Those whose whole motions are believed in as far as the clip shows them; not asked between
-            two posed frames.
+        libraries: Those of the pools, whose whole motions are believed in as far as the clip shows them; not
+            asked between two posed frames.
 
     Yields:
         The fraction done.
@@ -113,7 +113,7 @@ def compose_frames(
             at = zip(path.hips, sampled[rows], strict=True)
             depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
             rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
-            telling = part_beliefs(given, libraries, stances, sampled, posture, floor_m)
+            telling = part_beliefs(given, libraries, pools, stances, sampled, posture, floor_m)
             beliefs = yield from scaled(telling, led, ended)
     return Composition(path, states, posture, floor_m)
 

@@ -22,10 +22,9 @@ from ..library.library import Library
 from ..matching.coarse_pass import single_posture_cost
 from ..matching.library_match import match_library, prepare_library
 from ..matching.match_input import MatchInput
-from ..matching.posture_sequences import library_sequences
 from ..progress import Part, scaled
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
-from .part_pools import ARM
+from .part_pools import ARM, PartPools
 
 MOST_COMPARED = 4
 """Libraries whose single postures are compared with the footage: those nearest to a first composition."""
@@ -51,6 +50,7 @@ class PartBelief:
 def part_beliefs(
     given: MatchInput,
     libraries: Sequence[Library],
+    pools: PartPools,
     stances: StanceFeatures,
     sampled: IndexArray,
     posture: Posture,
@@ -61,7 +61,8 @@ def part_beliefs(
     Args:
         given: The take.
         libraries: All libraries.
-        stances: The stances and limbs of the pools.
+        pools: Their parts.
+        stances: The stances and limbs of these.
         sampled: (T,) the frames.
         posture: (N,) a first composition of some frames of the clip.
         floor_m: Height of the floor.
@@ -71,9 +72,9 @@ def part_beliefs(
     """
     camera, evidence = given.camera, given.evidence
     compared = []
-    nearest = nearest_libraries(given.body, libraries, posture)[:MOST_COMPARED]
-    for turn, library in enumerate(nearest):
-        prepared = prepare_library(given, library)
+    nearest = nearest_libraries(pools, posture)[:MOST_COMPARED]
+    for turn, number in enumerate(nearest):
+        prepared = prepare_library(given, libraries[number])
         cost = single_posture_cost(camera, evidence, sampled, prepared.states, floor_m)
         compared.append((cost, prepared))
         yield COMPARED_SHARE * (turn + 1) / len(nearest)
@@ -83,20 +84,15 @@ def part_beliefs(
     return _beliefs(given.body, stances, match.postures[sampled], CERTAINTY * sure / (1.0 - sure))
 
 
-def nearest_libraries(body: Body, libraries: Sequence[Library], posture: Posture) -> list[Library]:
-    """The libraries by how near they have a posture to each of some (N,), whatever their heading."""
-    shapes = _shapes(body, posture)
-    away = []
-    for library in libraries:
-        known = _shapes(body, library_sequences(library, body).posture)
-        away.append(np.mean([np.linalg.norm(known - one, axis=-1).mean(axis=-1).min() for one in shapes]))
-    return [libraries[row] for row in np.argsort(away, kind="stable")]
-
-
-def _shapes(body: Body, posture: Posture) -> Array:
-    """(N, P, 3) points of postures that are turned to face -Y, the hips at the origin [m]."""
+def nearest_libraries(pools: PartPools, posture: Posture) -> list[int]:
+    """Numbers of the libraries by how near they have a posture to each of some (N,), in any heading."""
+    body = pools.body
     facing = yawed_at(posture, -headings_rad(posture), np.zeros_like(posture.translation))
-    return np.asarray(body.points(body.pose(facing)))
+    shapes, known = (body.points(body.pose(each)) for each in (facing, pools.known))
+    away = np.array([np.linalg.norm(known - shape, axis=-1).mean(axis=-1) for shape in shapes])
+    numbers = np.unique(pools.library)
+    nearest = [away[:, pools.library == number].min(axis=1).mean() for number in numbers]
+    return [int(number) for number in numbers[np.argsort(nearest, kind="stable")]]
 
 
 def _beliefs(body: Body, stances: StanceFeatures, posture: Posture, odds: float) -> list[PartBelief]:

@@ -82,8 +82,12 @@ class PartPools:
     torsos: PartPool
     arms: PartPool
     legs: PartPool
+    known: Posture
+    """(S,) the libraries' postures and their mirror images, facing -Y, the hips at the origin."""
+    library: IndexArray
+    """(S,) number of the library that each is from, in the order in which they were given."""
     names: tuple[tuple[str, bool], ...]
-    """Name of each source posture, and whether it is mirrored."""
+    """(S,) name of each, and whether it is mirrored."""
     limb_cost: Mapping[str, Array]
     """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
     legs_together: Array
@@ -137,12 +141,13 @@ def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
-    found, names = [], []
-    for library in libraries:
+    found, names, numbers = [], [], []
+    for number, library in enumerate(libraries):
         sequences = library_sequences(library, body)
         if len(sequences):
             found.append(sequences.posture)
             names += [(sequences.name(i), sequences.is_mirrored(i)) for i in range(len(sequences))]
+            numbers += [number] * len(sequences)
     one_side = Posture.concatenate(found)
     everyone = Posture.concatenate([one_side, mirrored(one_side)])
     names += [(name, not flipped) for name, flipped in names]
@@ -167,7 +172,8 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     apart = np.outer(both.sum(axis=1), both.sum(axis=0))
     ratio = both / np.maximum(apart, 1e-12)
     usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, MOST_TOGETHER))
-    return PartPools(body, torsos, arms, legs, tuple(names), limb_cost, usual)
+    of = np.array(2 * numbers, dtype=np.intp)
+    return PartPools(body, torsos, arms, legs, facing, of, tuple(names), limb_cost, usual)
 
 
 def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
