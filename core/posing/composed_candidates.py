@@ -23,8 +23,8 @@ MOST_STATES = 60
 """Candidates are chosen among this many of the most probable states."""
 CHOSEN, OTHER = (-0.1, 0.5, 1.0 / 3.0), (-2.0, 2.0 / 3.0, 1.0 / 3.0)
 """Logistic regressions, rounded, of being about right, of the chosen posture, which the whole clip led to,
-and of the others, on 25 recordings with truth: of 237 chosen ones said to be up to 40, 60, 80 and 100 % sure, 39,
-45, 68 and 90 % were; of 1185 others up to 20, 40, 60 and 80 %, 14, 27, 53 and 63 %."""
+and of the others, on 25 recordings with truth: of 237 chosen ones said to be up to 40, 60, 80 and 100 % sure,
+39, 45, 68 and 90 % were; of 1185 others up to 20, 40, 60 and 80 %, 14, 27, 53 and 63 %."""
 
 
 def composed(pools: PartPools, stances: StanceFeatures, states: FrameStates) -> Posture:
