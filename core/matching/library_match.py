@@ -84,12 +84,12 @@ def match_library(
         floor_m = posed.floor_m()
     if floor_m is None:
         floor_m = floor_height_m(match_input.camera, evidence, sampled, prepared.states)
-    tempering = min(1.0, float(np.median(np.diff(tracks.time_s[sampled]))) / CORRELATION_S)
+    weight = tempering(tracks.time_s[sampled])
     table = SequenceTable(prepared.sequences, prepared.moments)
     unit = NoiseScales.of(evidence)
-    first = yield from _solve(match_input, prepared, table, sampled, floor_m, tempering, unit, 0.0)
+    first = yield from _solve(match_input, prepared, table, sampled, floor_m, weight, unit, 0.0)
     noise_scales = first.refinement.noise_scales(first.refined)
-    second = yield from _solve(match_input, prepared, table, sampled, floor_m, tempering, noise_scales, 0.45)
+    second = yield from _solve(match_input, prepared, table, sampled, floor_m, weight, noise_scales, 0.45)
     posteriors = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
     refined = second.refined
     postures = _every_frame(table, refined, sampled, tracks.frame_count)
@@ -122,7 +122,7 @@ def _solve(
     table: SequenceTable,
     sampled: IndexArray,
     floor_m: float,
-    tempering: float,
+    weight: float,
     noise_scales: NoiseScales,
     begun: float,
 ) -> Part[_Solution]:
@@ -143,9 +143,9 @@ def _solve(
     likelihoods = [hypothesis[0] for hypothesis in hypotheses]
     costs = [posed.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled]
     # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
-    posed_costs = [None if cost is None else cost / np.float32(tempering) for cost in costs]
+    posed_costs = [None if cost is None else cost / np.float32(weight) for cost in costs]
     emissions = yield from scaled(_evaluate_all(hypotheses, states, posed_costs), begun, begun + 0.2)
-    model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, tempering, time_s)
+    model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, weight, time_s)
     yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
     best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
     likelihoods = [
@@ -154,7 +154,7 @@ def _solve(
     ]
     path = StatePath(prepared.sequences, states, likelihoods, emissions, best, time_s)
     rows = np.searchsorted(sampled, posed.frames)
-    refinement = Refinement(table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, posed, rows)
+    refinement = Refinement(table, likelihoods, time_s, weight, floor_m, FLOOR_STD_M, posed, rows)
     refined = yield from scaled(refinement.refine(path.continuous()), begun + 0.35, begun + 0.45)
     return _Solution(model, path, refinement, refined)
 
@@ -172,6 +172,11 @@ def _evaluate_all(
         if index % FRAMES_A_YIELD == 0:
             yield index / len(hypotheses)
     return emissions
+
+
+def tempering(time_s: Array) -> float:
+    """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
+    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | IndexArray) -> IndexArray:

@@ -14,7 +14,7 @@ from ..footage.camera import Camera
 from ..library.library import Library
 from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
 from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.library_match import CORRELATION_S
+from ..matching.library_match import tempering
 from ..matching.match_evidence import MatchEvidence
 from ..matching.match_input import MatchInput
 from ..matching.noise_scales import NoiseScales
@@ -116,11 +116,6 @@ def compose_frames(
             telling = part_beliefs(given, libraries, pools, stances, sampled, posture, floor_m)
             beliefs = yield from scaled(telling, led, ended)
     return Composition(path, states, posture, floor_m)
-
-
-def tempering(time_s: Array) -> float:
-    """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
-    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def _every_second(count: int) -> IndexArray:

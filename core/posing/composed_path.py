@@ -12,7 +12,8 @@ import numpy as np
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN
 from ..body.limbs import LIMBS
-from .composed_states import LEGS, FrameCosts, FrameStates, student_cost
+from ..matching.noise_scales import student_cost
+from .composed_states import LEGS, FrameCosts, FrameStates
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]

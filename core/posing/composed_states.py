@@ -15,9 +15,9 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.center_of_mass import mass_weights
 from ..body.human import HUMAN
 from ..body.limbs import LIMBS
-from ..matching.emissions import EXCHANGED_COST
+from ..matching.emissions import EXCHANGED_COST, lowest
 from ..matching.frame_likelihood import FrameLikelihood, square_root
-from ..matching.noise_scales import DEGREES_OF_FREEDOM
+from ..matching.noise_scales import student_cost
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
 from .library_belief import PartBelief
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
@@ -311,20 +311,6 @@ def soft_least(cost: SingleArray) -> SingleArray:
     """
     least = cost.min(axis=1)
     return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
-
-
-def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
-    """Negative log likelihood under Student's t, up to a constant."""
-    factor = np.float32(0.5 * (DEGREES_OF_FREEDOM + dimensions))
-    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
-
-
-def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
-    """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
-    kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))
-    if len(kept) > count:
-        kept = np.sort(kept[np.argpartition(cost[kept], count)[:count]])
-    return kept
 
 
 def _products(first: SingleArray, second: SingleArray) -> SingleArray:

@@ -32,7 +32,7 @@ from .composed_states import FrameCosts
 from .frame_shown import FrameShown
 from .leg_pairs import NO_CONTACT_COST
 from .part_features import HEADINGS, StanceFeatures, stance_features
-from .part_pools import PartPools, part_pools
+from .part_pools import PartPools, content_of, part_pools
 from .plausibility import Plausibility, plausibility
 
 MOST_STARTS = 80
@@ -79,9 +79,7 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
         InputError: No library has a posture.
     """
     usable = tuple(each for each in libraries if each.postures)
-    lengths = tuple(sorted(body.actor.segments_m.items()))
-    content = tuple(hash(each.posture.to_vector().tobytes()) for one in usable for each in one.postures)
-    return _knowledge(_Given(body, usable, (lengths, content)))
+    return _knowledge(_Given(body, usable, content_of(usable, body)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import IndexArray, SingleArray
-from ..matching.noise_scales import DEGREES_OF_FREEDOM
+from ..estimate.terms.balance import STEP_M
+from ..matching.noise_scales import student_cost
 
 MOST_PAIRED = 12
 """Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""
@@ -20,8 +21,6 @@ BALANCE_STD_M = 0.12
 """Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way."""
 BALANCE_DEGREES = 3.0
 """Of Student's t: who runs, leaps or leans on something is forgiven."""
-STEP_M = 0.10
-"""A foot that is higher above the other than this bears nothing."""
 NO_CONTACT_COST = np.float32(4.0)
 """Cost of a frame in which neither foot stands on the floor: jumps, steps, furniture."""
 
@@ -84,5 +83,4 @@ def standing_cost(height: SingleArray) -> SingleArray:
 
 def _floor_cost(height: SingleArray) -> SingleArray:
     off = height / np.float32(FLOOR_STD_M)
-    half = np.float32(0.5 * (DEGREES_OF_FREEDOM + 1.0))
-    return np.asarray(half * np.log1p(off * off / np.float32(DEGREES_OF_FREEDOM)))
+    return student_cost(off * off, 1)

@@ -125,19 +125,27 @@ def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
     return balls, hinges
 
 
-_KEPT: OrderedDict[tuple[object, ...], tuple[tuple[Library, ...], PartPools]] = OrderedDict()
+_KEPT: OrderedDict[tuple[object, ...], PartPools] = OrderedDict()
 MOST_KEPT = 4
 """Pools kept for the next question about the same performer."""
 
 
 def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     """The parts of all libraries' postures and their mirror images on a body, with samples beside them."""
-    key = (*sorted(body.actor.segments_m.items()), *map(id, libraries))
+    key = content_of(libraries, body)
     if key not in _KEPT:
-        _KEPT[key] = tuple(libraries), _part_pools(libraries, body)  # held, so that no other has its id
+        _KEPT[key] = _part_pools(libraries, body)
         while len(_KEPT) > MOST_KEPT:
             _KEPT.popitem(last=False)
-    return _KEPT[key][1]
+    return _KEPT[key]
+
+
+def content_of(libraries: Sequence[Library], body: Body) -> tuple[object, ...]:
+    """What is learned from libraries depends on this, however often their files are read."""
+    lengths = tuple(sorted(body.actor.segments_m.items()))
+    shapes = tuple(hash(each.posture.to_vector().tobytes()) for one in libraries for each in one.postures)
+    named = tuple((each.name, *one.motions) for one in libraries for each in one.postures)
+    return (*lengths, *shapes, *named)
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:

@@ -18,14 +18,14 @@ from ..estimate.whole_clip import estimate_whole_clip
 from ..footage.reading import Reading
 from ..library.library import Library
 from ..matching.candidates import MatchedFrame
-from ..matching.library_match import sampled_frames
+from ..matching.library_match import sampled_frames, tempering
 from ..matching.match_input import MatchInput, match_input
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Job, Progress, stretch, within
 from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take
-from .compose_clip import Composition, compose_frames, tempering
+from .compose_clip import Composition, compose_frames
 from .composed_candidates import composed_candidates
 from .explained import contradicting, explained_shares
 from .found_poses import FoundPoses
