@@ -33,6 +33,8 @@ WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
 """Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
 NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
 """Distances tried about the first path."""
+BETWEEN_POSED = (1.0, 0.96, 1.04)
+"""Distances tried between two posed frames, which tell the place."""
 SEARCHED_AND_LED = 0.6, 0.7
 """Shares of a round after which the states are found, and the path through them."""
 SMOOTH_S = 0.6
@@ -84,7 +86,7 @@ def compose_frames(
         known = given.constraints
         depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
         rough = np.interp(sampled, known.frames, depths)
-        rounds = (NARROW,)
+        rounds = (BETWEEN_POSED,)
     else:
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
