@@ -180,7 +180,8 @@ def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.
     take = active_take(scene)
     assert take.finish.outdated and take.review.frame_count == scene.frame_end
     assert take.notes[0].text.startswith(f"2 of {2 + matched} keyframes are posed")
-    assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.05)
+    # Intervals of found keyframes follow from their confidence now, and these are not too sure of themselves.
+    assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.1)
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
     settings = active_take(scene).finish
     assert not settings.outdated and 0 < settings.keys_after < settings.keys_before

@@ -46,7 +46,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
         questions.append({"posed": take.keyframe_indices, "between": between, "frames": frames})
         more = 0.0 if frames is None else 0.25
         found = tuple(
-            MatchedFrame(index, (Candidate(still[index], "Sway", False, CONFIDENCE[index] + more),))
+            MatchedFrame(index, (Candidate(still[index], "Sway", False, min(1.0, CONFIDENCE[index] + more)),))
             for index in (CONFIDENCE if frames is None else frames)
         )
         return FoundPoses(found, still, 0.8, 0.0, "so")
