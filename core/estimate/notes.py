@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
-from ..library.several_libraries import COMPOSED
 from ..prior.keyframes import Matched
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
@@ -99,10 +98,9 @@ def found_notes(take: Take) -> tuple[str, ...]:
             "footage does not show, depth above all, is like theirs"
         ]
     else:
-        notes = [
-            f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}, changed the way "
-            "the posed ones differ from them"
-        ]
+        matched = any(not said.is_composed for _, said in found)
+        moved = ", changed the way the posed ones differ from them" if matched else ""
+        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
     doubtful = [(keyframe, said) for keyframe, said in found if said.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
@@ -117,8 +115,8 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 def _origin(found: Sequence[Matched]) -> str:
     """What found keyframes were made of."""
-    libraries = sorted({said.library for said in found} - {COMPOSED})
-    parts = [] if all(said.library != COMPOSED for said in found) else ["postures composed of all libraries"]
+    libraries = sorted({said.library for said in found if not said.is_composed})
+    parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
     return " and ".join(parts)
 

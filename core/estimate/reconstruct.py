@@ -15,7 +15,6 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
 from ..footage.region_tracks import RegionTracks
-from ..library.several_libraries import COMPOSED
 from ..observation.regions import RegionModel
 from ..prior.evidence_speed import evidence_speed
 from ..prior.interpolation import interpolate
@@ -216,7 +215,7 @@ def _whole_clip(
 
 def _is_composed(take: Take) -> bool:
     """Whether all keyframes were put together from parts."""
-    return all(key.matched is not None and key.matched.library == COMPOSED for key in take.keyframes)
+    return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
 
 
 def _found_ankle(take: Take, prior: Posture) -> Array | None:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from ..body.posture import Posture
+from ..library.several_libraries import COMPOSED
 
 DOUBTFUL = 0.5
 """Confidence below which a found keyframe is doubtful: more likely wrong than about right."""
@@ -25,6 +26,11 @@ class Matched:
     def is_doubtful(self) -> bool:
         """Whether the keyframe is worth a check."""
         return self.confidence < DOUBTFUL
+
+    @property
+    def is_composed(self) -> bool:
+        """Whether parts of several libraries were put together, for this performer in this footage."""
+        return self.library == COMPOSED
 
 
 @dataclass(frozen=True, eq=False)
