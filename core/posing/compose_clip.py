@@ -35,6 +35,8 @@ NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
 """Distances tried about the first path."""
 BETWEEN_POSED = (1.0, 0.96, 1.04)
 """Distances tried between two posed frames, which tell the place."""
+LONGEST_GAP_S = 2.0
+"""Between posed frames that are no farther apart nobody goes far away and comes back."""
 SEARCHED_AND_LED = 0.6, 0.7
 """Shares of a round after which the states are found, and the path through them."""
 SMOOTH_S = 0.6
@@ -74,7 +76,7 @@ def compose_frames(
         sampled: (T,) which frames.
         floor_m: Height of the floor; None where it is not known.
         libraries: Those of the pools, whose whole motions are believed in as far as the clip shows them; not
-            asked between two posed frames.
+            asked between posed frames that are near each other.
 
     Yields:
         The fraction done.
@@ -82,7 +84,7 @@ def compose_frames(
     evidence, camera = given.evidence, given.camera
     time_s = evidence.tracks.time_s[sampled]
     rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
-    if _posed_at_both_ends(given, sampled):  # the place is known, then, and what lies between is soon found
+    if _posed_throughout(given, sampled):  # the place is known, then, and what lies between is soon found
         known = given.constraints
         depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
         rough = np.interp(sampled, known.frames, depths)
@@ -125,8 +127,12 @@ def _every_second(count: int) -> IndexArray:
     return np.unique(np.append(np.arange(0, count, 2), count - 1)).astype(np.intp)
 
 
-def _posed_at_both_ends(given: MatchInput, sampled: IndexArray) -> bool:
-    return {int(sampled[0]), int(sampled[-1])} <= set(map(int, given.constraints.frames))
+def _posed_throughout(given: MatchInput, sampled: IndexArray) -> bool:
+    """Whether the first and the last frame are posed, and others so often that the place is known."""
+    frames = given.constraints.frames
+    if not {int(sampled[0]), int(sampled[-1])} <= set(map(int, frames)):
+        return False
+    return bool((np.diff(given.evidence.tracks.time_s[frames]) <= LONGEST_GAP_S).all())
 
 
 def _costs(
