@@ -4,7 +4,6 @@ import numpy as np
 
 from ..arrays import Array, SingleArray
 from ..body.kinematics import Body
-from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..matching.candidates import (
     ABOUT_RIGHT_M,
@@ -16,7 +15,7 @@ from ..matching.candidates import (
     distinct_rows,
 )
 from .composed_states import FrameStates
-from .part_features import HEADINGS, StanceFeatures
+from .part_features import HEADINGS, StanceFeatures, composed_postures
 from .part_pools import PartPools
 
 MOST_STATES = 60
@@ -25,16 +24,6 @@ CHOSEN, OTHER = (-0.1, 0.5, 1.0 / 3.0), (-2.0, 2.0 / 3.0, 1.0 / 3.0)
 """Logistic regressions, rounded, of being about right, of the chosen posture, which the whole clip led to,
 and of the others, on 25 recordings with truth: of 237 chosen ones said to be up to 40, 60, 80 and 100 % sure,
 39, 45, 68 and 90 % were; of 1185 others up to 20, 40, 60 and 80 %, 14, 27, 53 and 63 %."""
-
-
-def composed(pools: PartPools, stances: StanceFeatures, states: FrameStates) -> Posture:
-    """(K,) the postures of a frame's states, with the best limbs of each."""
-    return pools.composed(
-        states.stance // HEADINGS,
-        {limb: states.limbs[:, column] for column, limb in enumerate(LIMBS)},
-        stances.heading_rad[states.stance % HEADINGS],
-        states.hips.astype(float),
-    )
 
 
 def composed_candidates(
@@ -61,7 +50,7 @@ def composed_candidates(
     """
     likely = np.argsort(-posterior, kind="stable")[:MOST_STATES]
     some = states.chosen(likely)
-    postures = composed(pools, stances, some)
+    postures = composed_postures(pools, stances, some.stance, some.limbs, some.hips)
     everyone = Posture.concatenate([Posture.stack([chosen]), postures])
     shape = _shape(pools.body, everyone)
     weight = np.concatenate([[0.0], posterior[likely] / max(float(posterior[likely].sum()), 1e-12)])

@@ -27,11 +27,10 @@ from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.noise_scales import NoiseScales
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from .compose_clip import FLOOR_STD_M, PART_SCALE, WIDE
-from .composed_candidates import composed
 from .composed_states import FrameCosts
 from .frame_shown import FrameShown
 from .leg_pairs import NO_CONTACT_COST
-from .part_features import HEADINGS, StanceFeatures, stance_features
+from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
 from .part_pools import PartPools, content_of, part_pools
 from .plausibility import Plausibility, plausibility
 
@@ -164,7 +163,7 @@ def _screened(
     depth = float(shown.camera.depth(placed.translation))
     states = FrameCosts(likelihood, stances, floor_m).states(depth * np.array(WIDE))
     cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
-    posture = composed(known.pools, stances, states)
+    posture = composed_postures(known.pools, stances, states.stance, states.limbs, states.hips)
     return Hypotheses(posture, cost, states.stance // HEADINGS, np.full(len(cost), is_exchanged))
 
 

@@ -15,7 +15,7 @@ from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from .composed_path import ComposedPath
 from .composed_states import FrameStates
-from .part_features import HEADINGS, StanceFeatures
+from .part_features import StanceFeatures, composed_postures
 from .part_pools import TORSO, PartPools, part_columns
 
 NEAR_M = 0.15
@@ -35,8 +35,7 @@ def mean_postures(
         states: The T frames' states.
         path: The path through them.
     """
-    limbs = {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)}
-    likeliest = _composed(pools, stances, path.stance, limbs, path.hips)
+    likeliest = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
     skeleton = likeliest.skeleton
     step = np.zeros((len(path.stance), skeleton.dof_count))
     torso = [0, 1, 2, *_dofs(skeleton, TORSO)]
@@ -45,10 +44,9 @@ def mean_postures(
         apart = np.linalg.norm(points[own.stance] - points[path.stance[row]], axis=-1).mean(axis=-1)
         kept, weight = _weights(chance, apart)
         near = own.chosen(kept)
-        parts = {limb: near.limbs[:, column] for column, limb in enumerate(LIMBS)}
-        others = _composed(pools, stances, near.stance, parts, near.hips.astype(float))
+        others = composed_postures(pools, stances, near.stance, near.limbs, near.hips)
         step[row, torso] = weight @ others.minus(likeliest[np.full(len(kept), row)])[:, torso]
-    for limb, chosen in limbs.items():
+    for limb, chosen in zip(LIMBS, path.limbs.T, strict=True):
         kind, _, side = limb.partition(".")
         dofs = _dofs(skeleton, kind, side)
         every = _alone(pools, limb, len(stances.limbs[limb].points))
@@ -67,13 +65,6 @@ def _weights(chance: Array | SingleArray, apart_m: Array | SingleArray) -> tuple
         weight = np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
     kept = np.flatnonzero(weight >= LEAST_SHARE * weight.max())
     return kept, weight[kept] / weight[kept].sum()
-
-
-def _composed(
-    pools: PartPools, stances: StanceFeatures, stance: IndexArray, limbs: dict[str, IndexArray], hips: Array
-) -> Posture:
-    """(N,) postures of stances (N,) with limbs (N,), the hips at (N, 3)."""
-    return pools.composed(stance // HEADINGS, limbs, stances.heading_rad[stance % HEADINGS], hips)
 
 
 def _alone(pools: PartPools, limb: str, count: int) -> Posture:

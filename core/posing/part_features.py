@@ -13,6 +13,7 @@ from ..body.heading import yaw_rotation
 from ..body.human import HUMAN
 from ..body.limbs import LIMBS, TRUNK, limb_of
 from ..body.mirror import mirrored
+from ..body.posture import Posture
 from ..body.soles import sole_places
 from ..estimate.ankle_height import standing_ankle_m
 from ..matching.marker_moments import marker_moments
@@ -115,6 +116,27 @@ def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures
         _single(pools.legs_together),
         standing_ankle_m(body),
     )
+
+
+def composed_postures(
+    pools: PartPools,
+    stances: StanceFeatures,
+    stance: IndexArray,
+    limbs: IndexArray,
+    hips: Array | SingleArray,
+) -> Posture:
+    """Postures put together from stances and limbs.
+
+    Args:
+        pools: All parts.
+        stances: Their stances.
+        stance: (N,) which stances.
+        limbs: (N, 4) parts of the limbs, in the order of `LIMBS`.
+        hips: (N, 3) places of the hips in the world [m].
+    """
+    parts = {limb: limbs[:, column] for column, limb in enumerate(LIMBS)}
+    heading = stances.heading_rad[stance % HEADINGS]
+    return pools.composed(stance // HEADINGS, parts, heading, np.asarray(hips, dtype=float))
 
 
 def limb_points(limb: str) -> list[int]:

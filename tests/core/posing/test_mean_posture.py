@@ -13,7 +13,12 @@ from keymark.core.matching.match_input import match_input
 from keymark.core.posing.composed_path import ComposedPath
 from keymark.core.posing.composed_states import FrameStates
 from keymark.core.posing.mean_posture import mean_postures
-from keymark.core.posing.part_features import HEADINGS, StanceFeatures, stance_features
+from keymark.core.posing.part_features import (
+    HEADINGS,
+    StanceFeatures,
+    composed_postures,
+    stance_features,
+)
 from keymark.core.posing.part_pools import PartPools, part_pools
 
 ARM = "arm.L"
@@ -65,12 +70,7 @@ def test_what_is_certain_stays(known: Known) -> None:
     """A single state with one part of each limb is its own mean."""
     _, path = path_of(known, {4: 1.0})
     pools, stances = known
-    exact = pools.composed(
-        path.stance // HEADINGS,
-        {limb: path.limbs[:, column] for column, limb in enumerate(LIMBS)},
-        stances.heading_rad[path.stance % HEADINGS],
-        path.hips,
-    )
+    exact = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
     assert points_of(mean_of(known, {4: 1.0})) == pytest.approx(points_of(exact), abs=1e-5)
 
 
