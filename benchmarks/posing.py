@@ -19,16 +19,14 @@ from trials import Trial, read_trial
 load_project()
 
 from keymark.core.body.posture import Posture  # noqa: E402
-from keymark.core.estimate.keyframe_evidence import uncalibrated  # noqa: E402
-from keymark.core.estimate.performer_placement import place_standing  # noqa: E402
 from keymark.core.estimate.single_frame import FrameFit, calibrated, fit_frame  # noqa: E402
 from keymark.core.estimate.terms.regions import ObservedRegions  # noqa: E402
 from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
-from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_standing  # noqa: E402
+from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 
-STARTS = ("standing", "earlier", "between")
-"""No keyframe yet; all earlier ones; those before and after."""
+STARTS = ("earlier", "between")
+"""All earlier keyframes; those before and after. A frame without any is measured by frame_poses.py."""
 TITLES = (
     *("take", "start", "fits", "error: start", "fit", "across: start", "fit"),
     *("markers: start", "fit", "worse", "CPU"),
@@ -67,7 +65,6 @@ def measure(trial: Trial) -> dict[str, list[Fit]]:
             continue
         earlier = trial.take.keyframes[:number]
         others = (*earlier, *trial.take.keyframes[number + 1 :])
-        found["standing"].append(fitted(trial, keyframe.index, ()))
         if earlier:
             found["earlier"].append(fitted(trial, keyframe.index, earlier))
         if earlier and len(earlier) < len(others):
@@ -78,20 +75,16 @@ def measure(trial: Trial) -> dict[str, list[Fit]]:
 def fitted(trial: Trial, index: int, posed: tuple[Keyframe, ...]) -> Fit:
     """The operator's fit of one frame, given some posed keyframes, compared with the truth."""
     take = trial.take
-    body, segments = take.body, take.marker_segments
-    model = RegionModel(body, take.camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
+    placements = tuple(MarkerPlacement.usual(segment) for segment in take.marker_segments)
+    model = RegionModel(take.body, take.camera, placements)
     observed = ObservedRegions.from_tracks(trial.tracks)
     results: list[tuple[FramePrior, FrameFit]] = []
 
     def fit() -> None:
-        if posed:
-            belief = prior_from_keyframes(posed, index, take.fps)
-            frames = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
-            postures = Posture.stack([keyframe.posture for keyframe in posed])
-            evidence = calibrated(model, observed[frames], postures, frames)
-        else:
-            standing = place_standing(body, take.camera, index, trial.tracks.frame(index), segments)
-            belief, evidence = prior_from_standing(standing), uncalibrated(model)
+        belief = prior_from_keyframes(posed, index, take.fps)
+        frames = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
+        postures = Posture.stack([keyframe.posture for keyframe in posed])
+        evidence = calibrated(model, observed[frames], postures, frames)
         seen = observed[np.array([index], dtype=np.intp)]
         results.append((belief, fit_frame(evidence, seen, belief, index)))
 

@@ -1,24 +1,30 @@
 """One take to test methods on: its markers are tracked once, and results are compared with its truth."""
 
-from dataclasses import dataclass
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from takes import load_project
+from takes import chosen_takes, load_project
 
 load_project()
 
 from auto_clamped import interpolate_auto_clamped  # noqa: E402
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402
+from keymark.core.take.read_footage import read_footage  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 
+KEYPOINTS = "keypoints_mediapipe.json"
+"""File of a detector's keypoints in a take's folder."""
 INTERPOLATIONS = {
     "linear": interpolate_linearly,
     "auto-clamped": interpolate_auto_clamped,
@@ -71,3 +77,43 @@ def read_trial(folder: Path, keyframes: Path | None = None) -> Trial:
     reading = run(reconstruct(take, "interpolation")).reading
     truth = read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count)
     return Trial(take, reading, truth, take.keyframe_indices)
+
+
+def read_unposed(folder: Path) -> Trial:
+    """A take read without its keyframes, which then do not guide the tracking of markers either."""
+    take = replace(read_take(folder), keyframes=())
+    reading = run(read_footage(take))
+    return Trial(
+        take, reading, read_truth(folder / "truth.json", take.frame_start, reading.tracks.frame_count), ()
+    )
+
+
+def unposed_trials(names: Sequence[str], keypoints: bool, plain: bool = False) -> Iterator[tuple[str, Trial]]:
+    """Named takes, or all with truth, each with its name and read without its keyframes.
+
+    Args:
+        names: Names or folders of takes; none for all.
+        keypoints: Whether a detector's keypoints are followed as well; takes without any are then left out,
+            else those without markers.
+        plain: Whether takes in plain clothes are among all.
+
+    Raises:
+        SystemExit: No take is left.
+    """
+    takes = chosen_takes(names, plain)
+    chosen = {name: at for name, at in takes.items() if not keypoints or (at / KEYPOINTS).is_file()}
+    if not chosen:
+        raise SystemExit(f"none of the takes has {KEYPOINTS}")
+    for name, folder in chosen.items():
+        print(f"{name} ...", file=sys.stderr, flush=True)
+        if keypoints:
+            yield name, with_keypoints(read_unposed(folder), folder)
+        elif read_take(folder).markers:
+            yield name, read_unposed(folder)
+
+
+def with_keypoints(trial: Trial, folder: Path) -> Trial:
+    """The same take with the keypoints in its folder."""
+    take, tracks = trial.take, trial.reading.tracks
+    people = read_keypoints(folder / KEYPOINTS, tracks.frame_count, tracks.size, take.fps, take.frame_start)
+    return replace(trial, take=replace(take, keypoints=(people,)))

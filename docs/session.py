@@ -4,8 +4,8 @@ Usage: blender --background --addons bl_ext.user_default.keymark --python docs/s
 
 Each call does what a button of the sidebar does. FOLDER gets `session.blend` and `motion.bvh`. The clip is
 that of the demonstration take, whose shipped poses replace an animator's. With a LIBRARY, as in `aerobic`,
-nothing is posed: its postures are matched with the footage. At the end another character performs the
-motion: a skeleton that stands in for a rig of yours.
+nothing is posed: its postures are found in the footage, or those of all libraries with `auto`. At the end
+another character performs the motion: a skeleton that stands in for a rig of yours.
 """
 
 import sys
@@ -72,14 +72,13 @@ def load_footage(scene: bpy.types.Scene) -> None:
 
 
 def pick_markers(take: bpy.types.PropertyGroup) -> None:
-    """Step 2, what to follow: add the usual five markers and pick each color by one click on the footage.
+    """Step 2, what to follow: pick the usual five markers, each by one click on the footage in frame 1.
 
     In plain clothes `bpy.ops.keymark.load_keypoints(filepath=...)` takes its place.
     """
-    bpy.ops.keymark.add_usual_markers()
-    for number, marker in enumerate(take.markers):
-        take.active_marker = number
-        bpy.ops.keymark.pick_marker_color(pixel=SLEEVES[marker.segment])
+    clicks = [{"name": segment, "loc": pixel, "time": 1.0} for segment, pixel in SLEEVES.items()]
+    bpy.ops.keymark.pick_markers(clicks=clicks)
+    for marker in take.markers:
         print(f"{marker.name}: found in {marker.found} of {marker.sampled} frames")
 
 
@@ -119,9 +118,12 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
     bpy.data.objects.remove(hand)
 
 
-def match_keyframes(scene: bpy.types.Scene, library: str) -> None:
-    """Step 4 without posing: keyframes from a library; replace or pose the doubtful ones."""
-    bpy.ops.keymark.match_library(library=library)
+def find_keyframes(scene: bpy.types.Scene, library: str) -> None:
+    """Step 4 without posing: keyframes found with all libraries or a named one; correct the doubtful ones."""
+    if library == "auto":
+        bpy.ops.keymark.pose_all()
+    else:
+        bpy.ops.keymark.match_library(library=library)
     for match in active_take(scene).matching.matches:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
 
@@ -160,7 +162,7 @@ def session(scene: bpy.types.Scene, folder: Path, library: str = "") -> bpy.type
     pick_markers(active_take(scene))
     build_actor(active_take(scene))
     if library:
-        match_keyframes(scene, library)
+        find_keyframes(scene, library)
     else:
         pose_keyframes(scene)
     bpy.ops.keymark.reconstruct()  # step 5: a new Action; the keyframes stay in theirs

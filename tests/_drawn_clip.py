@@ -105,3 +105,15 @@ def path(index: int) -> tuple[float, float]:
 def moving(index: int) -> list[Ellipse]:
     """Red wanders and turns, blue stands still."""
     return [(RED, path(index), (16.0, 6.0), 5.0 * index), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
+
+
+PANEL = (20, 150, 90, 220)
+"""Left, top, right, bottom of a red panel on the wall: sixteen times the area of the red marker."""
+
+
+def with_panel(image: np.ndarray) -> np.ndarray:
+    """A picture with a panel of the red marker's very color behind nobody."""
+    left, top, right, bottom = PANEL
+    panel = image.copy()
+    panel[top:bottom, left:right] = RED[::-1]
+    return panel

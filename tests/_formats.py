@@ -33,7 +33,7 @@ from keymark.core.take.motion_file import read_motion, write_motion
 from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8
-SHARED = ("fps", "frame_start", "camera", "markers", "actor")
+SHARED = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
 CHARACTER = {
     "file": "characters/anna.blend",
     "object": "rig",
@@ -103,6 +103,10 @@ def _said(take: Path) -> dict[str, Any]:
     said = _read(take / "take.json")
     said["camera"] |= {"distortion": [0.01, 0.0, 0.0], "shift_x": 0.01, "//": "a comment"}
     said["markers"]["sleeve"] = {"segment": "head", "color_srgb": [1, 2, 3]}
+    said["ignored_regions"] = [
+        {"box": [1, 2.5, 30, 40]},
+        {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [1, 3]},
+    ]
     said["actor"]["height_m"] = 1.75
     said |= {"library": "walking", "floor_m": 0.0, "method": "map", "pictures": True}
     said["character"] = dict(CHARACTER)
@@ -120,8 +124,13 @@ def _keyframes(take: Path) -> dict[str, Any]:
 
 def _shoot(said: dict[str, Any]) -> dict[str, Any]:
     settings = {"method": "ekf", "library": "mine.json", "pictures": False, "floor_m": 1.0}
+    settings["keyframes"] = None  # auto beside a library is refused
     settings |= {"character": {"file": "anna.VRM"}, "keypoints": "keypoints.json", "evidence": ["markers"]}
     shared = {name: said[name] for name in SHARED}
+    placed = {"height_m": 1.0, "tilt_deg": -0.5, "roll_deg": 0.5, "distance_m": 4.0}
+    shared["camera"] = {
+        name: shared["camera"][name] for name in shared["camera"] if name != "matrix_world"
+    } | placed
     return {"schema_version": 1, "root": True, **shared, **settings, "// note": ["anything"]}
 
 
@@ -178,6 +187,7 @@ def _record() -> dict[str, Any]:
         "keyframes": [1, 5],
         "matched": [5],
     }
+    value |= {"doubtful": [5], "libraries": {"walking": "ef" * 16}}
     value |= {"confidence": 0.5, "weakest": 0.2, "weak_frames": [3], "notes": ["A note."]}
     value["evidence"] = {
         "markers": ["trunk"],

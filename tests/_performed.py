@@ -13,8 +13,8 @@ from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.library.library import Library
 from keymark.core.library.motion_playback import sample_motion
-from keymark.core.matching.match_take import LibraryChoice
 from keymark.core.observation.regions import MarkerPlacement, RegionModel
+from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.take.take import Take
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
@@ -72,12 +72,11 @@ def filmed(posture: Posture, seen_by: Camera, hidden: float = 0.0) -> tuple[Take
     return take, Reading(tracks)
 
 
-def errors_m(choice: LibraryChoice, truth: Posture) -> tuple[float, float]:
+def errors_m(found: FoundPoses, truth: Posture) -> tuple[float, float]:
     """Mean distance of the points from the truth, with the hips aligned and absolutely."""
-    assert choice.match is not None
-    found, true = (BODY.points(BODY.pose(posture)) for posture in (choice.match.postures, truth))
-    off = found - true
-    hips = (choice.match.postures.translation - truth.translation)[:, None]
+    points, true = (BODY.points(BODY.pose(posture)) for posture in (found.postures, truth))
+    off = points - true
+    hips = (found.postures.translation - truth.translation)[:, None]
     return (
         float(np.linalg.norm(off - hips, axis=-1).mean()),
         float(np.linalg.norm(off, axis=-1).mean()),

@@ -1,6 +1,7 @@
 """The five parts of the body that move about independently: the trunk with the head, arms and legs."""
 
 TRUNK = "trunk"
+LIMBS = ("arm.L", "arm.R", "leg.L", "leg.R")
 _STEMS = {
     "arm": ("upper_arm", "forearm", "hand", "elbow", "wrist", "index", "thumb", "pinky"),
     "leg": ("thigh", "shin", "foot", "knee", "ankle", "heel", "toe", "small_toe"),

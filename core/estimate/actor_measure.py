@@ -35,8 +35,8 @@ from .calibration import (
     placement_values,
     placements_from,
 )
+from .frame_residuals import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .performer_placement import ground_place
-from .single_frame import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import student_cost, student_weight

@@ -5,7 +5,8 @@ compared with each posed keyframe, after the others have told how the performer 
 (leave-one-out; Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*, eq. 5.12): along the
 line of sight, where the footage cannot correct it. The posed keyframes' interpolation is compared with the
 regions and keypoints seen: its error across the line of sight stands for that along it. The library is left
-out where its error is larger.
+out where its error is larger. Postures that were composed for this footage are no library's: where a person
+corrected one, it tells nothing of the others.
 """
 
 import numpy as np
@@ -56,9 +57,10 @@ def select_keyframes(
         keypoints: The performer's; None for none.
     """
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
-    if len(posed) < FEWEST_POSED or len(posed) == len(keyframes):
+    compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)
+    if len(posed) < FEWEST_POSED or len(posed) == len(compared):
         return keyframes
-    library_m = _library_error_m(keyframes, posed, model, fps)
+    library_m = _library_error_m(compared, posed, model, fps)
     interpolation_error = _interpolation_error_squared_m(posed, model, tracks)
     if keypoints is not None and keypoints.seen.any():
         by_points = _keypoint_error_squared_m(posed, model, keypoints)
@@ -67,7 +69,7 @@ def select_keyframes(
     for keyframe in keyframes:
         before = [other.index for other in posed if other.index <= keyframe.index]
         after = [other.index for other in posed if other.index >= keyframe.index]
-        if keyframe.matched is None or not before or not after:
+        if keyframe not in compared or keyframe.matched is None or not before or not after:
             kept.append(keyframe)
             continue
         between = interpolation_error[before[-1] : after[0] + 1]

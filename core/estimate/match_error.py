@@ -28,12 +28,20 @@ JOINT_STD_DEG = {
 """Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
 PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
 """Usual error of the place across and along the line of sight [m]."""
-UNDETERMINED_DEPTH_M = 0.10
-"""Error of points along the line of sight beyond the estimate's own covariance [m].
+SURE_STD_M, UNSURE_STD_M = np.array([0.02, 0.07]), np.array([0.07, 0.16])
+"""Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
+keyframe that is certain and near one that is certainly wrong.
 
 A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
-like one turned to the other: a library's decision there is right or wrong, which a covariance about it does
-not show. About the value that takes with truth have where nothing was posed."""
+like one turned to the other: what was found there is right or wrong, which a covariance about it does not
+show. In 25 recordings with truth where nothing was posed, errors along the line of sight were 13 cm where the
+confidence was below 0.7, 9 cm at 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm."""
+SIZE_STD = 0.05
+"""Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
+lie farther in or out than joints. All frames share it."""
+GROUND_STD_M = 0.04
+"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share
+it."""
 POINT_DEPTH_STD_M = 2.0
 """Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
 large that they count for nothing, since place and joints have errors of their own that determine them."""
@@ -69,16 +77,51 @@ def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
 
 
-def undetermined_covariance(points: Array, camera: Camera, index: IndexArray, match_scale: Array) -> Array:
-    """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that matched keyframes leave undetermined.
+def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
+    """(F,) error of a whole composed performer's place along the line of sight [m], which all frames share.
+
+    Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
+
+    Args:
+        points: (F, P, 3) in the world [m].
+        ankles: (F,) heights of the lower ankle [m].
+        camera: The camera.
+    """
+    frame = np.arange(len(points))
+    middle = points.mean(axis=1)
+    sight = camera.sight(middle, frame)
+    location = np.array([camera.pose(int(index))[1] for index in frame])
+    distance = np.linalg.norm(middle - location, axis=-1)
+    level = np.hypot(sight[:, 0], sight[:, 1]) * distance
+    slope = np.abs(location[:, 2] - ankles) / np.maximum(level, 1e-3)  # of the sight of the feet
+    by_size, by_floor = 1.0 / (SIZE_STD * distance), slope / GROUND_STD_M
+    return np.asarray(1.0 / np.hypot(by_size, by_floor))
+
+
+def undetermined_covariance(
+    points: Array,
+    camera: Camera,
+    index: IndexArray,
+    match_scale: Array,
+    confidence: Array,
+    place_std_m: Array | float = 0.0,
+) -> Array:
+    """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
     Args:
         points: Places in the world [m].
         camera: The camera.
         index: (K,) the keyframes' indices in the clip, in order.
-        match_scale: (K,) size of the matched ones' error, relative to a usual one; 0 for posed ones.
+        match_scale: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones.
+        confidence: (K,) probability that each is about right.
+        place_std_m: (F,) error of the whole performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
-    std_m = UNDETERMINED_DEPTH_M * np.interp(frame, index, match_scale)
-    return np.asarray(std_m[:, None, None, None] ** 2 * sight[..., :, None] * sight[..., None, :])
+    along = sight[..., :, None] * sight[..., None, :]
+    sure = confidence[:, None]
+    std_m = match_scale[:, None] * np.sqrt(sure * SURE_STD_M**2 + (1.0 - sure) * UNSURE_STD_M**2)
+    across_m, along_m = (np.interp(frame, index, own) for own in std_m.T)
+    along_m = np.hypot(along_m, np.interp(frame, index, match_scale) * place_std_m)
+    variance = np.square([across_m, along_m])[:, :, None, None, None]
+    return np.asarray(variance[0] * (np.eye(3) - along) + variance[1] * along)

@@ -1,7 +1,10 @@
 """Notes on a take and its result for people, one sentence each."""
 
+from collections.abc import Sequence
+
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
+from ..prior.keyframes import Matched
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
@@ -12,8 +15,6 @@ DOUBTED_POSING = 2.0
 """Size of the posing error, in usual ones, that gets a note."""
 DOUBTED_MARKER = 3.0
 """Distrust of a marker that gets a note."""
-DOUBTED_MATCH = 0.6
-"""Confidence below which a matched keyframe gets a note."""
 MOST_NAMED = 3
 """Largest number of frames that a note names."""
 
@@ -76,42 +77,48 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
-    """Note on matched keyframes left out in favor of the posed ones around them."""
-    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
+    """Note on found keyframes left out in favor of the posed ones around them."""
+    found = sum(keyframe.matched is not None for keyframe in take.keyframes)
     if count == 0:
         return ()
     were = "was" if count == 1 else "were"
-    which = "the library was" if count == matched else f"{count} of {matched} matched keyframes {were}"
+    which = "the found keyframes were" if count == found else f"{count} of {found} found keyframes {were}"
     return (f"{which} left out: interpolation between the posed keyframes is more accurate there",)
 
 
-def match_notes(take: Take) -> tuple[str, ...]:
-    """Notes on a result from matched keyframes: what it rests on, and which frames to pose."""
-    matched = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
-    if not matched:
+def found_notes(take: Take) -> tuple[str, ...]:
+    """Notes on a result from found keyframes: what it rests on, and which frames to pose."""
+    found = [(keyframe, keyframe.matched) for keyframe in take.keyframes if keyframe.matched is not None]
+    if not found:
         return ()
-    libraries = " and ".join(sorted({said.library for _, said in matched}))
-    posed = len(take.keyframes) - len(matched)
+    posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
     if posed == 0:
         notes = [
-            f"no keyframe was posed: the motion rests on {len(matched)} postures of the library {libraries}, "
-            "another performer's; what the footage does not show, depth above all, is like that performer's"
+            f"no keyframe was posed: the motion rests on {len(found)} {origin}, other performers'; what the "
+            "footage does not show, depth above all, is like theirs"
         ]
     else:
-        notes = [
-            f"{posed} of {len(take.keyframes)} keyframes are posed; the others are postures of the library "
-            f"{libraries}, changed the way the posed ones differ from it"
-        ]
-    doubted = [(keyframe, said) for keyframe, said in matched if said.confidence < DOUBTED_MATCH]
-    if doubted:
-        worst = sorted(doubted, key=lambda one: one[1].confidence)[:MOST_NAMED]
+        matched = any(not said.is_composed for _, said in found)
+        moved = ", changed the way the posed ones differ from them" if matched else ""
+        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
+    doubtful = [(keyframe, said) for keyframe, said in found if said.is_doubtful]
+    if doubtful:
+        worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
         named = listed([str(frame) for frame in frames], MOST_NAMED)
-        which, them = f"{len(doubted)} of {len(matched)} matched postures", "them"
-        if len(matched) == 1:
-            which, them = "the matched posture", "it"
-        notes.append(f"{which} may be wrong; pose frame {named} to set {them} right")
+        which, them = f"{len(doubtful)} of {len(found)} found keyframes are", "them"
+        if len(found) == 1:
+            which, them = "the found keyframe is", "it"
+        notes.append(f"{which} doubtful; pose frame {named} to set {them} right")
     return tuple(notes)
+
+
+def _origin(found: Sequence[Matched]) -> str:
+    """What found keyframes were made of."""
+    libraries = sorted({said.library for said in found if not said.is_composed})
+    parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
+    parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
+    return " and ".join(parts)
 
 
 def filter_notes(take: Take) -> tuple[str, ...]:
@@ -123,6 +130,6 @@ def filter_notes(take: Take) -> tuple[str, ...]:
         return notes
     return (
         *notes,
-        "method ekf takes matched keyframes for posed ones; method map allows for the larger errors of "
-        "matched keyframes",
+        "method ekf takes found keyframes for posed ones; method map allows for the larger errors of found "
+        "keyframes",
     )

@@ -9,6 +9,7 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.skeleton import SIDES
 from ..errors import InputError
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
@@ -25,13 +26,14 @@ from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
+from .ankle_height import found_ankle_m
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
 from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
-from .match_error import undetermined_covariance
-from .notes import contour_notes, evidence_notes, filter_notes, left_out_notes, marker_notes, match_notes
+from .match_error import place_depth_std_m, undetermined_covariance
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
@@ -145,7 +147,7 @@ def _reconstruct(
     left_out = len(take.keyframes) - len(worth)
     notes += reading.notes + left_out_notes(take, left_out)
     take = replace(take, keyframes=worth)
-    notes += match_notes(take)
+    notes += found_notes(take)
     keyframes, match_scale = with_offset(take.keyframes, take.fps)
     prior = interpolate(keyframes, tracks.frame_count)
     if left_out or match_scale.any():  # else the prior is that of all keyframes
@@ -206,8 +208,22 @@ def _whole_clip(
         earlier=earlier,
         match_scale=match_scale,
         keypoints=keypoints,
+        lower_ankle=_found_ankle(take, prior),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
+
+
+def _is_composed(take: Take) -> bool:
+    """Whether all keyframes were put together from parts."""
+    return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
+
+
+def _found_ankle(take: Take, prior: Posture) -> Array | None:
+    """(F,) height of the lower ankle by keyframes composed of parts [m]; None where there are others."""
+    if not _is_composed(take):
+        return None
+    index = np.array(take.keyframe_indices, dtype=np.intp)
+    return found_ankle_m(take.body, prior[index], index, prior.batch[0])
 
 
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
@@ -235,7 +251,13 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
-    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale)
+    place_std_m: Array | float = 0.0
+    if _is_composed(take):
+        ankles = [take.body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
+        lower = motion.points[:, ankles, 2].min(axis=1)
+        place_std_m = place_depth_std_m(motion.points, lower, take.camera)
+    sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
+    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + undecided)
 
 

@@ -20,29 +20,18 @@ from ..observation.regions import RegionModel
 from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
+from .frame_descent import descend
+from .frame_residuals import FrameResiduals, frame_residuals
 from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
-from .terms.term import NormalEquations, total_cost
 
-TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
-LARGEST_STEP = 0.4
-"""Largest change of a posture's unknown in one step [m, rad]."""
-CONVERGED = 2e-3
 CALIBRATED_FROM = 5
 """Fewest keyframes that calibrate: their placements are better than average ones."""
 EXPECTED_RADIUS_M = 0.9
 """Largest distance of a marker from where it is believed to be."""
-MISPLACED_WIDTHS = 1.5
-"""A marker farther off than this many of its limb's half-widths is misplaced ..."""
-MISPLACED_PX = 4.0
-"""... unless it is nearer than this [px]."""
-MISPLACED_M = 0.12
-"""A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
-SURE = 0.5
-"""Least confidence of a keypoint that is called misplaced."""
 EXCHANGED_COST = 3.0
 """Cost of taking a detector's left for right: it is wrong in one frame of twenty."""
 
@@ -61,8 +50,6 @@ class FrameFit:
     """Indices of the markers that the posture does not explain."""
     keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
     """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
-    keypoint_before_px: Array = field(default_factory=lambda: np.zeros(0))
-    """(N,) the same for the believed posture."""
     misplaced_points: tuple[str, ...] = ()
     """Body points of the keypoints that the posture does not explain."""
     cost: float = 0.0
@@ -92,12 +79,12 @@ def fit_frame(
     fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
     if points is None or not points.seen.any():
         return fit
-    mirrored = _exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
+    mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
     other = _Descent(evidence, observed, belief, frame, noise, mirrored).fit()
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
-def _exchanged(
+def exchanged(
     points: ObservedKeypoints, names: tuple[str, ...], sources: tuple[str, ...]
 ) -> ObservedKeypoints:
     """The keypoints with left and right exchanged; a point without a mirror image stays."""
@@ -153,7 +140,7 @@ class _Descent:
         noise: RegionNoise,
         points: ObservedKeypoints | None,
     ) -> None:
-        self.keypoints, self.points = evidence.keypoints, points
+        self.evidence, self.points = evidence, points
         count = belief.starts.batch[0]
         self.model, self.observed = evidence.model, observed
         body = evidence.model.body
@@ -173,69 +160,23 @@ class _Descent:
 
     def fit(self) -> FrameFit:
         """Descend and choose."""
-        start = replace(
-            self.state,
-            variation=np.zeros_like(self.state.variation),
-        )
-        best, least = start, total_cost(self.terms, start)
-        for temperature in TEMPERATURES:
-            equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
-            for term in self.terms:
-                term.add_to(equations, self.state, temperature)
-            step = equations.matrix.factorize().solve(-equations.gradient)
-            self.state, moved = self.state.stepped(step, LARGEST_STEP)
-            if temperature > 1.0:
-                continue
-            costs = total_cost(self.terms, self.state)
-            better = costs < least
-            best = replace(
-                best,
-                variation=np.where(better[:, None], self.state.variation, best.variation),
-                bias=np.where(better[:, None], self.state.bias, best.bias),
-            )
-            least = np.minimum(costs, least)
-            if moved < CONVERGED:
-                break
+        best, least = descend(self.state, self.terms)
         chosen = int(np.argmin(least))
         posture = best.posture[chosen]
-        residual = self._distances(posture)
-        allowed = np.maximum(MISPLACED_WIDTHS * self.width_px[0], MISPLACED_PX)
-        misplaced = np.flatnonzero(np.nan_to_num(residual) > allowed)
-        off_px, far_px = self._point_distances(posture)
+        found, before = (self._residuals(each) for each in (posture, self.believed[0]))
         return FrameFit(
             posture,
-            residual,
-            self._distances(self.believed[0]),
-            tuple(int(m) for m in misplaced),
-            off_px,
-            self._point_distances(self.believed[0])[0],
-            self._misplaced_points(off_px, far_px),
+            found.marker_px,
+            before.marker_px,
+            found.markers,
+            found.keypoint_px,
+            found.points,
             float(least[chosen]),
         )
 
-    def _point_distances(self, posture: Posture) -> tuple[Array, Array]:
-        """(N,) distances of the keypoints [px], and what `MISPLACED_M` is in the picture [px]."""
-        if self.points is None:
-            return np.zeros(0), np.zeros(0)
-        model, frame = self.keypoints.model, self.state.frame[:1]
-        pose = model.body.pose(Posture.stack([posture]))
-        depth = model.camera.depth(model.world(pose), frame[:, None])[0]
-        off = np.linalg.norm(model.pixels(pose, frame) - self.points.pixel, axis=-1)[0]
-        return off, MISPLACED_M * model.camera.focal_px / np.maximum(depth, 0.1)
-
-    def _misplaced_points(self, off_px: Array, far_px: Array) -> tuple[str, ...]:
-        if self.points is None:
-            return ()
-        sure = self.points.confidence[0] >= SURE
-        far = np.nan_to_num(off_px) > np.maximum(far_px, MISPLACED_PX)
-        names = (self.keypoints.model.names[index] for index in np.flatnonzero(far & sure))
-        return tuple(dict.fromkeys(names))
-
-    def _distances(self, posture: Posture) -> Array:
-        """(M,) of the centroids [px]."""
-        pose = self.model.body.pose(Posture.stack([posture]))
-        predicted = self.model.evaluate(pose, self.state.frame[:1])
-        return np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)[0]
+    def _residuals(self, posture: Posture) -> FrameResiduals:
+        frame = int(self.state.frame[0])
+        return frame_residuals(self.evidence, self.observed, self.points, posture, frame)
 
 
 def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:

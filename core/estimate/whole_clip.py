@@ -98,6 +98,7 @@ def estimate_whole_clip(
     earlier: WholeClipResult | None = None,
     match_scale: Array | None = None,
     keypoints: Keypoints | None = None,
+    lower_ankle: Array | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -115,6 +116,8 @@ def estimate_whole_clip(
         match_scale: (K,) size of each matched keyframe's error, relative to a usual difference between
             performers; 0 for posed ones, which all are by default.
         keypoints: The performer's keypoints in the F frames; None for none.
+        lower_ankle: (F,) height of the lower ankle where all keyframes are matched [m]; by their soles where
+            None.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
@@ -172,7 +175,7 @@ def estimate_whole_clip(
         matched,
         depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
-        lower_ankle_m(body, prior[index], index, tracks.frame_count) if matched.all() else None,
+        _lower_ankle(body, prior, index, lower_ankle) if matched.all() else None,
         keypoints,
         points,
         swapped,
@@ -180,6 +183,10 @@ def estimate_whole_clip(
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
     return (yield from _solve(problem, options, album, earlier, kept))
+
+
+def _lower_ankle(body: Body, prior: Posture, index: IndexArray, known: Array | None) -> Array:
+    return lower_ankle_m(body, prior[index], index, prior.batch[0]) if known is None else known
 
 
 def _swaps(

@@ -10,8 +10,13 @@ from typing import Any
 
 COMMENT_PREFIX = "//"
 _FILE = re.compile(r"\.jsonl?(, line \d+)?$", re.ASCII)
-ALTERNATIVES = (("segments_m", "height_m"), ("matrix_world", "matrix_world_frames"))
-"""Two fields of each pair say the same: the nearer one counts, whichever it is."""
+PLACED = ("height_m", "tilt_deg", "roll_deg", "distance_m")
+"""Fields that together say how a camera stands."""
+ALTERNATIVES = (
+    (("segments_m",), ("height_m",)),
+    (("matrix_world",), ("matrix_world_frames",), PLACED),
+)
+"""The groups of a row say the same: the nearer one counts, whichever it is."""
 
 
 class InheritedFields(dict[str, Any]):
@@ -32,10 +37,13 @@ class InheritedFields(dict[str, Any]):
         merged = InheritedFields()
         merged.update(self)
         merged.sources.update(self.sources)
-        for first, second in ALTERNATIVES:
-            for name, other in ((first, second), (second, first)):
-                if patch.get(name) is not None and other not in patch:
-                    merged._drop(other)
+        for groups in ALTERNATIVES:
+            for group in groups:
+                if all(patch.get(name) is None for name in group):
+                    continue
+                for other in (name for each in groups if each != group for name in each):
+                    if other not in patch:
+                        merged._drop(other)
         for name, value in patch.items():
             if name.startswith(COMMENT_PREFIX):
                 continue

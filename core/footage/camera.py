@@ -58,8 +58,9 @@ class Camera:
         """Read a camera from the fields of `take.json`.
 
         Args:
-            fields: `lens_mm`, `sensor_width_mm`, `resolution`, `matrix_world` or `matrix_world_frames`, and
-                optionally `shift_x`, `shift_y`, `distortion`.
+            fields: `lens_mm`, `sensor_width_mm`, `resolution`, one of `matrix_world`, `matrix_world_frames`
+                and `height_m` with `tilt_deg`, `roll_deg`, `distance_m`, and optionally `shift_x`, `shift_y`,
+                `distortion`.
             where: Location in the file as messages name it, for instance "take.json: camera".
 
         Raises:

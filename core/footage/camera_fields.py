@@ -8,14 +8,21 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields
+from ..files.inherited_fields import PLACED
 from ..files.json_file import shown
 from ..files.number_lists import number_array
+from .camera_placement import CameraPlacement
 
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0
 """Largest coefficient; those of real lenses are below 1."""
 FARTHEST_M = 1e6
 """Largest entry of a pose: distance from the origin along an axis, or scale."""
+FACING = "distance_m"
+"""Says where the world's origin is, which is of no use without the rest."""
+MATRICES = ("matrix_world", "matrix_world_frames")
+HEIGHTS_M = (0.01, 1000.0)
+"""A camera's height above the floor lies between these [m]."""
 SMALLEST_SCALE = 1e-4
 ROTATION_TOLERANCE = 1e-3
 """Files written by hand or in single precision have errors of about 1e-6."""
@@ -63,17 +70,42 @@ def read_distortion(fields: Fields) -> tuple[float, float, float]:
 def read_poses(fields: Fields) -> Array:
     """Read the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
 
-    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image.
+    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image. Instead
+    of a matrix a still camera may have its height, tilt and roll.
 
     Raises:
-        InputError: A matrix is absent, of the wrong shape, or not a rotation with a translation.
+        InputError: A matrix is absent, of the wrong shape, or not a rotation with a translation; a number is
+            out of range, or there are both.
     """
+    placed = [name for name in PLACED if fields.has(name) and name != FACING]
+    if placed:
+        return _read_placement(fields, placed[0])
+    if not any(fields.has(name) for name in MATRICES):
+        fields.required("matrix_world", "a 4 by 4 matrix of finite numbers; height_m and tilt_deg do as well")
     moving = fields.has("matrix_world_frames")
     poses = _read_poses(fields, "matrix_world_frames", "one 4 by 4 matrix a frame", 3) if moving else None
     if poses is not None and not fields.has("matrix_world"):
         return poses
     fixed = _read_poses(fields, "matrix_world", "a 4 by 4 matrix of finite numbers", 2)
     return fixed if poses is None else poses
+
+
+def _read_placement(fields: Fields, given: str) -> Array:
+    """Pose (4, 4) of a camera that looks along +Y at the world's origin, or stands above it."""
+    for matrix in MATRICES:
+        if fields.has(matrix):
+            raise InputError(
+                f"{fields.source_of(given)}: there are both {given} and {matrix}; give height_m, tilt_deg "
+                "and roll_deg, or a matrix"
+            )
+
+    def degrees(name: str, most: float) -> float:
+        return float(np.radians(fields.number(name, -most, most, "degrees"))) if fields.has(name) else 0.0
+
+    height_m = fields.number("height_m", *HEIGHTS_M, "m")
+    distance_m = fields.number("distance_m", 0.0, FARTHEST_M, "m") if fields.has("distance_m") else 0.0
+    placement = CameraPlacement(height_m, degrees("tilt_deg", 90.0), degrees("roll_deg", 180.0))
+    return placement.matrix((0.0, -distance_m))
 
 
 def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:

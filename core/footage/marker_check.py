@@ -11,12 +11,14 @@ from .clips.clip_samples import ClipSamples
 from .colors.color_confusion import color_confusion
 from .colors.color_model import ColorModel
 from .colors.streaming_color_learning import StreamingColorLearner
+from .ignored_regions import IgnoredPixels, IgnoredRegion, PixelBox
 from .marker_style import MarkerStyle
 from .marker_warnings import Likeness, alike_warnings, marker_warnings
 from .region_assignment import HIGHEST_FRAGMENT_COST, assign_regions
 from .region_tracks import ExpectedRegions
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
+from .still_areas import places, still_areas
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class MarkerReadout:
     classified that are the marker's; 0 if it is never detected."""
     warnings: tuple[str, ...]
     """Sentences that name the marker."""
+    still_boxes: tuple[PixelBox, ...] = ()
+    """Boxes around still areas of its color that are surely no marker, in pixels of the clip."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,10 @@ class MarkerCheck:
 
 
 def check_markers(
-    samples: ClipSamples, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+    samples: ClipSamples,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, MarkerCheck]:
     """Detect the markers in sampled frames as tracking does, but in each frame by itself.
 
@@ -66,6 +73,7 @@ def check_markers(
         samples: Frames spread over the clip.
         styles: The markers, M of them, at least one.
         expected: Expected region of each marker in every frame of the clip, (F, M); optional.
+        ignored: Regions of the picture that are never a marker.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -73,12 +81,13 @@ def check_markers(
     yield 0.0
     frames = len(samples.images)
     at_samples = None if expected is None else _at(expected, samples.indices)
-    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples)
+    pixels = IgnoredPixels(tuple(ignored), samples.size, samples.indices)
+    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples, pixels)
     colors.learn(samples.images)
     yield 0.5
     regions = []
     for done, image in enumerate(samples.images):
-        regions += find_regions([image], 0, colors.model)
+        regions += find_regions([image], 0, colors.model, ignored=[pixels.mask(done)])
         yield 0.5 + 0.5 * done / frames
     found = [
         gather_candidates(regions, color, 2.0 ** halvings(samples.size))
@@ -88,8 +97,11 @@ def check_markers(
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
     likenesses = _likenesses([style.name for style in styles], colors, found, areas)
     complaints = colors.complaints()
+    still = still_areas(samples, colors.model, colors.groups, found, pixels)
     readouts = [
-        _readout(style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker))
+        _readout(
+            style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker), still[marker]
+        )
         for marker, style in enumerate(styles)
     ]
     yield 1.0
@@ -137,7 +149,12 @@ def _likenesses(
 
 
 def _readout(
-    name: str, area: Array, size: tuple[int, int], likeness: Likeness, complaint: str | None
+    name: str,
+    area: Array,
+    size: tuple[int, int],
+    likeness: Likeness,
+    complaint: str | None,
+    still: tuple[PixelBox, ...],
 ) -> MarkerReadout:
     """A marker's readout from its area (N,) in px, 0 where it is not detected."""
     sampled, found = len(area), int(np.count_nonzero(area))
@@ -158,5 +175,8 @@ def _readout(
         area_px=typical,
         area_share=typical / (size[0] * size[1]),
         distinctness=max(own, 0.0) * (1.0 - likeness.clutter) * (1.0 - likeness.rivals),
-        warnings=marker_warnings(name, found, sampled, typical / 4.0 ** halvings(size), likeness),
+        warnings=marker_warnings(
+            name, found, sampled, typical / 4.0 ** halvings(size), likeness, places(still, size)
+        ),
+        still_boxes=still,
     )

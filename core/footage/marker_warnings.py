@@ -29,7 +29,7 @@ class Likeness(NamedTuple):
 
 
 def marker_warnings(
-    name: str, found: int, sampled: int, grid_area: float, likeness: Likeness
+    name: str, found: int, sampled: int, grid_area: float, likeness: Likeness, still: Sequence[str] = ()
 ) -> tuple[str, ...]:
     """Warnings of a marker that was detected, the gravest first.
 
@@ -39,6 +39,7 @@ def marker_warnings(
         sampled: Number of sampled frames.
         grid_area: Its median area in pixels of the measuring grid.
         likeness: Other things that look like it.
+        still: Where in the picture still areas have its color.
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
@@ -55,6 +56,11 @@ def marker_warnings(
         sentences.append(
             f"{_percent(likeness.clutter)} of the pixels with the color of {name} are something else in the "
             "picture"
+        )
+    if still:
+        sentences.append(
+            f"the color of {name} also stays still {' and '.join(still)} of the picture, which is surely no "
+            "marker"
         )
     if sampled >= ENOUGH and found < FEW * sampled:
         sentences.append(

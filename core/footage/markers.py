@@ -10,6 +10,7 @@ from .association import gather_candidates, viterbi_path
 from .clips.clip import Clip
 from .colors.streaming_color_learning import StreamingColorLearner
 from .detections import Detections
+from .ignored_regions import IgnoredPixels, IgnoredRegion
 from .marker_style import MarkerStyle, color_groups
 from .region_assignment import assign_regions
 from .region_fragments import region_quality
@@ -25,7 +26,10 @@ BATCH_SIZE = 4
 
 
 def track_markers(
-    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+    clip: Clip,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, RegionTracks]:
     """Track the markers through a clip.
 
@@ -36,6 +40,7 @@ def track_markers(
         clip: The footage.
         styles: The markers, M of them, in the order of the result.
         expected: Expected region of each marker, (F, M); optional.
+        ignored: Regions of the picture that are never a marker.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -47,24 +52,34 @@ def track_markers(
         InputError: A marker's color matches nothing in the clip, or a frame cannot be read.
     """
     yield 0.0
-    seen = yield from detect_markers(clip, styles, expected)
+    seen = yield from detect_markers(clip, styles, expected, ignored)
     yield 1.0
     return assign_detections(seen, styles, expected)
 
 
 def detect_markers(
-    clip: Clip, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
+    clip: Clip,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, Detections]:
     """Detect all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
-    colors = StreamingColorLearner(clip.path, clip.size, styles, expected)
-    regions, time_s = yield from _detect_regions(clip, colors)
+    pixels = IgnoredPixels(tuple(ignored), clip.size)
+    colors = StreamingColorLearner(clip.path, clip.size, styles, expected, pixels)
+    regions, time_s = yield from _detect_regions(clip, colors, pixels)
     colors.check_found()
     return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
 
 
-def still_valid(seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None) -> bool:
+def still_valid(
+    seen: Detections,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> bool:
     """Whether other expected regions would give exactly the same detections."""
-    colors = StreamingColorLearner(Path(), seen.size, styles, expected)
+    pixels = IgnoredPixels(tuple(ignored), seen.size)
+    colors = StreamingColorLearner(Path(), seen.size, styles, expected, pixels)
     return colors.learn_again(seen)
 
 
@@ -76,7 +91,7 @@ def assign_detections(
 
 
 def _detect_regions(
-    clip: Clip, colors: StreamingColorLearner
+    clip: Clip, colors: StreamingColorLearner, ignored: IgnoredPixels
 ) -> Generator[float, None, tuple[list[Regions], Array]]:
     """Detect the regions of every frame; return them and the frames' times.
 
@@ -94,31 +109,43 @@ def _detect_regions(
             waiting.append(measuring_image(image, times))
         else:
             if index == longest:
-                yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
+                yield from _regions_of_stretch(waiting, colors, ignored, regions, clip.frame_count)
             waiting.append(image)
             colors.watch(index, image)
             if len(waiting) == BATCH_SIZE:
-                regions += find_regions(waiting, times, colors.model, regions[-1])
+                masks = _masks(ignored, len(regions), len(waiting))
+                regions += find_regions(waiting, times, colors.model, regions[-1], masks)
                 waiting.clear()
         yield min((len(time_s) + len(regions)) / (2.0 * clip.frame_count), 1.0)
     if len(time_s) <= longest:
-        yield from _regions_of_stretch(waiting, colors, regions, clip.frame_count)
+        yield from _regions_of_stretch(waiting, colors, ignored, regions, clip.frame_count)
     elif waiting:
-        regions += find_regions(waiting, times, colors.model, regions[-1])
+        masks = _masks(ignored, len(regions), len(waiting))
+        regions += find_regions(waiting, times, colors.model, regions[-1], masks)
     return regions, np.array(time_s)
 
 
 def _regions_of_stretch(
-    waiting: list[Image], colors: StreamingColorLearner, regions: list[Regions], frame_count: int
+    waiting: list[Image],
+    colors: StreamingColorLearner,
+    ignored: IgnoredPixels,
+    regions: list[Regions],
+    frame_count: int,
 ) -> Generator[float, None, None]:
     """Learn the colors from buffered images on the measuring grid; append their regions, empty the buffer."""
     colors.learn(waiting)
     stretch = len(waiting)
     while waiting:
         before = regions[-1] if regions else NO_REGIONS
-        regions += find_regions(waiting[:BATCH_SIZE], 0, colors.model, before)
+        batch = waiting[:BATCH_SIZE]
+        regions += find_regions(batch, 0, colors.model, before, _masks(ignored, len(regions), len(batch)))
         del waiting[:BATCH_SIZE]
         yield min((stretch + len(regions)) / (2.0 * frame_count), 1.0)
+
+
+def _masks(ignored: IgnoredPixels, first: int, count: int) -> list[Image | None]:
+    """Masks of the ignored pixels of some successive frames; empty where none are ignored anywhere."""
+    return [ignored.mask(first + number) for number in range(count)] if ignored.regions else []
 
 
 def _tracks(

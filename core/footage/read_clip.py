@@ -10,6 +10,7 @@ from .clips.album import Album
 from .clips.clip import Clip
 from .clips.frame_checks import FrameChecks
 from .clips.watched_clip import watch_clip
+from .ignored_regions import IgnoredRegion
 from .marker_style import MarkerStyle
 from .markers import assign_detections, detect_markers, still_valid
 from .reading import Reading
@@ -23,6 +24,7 @@ def read_clip(
     expected: ExpectedRegions | None = None,
     with_album: bool = True,
     kept: Reading | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, Reading]:
     """Track the markers through a clip, check its frames and keep a small picture of each.
 
@@ -34,6 +36,7 @@ def read_clip(
         kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
             if only the expected regions differ and the colors would be learned alike, its detections are
             assigned to the markers anew.
+        ignored: Regions of the picture that are never a marker.
 
     Yields:
         The fraction done, from 0 to 1.
@@ -45,20 +48,21 @@ def read_clip(
         InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
     """
     yield 0.0
-    key = reading_key(clip.path, clip.fps, styles, expected)
+    key = reading_key(clip.path, clip.fps, styles, expected, ignored)
     if kept is not None and (kept.album is not None or not with_album):
         kept = kept if with_album else replace(kept, album=None)
         if kept.key == key:
             return kept
         seen = kept.detections
-        if seen is not None and of_same_footage(kept.key, key) and still_valid(seen, styles, expected):
+        same = seen is not None and of_same_footage(kept.key, key)
+        if seen is not None and same and still_valid(seen, styles, expected, ignored):
             return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
     album, checks = Album() if with_album else None, FrameChecks()
     if not styles:
         tracks = yield from _watch(watch_clip(clip, checks, album))
         return Reading(tracks, album, key=key, frame_findings=checks.findings())
     try:
-        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected)
+        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected, ignored)
     except InputError as error:
         why = checks.nothing_seen()
         if why is not None:

@@ -1,4 +1,4 @@
-"""Cache key of a reading: a digest of the clip, the markers and their expected regions."""
+"""Cache key of a reading: a digest of the clip, the markers, their expected regions and what is ignored."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,6 +6,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..files.digest import digest, file_fingerprint
 from .clips.image_sequence import find_images
+from .ignored_regions import IgnoredRegion
 from .marker_style import MarkerStyle
 from .region_tracks import ExpectedRegions
 
@@ -21,6 +22,7 @@ def reading_key(
     fps: float,
     styles: Sequence[MarkerStyle],
     expected: ExpectedRegions | None,
+    ignored: Sequence[IgnoredRegion] = (),
 ) -> str:
     """Cache key that changes with everything a reading depends on.
 
@@ -29,6 +31,7 @@ def reading_key(
         fps: Frames per second of an image sequence.
         styles: The markers.
         expected: Their expected regions.
+        ignored: Regions of the picture that are never a marker.
 
     Raises:
         InputError: The clip is missing or cannot be read.
@@ -39,7 +42,8 @@ def reading_key(
         raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
     regions = None if expected is None else (expected.center, expected.radius)
-    return f"{PREFIX}-{digest(FORMAT, footage, wanted)}-{digest(regions)}"
+    left_out = [(one.box, one.stroke, one.radius_px, one.frames) for one in ignored] if wanted else []
+    return f"{PREFIX}-{digest(FORMAT, footage, wanted, *left_out)}-{digest(regions)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:

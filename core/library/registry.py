@@ -12,7 +12,8 @@ from ..files.json_file import read_json, shown
 from ..files.json_folder import ENDING, is_other_format, is_path, json_files
 from .library import Library
 from .library_file import LARGEST_BYTES, SCHEMA, library_from_json, read_library
-from .texts import EVERY_LIBRARY, checked_identifier
+from .several_libraries import EVERY_LIBRARY
+from .texts import checked_identifier
 
 SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
 """The libraries that come with Keymark."""
@@ -96,11 +97,14 @@ def find_libraries(name_or_path: str | Path, folders: Sequence[Path]) -> tuple[L
     """Find the library of an identifier, title or path; every valid one, by title, for `EVERY_LIBRARY`.
 
     Raises:
-        InputError: One is named and there is no such library, or it is invalid.
+        InputError: There is no such library, or none at all, or it is invalid.
     """
     if name_or_path != EVERY_LIBRARY:
         return (find_library(name_or_path, folders),)
-    return tuple(entry.library for entry in registered_libraries(folders) if entry.library is not None)
+    found = tuple(entry.library for entry in registered_libraries(folders) if entry.library is not None)
+    if not found:
+        raise InputError("there is no keyframe library; import one, or install Keymark as a whole")
+    return found
 
 
 def library_path(folder: Path, identifier: str) -> Path:

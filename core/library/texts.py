@@ -8,16 +8,15 @@ from functools import lru_cache
 from ..errors import InputError
 from ..files.control_characters import is_control_character
 from ..files.json_file import shown
+from .several_libraries import COMPOSED, EVERY_LIBRARY
 
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60
 """Characters of a name at most; the name of a Blender data-block holds 63 bytes."""
-EVERY_LIBRARY = "auto"
-"""Stands for all libraries where one is named; hence no valid identifier."""
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
     "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "
-    f"devices and not '{EVERY_LIBRARY}', which stands for all libraries"
+    f"devices and not '{EVERY_LIBRARY}' or '{COMPOSED}', which stand for several libraries"
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
@@ -30,7 +29,7 @@ def is_identifier(text: object) -> bool:
     return (
         isinstance(text, str)
         and len(text) <= LONGEST_IDENTIFIER
-        and text != EVERY_LIBRARY
+        and text not in (EVERY_LIBRARY, COMPOSED)
         and _IDENTIFIER.fullmatch(text) is not None
         and _DEVICES.fullmatch(text) is None
         and _FILE.fullmatch(text) is None

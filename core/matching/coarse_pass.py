@@ -1,6 +1,4 @@
-"""Coarse pass over a few frames: the floor's height, and how well a library's single postures fit."""
-
-from dataclasses import dataclass, replace
+"""Coarse pass over a few frames: the floor's height and a library's fit by single postures, in no order."""
 
 import numpy as np
 
@@ -9,7 +7,6 @@ from ..footage.camera import Camera
 from .emissions import FrameEmissions, StateFeatures, evaluate_emissions
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .match_evidence import MatchEvidence
-from .noise_scales import NoiseScales, student_scales
 
 FLOOR_STD_M = 0.05
 """Standard deviation of the hips' height between performers."""
@@ -22,21 +19,10 @@ MOST_FRAMES = 15
 UNKNOWN_FLOOR_STD_M = 2.0
 
 
-@dataclass(frozen=True)
-class CoarsePass:
-    """Result of the coarse pass."""
-
-    floor_m: float
-    """Height of the floor, by the sizes in the picture and the feet; 0 where that is about right."""
-    cost: float
-    """Mean negative log likelihood of a frame's best posture, with the noise scales that these frames
-    suggest; an order in time hardly lowers it."""
-
-
-def coarse_pass(
+def floor_height_m(
     camera: Camera, evidence: MatchEvidence, frames: IndexArray, states: StateFeatures
-) -> CoarsePass:
-    """Fit single postures to some frames without knowing the floor.
+) -> float:
+    """Height of the floor, by the sizes in the picture and the feet; 0 where that is about right.
 
     Args:
         camera: The camera.
@@ -44,27 +30,44 @@ def coarse_pass(
         frames: Frames to choose from.
         states: The library's postures in all headings.
     """
-    chosen = frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
+    chosen = _few(frames)
     likelihoods = frame_likelihoods(camera, evidence, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
     emissions = [evaluate_emissions(likelihood, states) for likelihood in likelihoods]
-    floor = _floor_height_m(likelihoods, emissions, states)
-    if abs(floor) > WORLD_FLOOR_M:
-        on_ground = frame_likelihoods(camera, evidence, chosen, 0.0, FLOOR_STD_M)
-        ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
-        if _mean_cost(ground_emissions) - _mean_cost(emissions) < FLOOR_COST_MARGIN:
-            floor = 0.0
-    else:
-        floor = 0.0
-    noise_scales = _noise_scales(evidence, likelihoods, emissions, states)
-    refined = frame_likelihoods(camera, evidence, chosen, floor, FLOOR_STD_M, noise_scales)
-    return CoarsePass(floor, _mean_cost([evaluate_emissions(likelihood, states) for likelihood in refined]))
+    floor_m = _median_height_m(likelihoods, emissions, states)
+    if abs(floor_m) <= WORLD_FLOOR_M:
+        return 0.0
+    on_ground = frame_likelihoods(camera, evidence, chosen, 0.0, FLOOR_STD_M)
+    ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
+    added = _mean_cost(ground_emissions) - _mean_cost(emissions)
+    return 0.0 if added < FLOOR_COST_MARGIN else floor_m
+
+
+def single_posture_cost(
+    camera: Camera, evidence: MatchEvidence, frames: IndexArray, states: StateFeatures, floor_m: float
+) -> float:
+    """Mean negative log likelihood of a frame's best posture, by which libraries are compared.
+
+    Args:
+        camera: The camera.
+        evidence: The markers' regions and the keypoints.
+        frames: Frames to choose from.
+        states: The library's postures in all headings.
+        floor_m: Height of the floor [m].
+    """
+    likelihoods = frame_likelihoods(camera, evidence, _few(frames), floor_m, FLOOR_STD_M)
+    return _mean_cost([evaluate_emissions(likelihood, states) for likelihood in likelihoods])
+
+
+def _few(frames: IndexArray) -> IndexArray:
+    """Evenly chosen ones of some frames."""
+    return frames[np.unique(np.linspace(0, len(frames) - 1, MOST_FRAMES).astype(int))]
 
 
 def _mean_cost(emissions: list[FrameEmissions]) -> float:
     return float(np.mean([emission.cost.min() for emission in emissions]))
 
 
-def _floor_height_m(
+def _median_height_m(
     likelihoods: list[FrameLikelihood], emissions: list[FrameEmissions], states: StateFeatures
 ) -> float:
     """Median of the floor's height over the frames [m], each weighed by its number of visible points."""
@@ -78,26 +81,3 @@ def _floor_height_m(
     order = np.argsort(heights)
     half = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
     return float(heights[order[min(half, len(order) - 1)]])
-
-
-def _noise_scales(
-    evidence: MatchEvidence,
-    likelihoods: list[FrameLikelihood],
-    emissions: list[FrameEmissions],
-    states: StateFeatures,
-) -> NoiseScales:
-    """Scales of the centroids' noise, from the residuals of each frame's best posture."""
-    residuals = []
-    for likelihood, emission in zip(likelihoods, emissions, strict=True):
-        best = int(emission.cost.argmin())
-        centroid = states.vectors[:-2, emission.states[best]].reshape(-1, 3)
-        residual = np.einsum(
-            "mki,mi->mk", likelihood.image_axes, centroid + emission.hips[:, best] - likelihood.location
-        )
-        residuals.append(residual * likelihood.weight[:, None])
-    return replace(
-        NoiseScales.of(evidence),
-        centroid=student_scales(
-            np.array(residuals), np.array([likelihood.visible for likelihood in likelihoods]), 1.0
-        ),
-    )

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from .frame_likelihood import FrameLikelihood, square_root
 from .marker_moments import MarkerMoments
-from .noise_scales import DEGREES_OF_FREEDOM
+from .noise_scales import student_cost
 
 PRUNING_COST = 15.0
 """States whose cost exceeds the frame's least by more are pruned, whatever precedes them."""
@@ -89,12 +89,12 @@ def evaluate_emissions(
     first = np.arange(features.vectors.shape[1])
     if len(likelihood.visible) > len(likelihood.unclipped):  # with keypoints, too many for all variants
         plain = _variant_costs(likelihood, features.vectors, posed_cost, slice(0, 1))[0]
-        first = _prune(plain, PRUNING_COST + EXTENT_COST + VARIANT_COST, 4 * MOST_STATES)
+        first = lowest(plain, 4 * MOST_STATES, PRUNING_COST + EXTENT_COST + VARIANT_COST)
         posed_cost = None if posed_cost is None else posed_cost[first]
     vectors = features.vectors if len(first) == features.vectors.shape[1] else features.vectors[:, first]
     variant_cost = _variant_costs(likelihood, vectors, posed_cost, slice(None))
     cost = variant_cost.min(axis=0)
-    kept = _prune(cost, PRUNING_COST + EXTENT_COST, 2 * MOST_STATES)
+    kept = lowest(cost, 2 * MOST_STATES, PRUNING_COST + EXTENT_COST)
     cost, variant = cost[kept], variant_cost[:, kept].argmin(axis=0)
     states, vectors = first[kept], vectors[:, kept]
     hips = np.empty((3, len(states)), dtype=np.float32)
@@ -106,12 +106,12 @@ def evaluate_emissions(
     for marker in np.flatnonzero(likelihood.unclipped):
         centroid = vectors[3 * marker : 3 * marker + 3]
         depth = np.maximum(hips_depth - backward @ centroid, np.float32(0.1))
-        cost += _student_cost(
+        cost += student_cost(
             _extent_error(likelihood, features.second_moment[marker][:, states], marker, depth), 3
         )
     if likelihood.visible.any():  # else the hips' place is unknown
         cost[hips_depth < 0.3] += np.float32(1e3)
-    kept = _prune(cost, PRUNING_COST, MOST_STATES)
+    kept = lowest(cost, MOST_STATES, PRUNING_COST)
     ground = hips[:, kept]
     ground[2] -= vectors[-2, kept]
     return FrameEmissions(states[kept], cost[kept], hips[:, kept], ground, np.zeros(len(kept), dtype=bool))
@@ -125,7 +125,7 @@ def with_exchanged(plain: FrameEmissions, exchanged: FrameEmissions) -> FrameEmi
     order = np.lexsort((cost, states))
     _, first = np.unique(states[order], return_index=True)
     best = order[first]
-    best = best[_prune(cost[best], PRUNING_COST, MOST_STATES)]
+    best = best[lowest(cost[best], MOST_STATES, PRUNING_COST)]
     hips = np.concatenate([plain.hips, exchanged.hips], axis=1)
     ground = np.concatenate([plain.ground, exchanged.ground], axis=1)
     return FrameEmissions(states[best], cost[best], hips[:, best], ground[:, best], best >= count)
@@ -145,18 +145,18 @@ def _variant_costs(
     residual = likelihood.residual_map[variants].astype(np.float32) @ vectors  # (V, 2 A + G + 4, S)
     residual *= residual
     share = np.float32(likelihood.share)
-    cost = _student_cost(residual[:, -1], 1) + np.float32(likelihood.normalization)
+    cost = student_cost(residual[:, -1], 1) + np.float32(likelihood.normalization)
     for point in np.flatnonzero(likelihood.visible):
-        cost += share * _student_cost(residual[:, 2 * point] + residual[:, 2 * point + 1], 2)
+        cost += share * student_cost(residual[:, 2 * point] + residual[:, 2 * point + 1], 2)
     for guess in np.flatnonzero(likelihood.depth_weight):
-        cost += share * _student_cost(residual[:, 2 * len(likelihood.visible) + guess], 1)
+        cost += share * student_cost(residual[:, 2 * len(likelihood.visible) + guess], 1)
     if posed_cost is not None:
-        cost += _student_cost(residual[:, -4:-1].sum(axis=1), 3) + posed_cost
+        cost += student_cost(residual[:, -4:-1].sum(axis=1), 3) + posed_cost
     return cost
 
 
-def _prune(cost: SingleArray, margin: float, count: int) -> IndexArray:
-    """Indices of the costs within a margin of the least, at most `count` of them."""
+def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
+    """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
     kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))
     if len(kept) > count:
         kept = np.sort(kept[np.argpartition(cost[kept], count)[:count]])
@@ -191,8 +191,3 @@ def _products(u: Array, v: Array) -> list[float]:
         u[0] * v[2] + u[2] * v[0],
         u[1] * v[2] + u[2] * v[1],
     ]
-
-
-def _student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
-    factor = np.float32(0.5 * (DEGREES_OF_FREEDOM + dimensions))
-    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))

@@ -82,8 +82,8 @@ class HiddenMarkovModel:
             [emission.states[row] for emission, row in zip(self.emissions, last[::-1], strict=True)]
         )
 
-    def forward_backward(self) -> Generator[None, None, tuple[list[SingleArray], float]]:
-        """Posterior probability (K,) of each frame's states, and the log evidence of all frames."""
+    def forward_backward(self) -> Generator[None, None, list[SingleArray]]:
+        """Posterior probability (K,) of each frame's states."""
         steps = self._steps
         forward = [self._log_likelihood(0) - np.float32(np.log(self._count))]
         for index, transitions, jump in steps:
@@ -94,7 +94,6 @@ class HiddenMarkovModel:
                 through = forward[-1][transition.origin] + transition.weight
                 total[transition.target] = np.logaddexp(total[transition.target], through)
             forward.append(total + self._log_likelihood(index))
-        evidence = _log_sum_exp(forward[-1])
         backward = np.zeros(len(forward[-1]), dtype=np.float32)
         posteriors = [_normalized(forward[-1])]
         for index, transitions, jump in reversed(steps):
@@ -106,7 +105,7 @@ class HiddenMarkovModel:
                 through = ahead[transition.target] + transition.weight
                 backward[transition.origin] = np.logaddexp(backward[transition.origin], through)
             posteriors.append(_normalized(forward[index - 1] + backward))
-        return posteriors[::-1], evidence
+        return posteriors[::-1]
 
     def _headings_of(self, index: int) -> IndexArray:
         """(K,) index of the heading of each of a frame's states."""
@@ -157,8 +156,3 @@ class HiddenMarkovModel:
 def _normalized(log_probability: SingleArray) -> SingleArray:
     share = np.exp(log_probability - log_probability.max())
     return np.asarray(share / share.sum())
-
-
-def _log_sum_exp(values: SingleArray) -> float:
-    largest = float(values.max())
-    return largest + float(np.log(np.exp(values - largest, dtype=np.float64).sum()))

@@ -1,28 +1,25 @@
 """Match of one library with a clip: posture, heading, place and confidence of every frame."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..library.library import Library
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
 from .candidates import MatchedFrame, frame_candidates
-from .coarse_pass import FLOOR_STD_M, CoarsePass, coarse_pass
+from .coarse_pass import FLOOR_STD_M, floor_height_m
 from .emissions import FrameEmissions, StateFeatures, evaluate_emissions, state_features, with_exchanged
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .hidden_markov_model import HiddenMarkovModel
 from .marker_moments import MarkerMoments, marker_moments
-from .match_evidence import MatchEvidence
+from .match_input import MatchInput
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales
-from .posed_constraints import PosedConstraints
 from .posture_sequences import PostureSequences, library_sequences
 from .refinement import ContinuousPath, Refinement
 from .sequence_table import SequenceTable
@@ -34,19 +31,6 @@ SAMPLES_PER_S = 15.0
 """Rate at which a clip is sampled: between samples this near a motion's posture is well known."""
 CORRELATION_S = 0.25
 """Time over which a performer's difference from the library stays the same: frames nearer count less each."""
-
-
-@dataclass(frozen=True, eq=False)
-class MatchInput:
-    """Everything of a take that a match needs."""
-
-    body: Body
-    camera: Camera
-    evidence: MatchEvidence
-    keyframes: IndexArray
-    """(K,) frames whose posture is asked for."""
-    constraints: PosedConstraints
-    """Of the posed keyframes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,66 +46,54 @@ class LibraryMatch:
     """Height of the floor that the performer stands on."""
     postures: Posture
     """(F,) the match's posture in every frame of the clip."""
-    log_evidence: float
-    """Log evidence of an independent frame, up to a constant of the footage."""
 
 
 @dataclass(frozen=True, eq=False)
 class PreparedLibrary:
-    """A library on the performer's body, after the coarse pass."""
+    """A library on the performer's body."""
 
     library: Library
     sequences: PostureSequences
     moments: MarkerMoments
     states: StateFeatures
-    sampled: IndexArray
-    """(T,) the sampled frames."""
-    coarse_pass: CoarsePass
 
 
 def prepare_library(match_input: MatchInput, library: Library) -> PreparedLibrary:
-    """Put a library on the performer's body and do the coarse pass."""
+    """Put a library on the performer's body."""
     sequences = library_sequences(library, match_input.body)
     moments = marker_moments(match_input.body, match_input.evidence, sequences.posture)
-    states = state_features(moments, HEADINGS)
-    return PreparedLibrary(library, sequences, moments, states, *_coarse_pass(match_input, states))
+    return PreparedLibrary(library, sequences, moments, state_features(moments, HEADINGS))
 
 
-def repeat_coarse_pass(match_input: MatchInput, prepared: PreparedLibrary) -> PreparedLibrary:
-    """The library on the same body, after a coarse pass over other regions of the same markers."""
-    sampled, first = _coarse_pass(match_input, prepared.states)
-    return replace(prepared, sampled=sampled, coarse_pass=first)
-
-
-def _coarse_pass(match_input: MatchInput, states: StateFeatures) -> tuple[IndexArray, CoarsePass]:
-    always = np.concatenate([match_input.keyframes, match_input.constraints.frames])
-    sampled = sampled_frames(match_input.evidence.tracks, always)
-    return sampled, coarse_pass(match_input.camera, match_input.evidence, sampled, states)
-
-
-def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: float) -> Part[LibraryMatch]:
+def match_library(
+    match_input: MatchInput, prepared: PreparedLibrary, floor_m: float | None
+) -> Part[LibraryMatch]:
     """Find a library's postures in footage.
 
     Args:
-        match_input: The take.
+        match_input: The take; posed keyframes tell the height of the floor where it is not known.
         prepared: The library, see `prepare_library`.
-        floor_m: Height of the floor.
+        floor_m: Height of the floor [m]; None where it is not known.
 
     Yields:
         The fraction done.
     """
-    tracks, sampled = match_input.evidence.tracks, prepared.sampled
-    tempering = min(1.0, float(np.median(np.diff(tracks.time_s[sampled]))) / CORRELATION_S)
+    evidence, tracks, posed = match_input.evidence, match_input.evidence.tracks, match_input.constraints
+    sampled = sampled_frames(tracks, np.concatenate([match_input.keyframes, posed.frames]))
+    if floor_m is None:
+        floor_m = posed.floor_m()
+    if floor_m is None:
+        floor_m = floor_height_m(match_input.camera, evidence, sampled, prepared.states)
+    weight = tempering(tracks.time_s[sampled])
     table = SequenceTable(prepared.sequences, prepared.moments)
-    unit = NoiseScales.of(match_input.evidence)
-    first = yield from _solve(match_input, prepared, table, floor_m, tempering, unit, 0.0)
+    unit = NoiseScales.of(evidence)
+    first = yield from _solve(match_input, prepared, table, sampled, floor_m, weight, unit, 0.0)
     noise_scales = first.refinement.noise_scales(first.refined)
-    second = yield from _solve(match_input, prepared, table, floor_m, tempering, noise_scales, 0.45)
-    posteriors, evidence = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
+    second = yield from _solve(match_input, prepared, table, sampled, floor_m, weight, noise_scales, 0.45)
+    posteriors = yield from scaled(second.model.forward_backward(), 0.9, 1.0)
     refined = second.refined
     postures = _every_frame(table, refined, sampled, tracks.frame_count)
     explained = _explained_share(second.refinement, refined, noise_scales)
-    log_evidence = evidence / (len(sampled) * tempering)
     nearest = table.nearest(refined.sequence, refined.values[:, 0])
     frames = []
     for row in map(int, np.searchsorted(sampled, match_input.keyframes)):
@@ -131,7 +103,7 @@ def match_library(match_input: MatchInput, prepared: PreparedLibrary, floor_m: f
         )
         frames.append(chosen)
     fit = float(explained.mean())
-    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures, log_evidence)
+    return LibraryMatch(prepared.library, tuple(frames), fit, floor_m, postures)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,13 +120,14 @@ def _solve(
     match_input: MatchInput,
     prepared: PreparedLibrary,
     table: SequenceTable,
+    sampled: IndexArray,
     floor_m: float,
-    tempering: float,
+    weight: float,
     noise_scales: NoiseScales,
     begun: float,
 ) -> Part[_Solution]:
     """Find and refine the most probable path, given the noise scales; 0.45 of the work."""
-    evidence, sampled, states = match_input.evidence, prepared.sampled, prepared.states
+    evidence, states = match_input.evidence, prepared.states
     time_s, posed = evidence.tracks.time_s[sampled], match_input.constraints
     hypotheses = list(
         zip(
@@ -170,9 +143,9 @@ def _solve(
     likelihoods = [hypothesis[0] for hypothesis in hypotheses]
     costs = [posed.cost(int(frame), prepared.moments.points, states.heading_rad) for frame in sampled]
     # Frames are tempered, as neighbors say much the same; a posed keyframe says its own once.
-    posed_costs = [None if cost is None else cost / np.float32(tempering) for cost in costs]
+    posed_costs = [None if cost is None else cost / np.float32(weight) for cost in costs]
     emissions = yield from scaled(_evaluate_all(hypotheses, states, posed_costs), begun, begun + 0.2)
-    model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, tempering, time_s)
+    model = HiddenMarkovModel(prepared.sequences, states, likelihoods, emissions, weight, time_s)
     yield from scaled(model.add_transitions(), begun + 0.2, begun + 0.3)
     best = yield from scaled(model.viterbi(), begun + 0.3, begun + 0.35)
     likelihoods = [
@@ -181,7 +154,7 @@ def _solve(
     ]
     path = StatePath(prepared.sequences, states, likelihoods, emissions, best, time_s)
     rows = np.searchsorted(sampled, posed.frames)
-    refinement = Refinement(table, likelihoods, time_s, tempering, floor_m, FLOOR_STD_M, posed, rows)
+    refinement = Refinement(table, likelihoods, time_s, weight, floor_m, FLOOR_STD_M, posed, rows)
     refined = yield from scaled(refinement.refine(path.continuous()), begun + 0.35, begun + 0.45)
     return _Solution(model, path, refinement, refined)
 
@@ -199,6 +172,11 @@ def _evaluate_all(
         if index % FRAMES_A_YIELD == 0:
             yield index / len(hypotheses)
     return emissions
+
+
+def tempering(time_s: Array) -> float:
+    """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
+    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def sampled_frames(tracks: RegionTracks, keyframes: Sequence[int] | IndexArray) -> IndexArray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, SingleArray
 from .match_evidence import MatchEvidence
 
 DEGREES_OF_FREEDOM = 4.0
@@ -34,6 +34,12 @@ class NoiseScales:
         """Scales of 1, for a performer of whom nothing is known yet."""
         markers, keypoints = evidence.marker_count, len(evidence.points)
         return cls(np.ones(markers + keypoints), np.ones(markers), np.ones(markers), np.ones(keypoints))
+
+
+def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
+    """Negative log likelihood under Student's t of squared distances, up to a constant."""
+    factor = np.float32(0.5 * (DEGREES_OF_FREEDOM + dimensions))
+    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
 
 
 def student_scales(residual: Array, visible: BoolArray, tempering: float) -> Array:

@@ -1,4 +1,4 @@
-"""Gaussian prior of one frame's posture, for assisted posing: from keyframes, a rough pose, or standing."""
+"""Gaussian prior of one frame's posture, for assisted posing: from keyframes or a rough pose."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..body.heading import yawed_in_place
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..observation.depths import DEPTH_STD_M
@@ -36,10 +35,6 @@ VELOCITY_SHARE = 0.5
 """Share of the velocity between the last two keyframes with which the hips are extrapolated."""
 ROUGH_POSE_SHARE = 0.5
 """Standard deviation of a pose roughly set by the animator, as a share of `UNRELATED_STD`."""
-UNKNOWN_HEADING_RAD = 1.2
-UNKNOWN_PLACE_M = 0.3
-UNKNOWN_DEPTHS_M = 0.6
-HEADINGS_RAD = np.radians([0.0, 60.0, -60.0, 180.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +56,7 @@ class FramePrior:
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
     """(D,) standard deviation [m, rad] of the difference between postures a time apart."""
     share = 1.0 - np.exp(-abs(time_s) / CORRELATION_TIME_S)
-    std = share * _unrelated_std(skeleton)
+    std = share * unrelated_std(skeleton)
     std[:3] = np.maximum(std[:3], SPEED_M_PER_S * abs(time_s))
     return np.maximum(std, 1e-3)
 
@@ -105,24 +100,11 @@ def _extrapolated(keyframes: Sequence[Keyframe], index: int) -> Posture:
 
 def prior_from_pose(posture: Posture) -> FramePrior:
     """Prior from a pose that the animator has set roughly for the frame."""
-    return FramePrior(posture, ROUGH_POSE_SHARE * _unrelated_std(posture.skeleton), Posture.stack([posture]))
+    return FramePrior(posture, ROUGH_POSE_SHARE * unrelated_std(posture.skeleton), Posture.stack([posture]))
 
 
-def prior_from_standing(posture: Posture, depth_std_m: float = UNKNOWN_DEPTHS_M) -> FramePrior:
-    """Prior from nothing but the performer's rough place: any posture and heading is possible.
-
-    Args:
-        posture: A body that stands there.
-        depth_std_m: Standard deviation of the points' depths [m]; less where the place was measured.
-    """
-    std = _unrelated_std(posture.skeleton)
-    std[:3] = UNKNOWN_PLACE_M
-    std[5] = UNKNOWN_HEADING_RAD  # about the body's own vertical
-    around = yawed_in_place(posture, HEADINGS_RAD)
-    return FramePrior(posture, std, around, depth_std_m, grounded=around[:1])
-
-
-def _unrelated_std(skeleton: Skeleton) -> Array:
+def unrelated_std(skeleton: Skeleton) -> Array:
+    """(D,) standard deviation [m, rad] between postures of one person at two unrelated moments."""
     return np.array(
         [
             UNRELATED_STD["pelvis.location" if ".location" in name else name.split(".")[0]]

@@ -1,22 +1,36 @@
-"""Keyframes: frames with a given posture, posed by a person or matched with a library."""
+"""Keyframes: frames with a given posture, posed by a person or found in the footage."""
 
 from dataclasses import dataclass
 
 from ..body.posture import Posture
+from ..library.several_libraries import COMPOSED
+
+DOUBTFUL = 0.5
+"""Confidence below which a found keyframe is doubtful: more likely wrong than about right."""
 
 
 @dataclass(frozen=True)
 class Matched:
-    """Origin of a matched keyframe: the library's posture."""
+    """Origin of a found keyframe: the posture of a library that it resembles."""
 
     library: str
-    """The library's identifier."""
+    """Identifier of the library that was matched, or `COMPOSED` where parts of several are put together."""
     posture: str
     """Name of the nearest posture of the library."""
     mirrored: bool
     """Whether left and right are exchanged."""
     confidence: float
     """Probability that it is about right, 0 to 1."""
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the keyframe is worth a check."""
+        return self.confidence < DOUBTFUL
+
+    @property
+    def is_composed(self) -> bool:
+        """Whether parts of several libraries were put together, for this performer in this footage."""
+        return self.library == COMPOSED
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,4 +44,4 @@ class Keyframe:
     residual_m: float = 0.0
     """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
     matched: Matched | None = None
-    """The posture it was matched with; None for a keyframe that a person has posed or corrected."""
+    """What was found; None for a keyframe that a person has posed or corrected."""

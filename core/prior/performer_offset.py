@@ -4,7 +4,7 @@ A library's postures are another performer's. At a posed keyframe the difference
 of it is the performer's style, which is constant over the clip, and the rest decays with time. The sum is a
 Gaussian process over time, the same for every degree of freedom, and the matched keyframes are moved by its
 posterior mean given the posed ones (Rasmussen & Williams 2006, *Gaussian Processes for Machine Learning*,
-eq. 2.23).
+eq. 2.23). Postures that were composed for this performer in this footage stay where they are.
 """
 
 from dataclasses import replace
@@ -29,7 +29,7 @@ BEYOND_S = 0.1
 
 
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
-    """Move the matched keyframes by the performer's offset, learned at the posed ones.
+    """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
 
     Args:
         keyframes: Posed and matched ones, in order of frame.
@@ -40,18 +40,20 @@ def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyf
         nothing was posed, less near posed keyframes, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
-    matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    matched = [key for key in found if key.matched is not None and not key.matched.is_composed]
     doubt = np.array([0.0 if keyframe.matched is None else 1.0 for keyframe in keyframes])
-    if not posed or not matched:
+    if not posed or not found:
         return keyframes, doubt
-    difference, beyond_s = _differences(posed, matched, fps)
-    at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, matched))
+    difference, beyond_s = _differences(posed, matched or found, fps)
+    at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, found))
     known = _known(at, beyond_s)
     across = _covariance(at, wanted)
-    share = np.linalg.solve(known, across).T  # (matched, posed)
+    share = np.linalg.solve(known, across).T  # (found, posed)
     doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), LEAST_VARIANCE))
-    changed = Posture.stack([k.posture for k in matched]).plus(share @ difference)
-    both = [*posed, *(replace(k, posture=changed[row]) for row, k in enumerate(matched))]
+    step = np.where([[key in matched] for key in found], share @ difference, 0.0)
+    changed = Posture.stack([key.posture for key in found]).plus(step)
+    both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
     return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
 
 

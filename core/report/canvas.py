@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Image
+from ..body.side_colors import STRONG
 
 Color = tuple[int, int, int]
 """Blue, green, red, 0 to 255."""
@@ -15,9 +16,9 @@ WHITE: Color = (255, 255, 255)
 INK: Color = (51, 45, 42)
 PALE: Color = (226, 222, 219)
 GRAY: Color = (140, 134, 130)
-LEFT: Color = (178, 114, 0)
-RIGHT: Color = (0, 94, 213)
-"""Blue and vermilion, distinct also for color-blind eyes: Okabe and Ito (2008), *Color Universal Design*."""
+LEFT: Color = STRONG["L"][::-1]
+RIGHT: Color = STRONG["R"][::-1]
+"""The performer's left and right, as everywhere."""
 ACCENT: Color = (115, 158, 0)
 
 SCALE = 2

@@ -1,4 +1,4 @@
-"""Contact sheet of the matched postures over the footage: did the library fit, and where not?"""
+"""Contact sheet of the found postures over the footage: which are right, and which not?"""
 
 from collections.abc import Mapping
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..body.posture import Posture
+from ..library.several_libraries import COMPOSED
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
 from .canvas import ACCENT, GRAY, INK, PALE, WHITE, Canvas
@@ -29,10 +30,10 @@ def shown_keyframes(take: Take, most: int = MOST) -> tuple[Keyframe, ...]:
 
 
 def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
-    """Draw a take's keyframes over its footage, each with the matched posture's name and its confidence.
+    """Draw a take's keyframes over its footage, each with the found posture's name and its confidence.
 
     Args:
-        take: A take with matched keyframes, and maybe posed ones.
+        take: A take with found keyframes, and maybe posed ones.
         images: Frames of the clip by frame index, one for each of `shown_keyframes`.
 
     Returns:
@@ -41,11 +42,14 @@ def match_sheet(take: Take, images: Mapping[int, Image]) -> Image:
     keyframes = [keyframe for keyframe in shown_keyframes(take) if keyframe.index in images]
     width, height = take.camera.resolution
     picture = round(CELL_WIDTH * height / width)
-    matched = sum(keyframe.matched is not None for keyframe in take.keyframes)
-    libraries = sorted({keyframe.matched.library for keyframe in take.keyframes if keyframe.matched})
-    title = _ascii(f"Matched with {', '.join(libraries)}: {matched} of {len(take.keyframes)} keyframes")
+    found = [keyframe.matched for keyframe in take.keyframes if keyframe.matched is not None]
+    names = {"all libraries" if said.library == COMPOSED else said.library for said in found}
+    counts = f"{len(found)} of {len(take.keyframes)} keyframes"
+    doubtful = sum(said.is_doubtful for said in found)
+    title = _ascii(f"Found with {', '.join(sorted(names))}: {counts}, {doubtful} of them doubtful")
     footer = (
-        "Bar: how probably the match is about right. Numbers in the corner: scene frames; key: posed by hand."
+        "Bar: how probably the posture is about right, gray where doubtful. Numbers in the corner: scene "
+        "frames; key: posed by hand."
     )
     canvas, cells = sheet(
         title, footer, [keyframe.index for keyframe in keyframes], COLUMNS, CELL_WIDTH, picture + STRIP
@@ -87,7 +91,7 @@ def _caption(canvas: Canvas, cell: Cell, matched: Matched | None) -> None:
     canvas.text(percent, right, cell.top + 15.0, 9.0, INK, "right")
     left, y = cell.left + 7.0, cell.top + 24.0
     canvas.box(left, y, right, y + 4.0, WHITE)
-    color = ACCENT if matched.confidence >= 0.5 else GRAY
+    color = GRAY if matched.is_doubtful else ACCENT
     canvas.box(left, y, left + matched.confidence * (right - left), y + 4.0, color)
 
 

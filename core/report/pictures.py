@@ -26,7 +26,7 @@ STRIP = "strip.jpg"
 PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRIP)
 """Names of the pictures."""
 MATCHES = "matches.png"
-"""One more picture, where keyframes were matched with a library."""
+"""One more picture, where keyframes were found in the footage."""
 
 
 def write_pictures(

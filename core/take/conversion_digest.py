@@ -10,6 +10,7 @@ from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import find_images
+from ..library.several_libraries import COMPOSED, EVERY_LIBRARY
 from .character_settings import CharacterSettings
 from .conversion_settings import ConversionSettings
 from .description import Description, keypoint_files
@@ -35,7 +36,7 @@ def conversion_digest(
     Args:
         description: The take's description.
         settings: The settings of its conversion.
-        libraries: Digests of the libraries to match with.
+        libraries: Digests of the libraries to find keyframes with.
         output: The folder of the results: a .blend holds the relative path from there to its clip.
         version: Keymark's version.
         maps: Digests of the character maps that may be used, where there is a character.
@@ -59,7 +60,7 @@ def conversion_digest(
         _relative_clip(description.clip, output),
         tuple((file.name, content_digest(file)) for file in footage),
         None if posed is None else content_digest(posed),
-        tuple(libraries),
+        (COMPOSED, *libraries) if settings.library == EVERY_LIBRARY else tuple(libraries),
         settings.floor_m if libraries else None,
         settings.method or METHODS[0],
         settings.pictures is not False,

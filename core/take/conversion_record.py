@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
-from .record_fields import record_files, record_line, record_list, record_notes
+from .record_fields import record_files, record_line, record_lines, record_list, record_notes
 from .used_evidence import UsedEvidence, read_used_evidence
 
 RECORD_FILE = "conversion.json"
@@ -20,6 +20,8 @@ SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**22
 MOST_LISTED = 10**6
 FARTHEST_FRAME = 10**7
+MOST_LIBRARIES = 10_000
+"""In all folders that are searched: more than people gather, and well within the bytes above."""
 
 
 @dataclass(frozen=True)
@@ -34,14 +36,15 @@ class ConversionRecord:
     """Name of the take."""
     method: str
     library: str | None
-    """Identifier of the library that was matched; None where all keyframes are posed."""
+    """Identifier of the library that was matched, `COMPOSED` where all took part; None where all keyframes
+    are posed."""
     frames: int
     frame_start: int
     fps: float
     keyframes: tuple[int, ...]
     """Scene frames."""
     matched: tuple[int, ...]
-    """Scene frames of the keyframes that were matched with a library; a person posed the others."""
+    """Scene frames of the keyframes that were found in the footage; a person posed the others."""
     confidence: float | None
     """Mean confidence of the frames, 0 to 1; None for a method without uncertainty."""
     weakest: float | None
@@ -55,6 +58,10 @@ class ConversionRecord:
     leaves memory addresses, that of its Action's curves."""
     evidence: UsedEvidence | None = None
     """What the motion was held against beside its keyframes; None in records of before this was noted."""
+    libraries: Mapping[str, str] = field(default_factory=dict)
+    """Digest of every library that took part, by its identifier; see `library_digest`."""
+    doubtful: tuple[int, ...] = ()
+    """Scene frames of the found keyframes that are doubtful."""
 
 
 def write_record(folder: Path, record: ConversionRecord) -> None:
@@ -96,6 +103,8 @@ def read_record(folder: Path) -> ConversionRecord:
         evidence=read_used_evidence(fields.child("evidence", "an object"))
         if fields.has("evidence")
         else None,
+        libraries=record_lines(fields, "libraries", MOST_LIBRARIES) if fields.has("libraries") else {},
+        doubtful=_frames(fields, "doubtful") if fields.has("doubtful") else (),
     )
 
 

@@ -1,24 +1,32 @@
 """Settings of a conversion: keyframes, keypoints, evidence, library, floor, method, pictures, character."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from ..errors import InputError
 from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
 from ..files.json_file import shown
 from ..files.safe_path import safe_path
+from ..library.several_libraries import EVERY_LIBRARY
 from .character_settings import CharacterSettings, read_character_settings
 from .evidence_kinds import evidence_mistake, in_order
 from .methods import METHODS
 
 HIGHEST_FLOOR_M = 1000.0
 LONGEST_NAME = 200
-KEYFRAMES_VALID = "a path inside the take's folder, as in keyframes.json"
+KEYFRAMES_VALID = (
+    f"a path inside the take's folder, as in keyframes.json, or {EVERY_LIBRARY} to find keyframes with all "
+    "libraries"
+)
 KEYPOINTS_VALID = "a file or folder inside the take's folder, as in keypoints.json, or a list of several"
 MOST_KEYPOINT_FILES = 16
 """Sources of keypoints of one take: some detectors, tracks and clicks."""
-LIBRARY_VALID = "a library's name, auto, or the path of a library file inside the folder, as in walking.json"
+LIBRARY_VALID = (
+    f"a library's name, {EVERY_LIBRARY}, or the path of a library file inside the folder, as in walking.json"
+)
 
 
 @dataclass(frozen=True)
@@ -28,9 +36,10 @@ class ConversionSettings:
     keyframes: Path | None = None
     """The keyframe file; by default the take's own where it exists."""
     library: str | None = None
-    """Name or file of the library to match with, or `auto`; None where all keyframes are posed."""
+    """Name or file of the library to find keyframes with, `EVERY_LIBRARY` for all of them; None where all
+    keyframes are posed."""
     floor_m: float | None = None
-    """Height of the floor where it is known [m]; for matching."""
+    """Height of the floor where it is known [m]; for finding keyframes."""
     method: str | None = None
     """`map` (the default), `ekf` or `interpolation`."""
     pictures: bool | None = None
@@ -52,6 +61,33 @@ class ConversionSettings:
 
 
 NO_SETTINGS = ConversionSettings()
+
+
+def with_auto_as_library(
+    values: Mapping[str, Any], inherited: Mapping[str, Any], location: str
+) -> dict[str, Any]:
+    """The fields of one file, where `"keyframes": "auto"` has become `"library": "auto"`, which is the same.
+
+    Args:
+        values: The fields as the file has them.
+        inherited: Those that they override.
+        location: The file, for sentences.
+
+    Raises:
+        InputError: The file also names a library, which is another question.
+    """
+    fields, keyframes, library = dict(values), values.get("keyframes"), values.get("library")
+    if keyframes == EVERY_LIBRARY:
+        if library not in (None, EVERY_LIBRARY):
+            raise InputError(
+                f"{location}: keyframes is {shown(keyframes)} and library is {shown(library)}; "
+                "the first finds keyframes with all libraries, the second with one: give one of them"
+            )
+        del fields["keyframes"]
+        fields["library"] = EVERY_LIBRARY
+    elif "keyframes" in values and keyframes is None and inherited.get("library") == EVERY_LIBRARY:
+        fields.setdefault("library", None)
+    return fields
 
 
 def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:

@@ -19,7 +19,7 @@ from ..files.json_file import read_json
 from ..files.paths import absolute_path
 from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image
-from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings
+from .conversion_settings import NO_SETTINGS, ConversionSettings, read_settings, with_auto_as_library
 from .evidence_kinds import KEYPOINTS
 from .shoot_file import SHOOT_FILE, find_shoot_files, shoot_fields
 
@@ -91,7 +91,7 @@ def describe(
         layers.append((overrides_location, folder, dict(overrides)))
     inherited = InheritedFields()
     for location, _, values in layers:
-        inherited = inherited.overridden_by(values, location)
+        inherited = inherited.overridden_by(with_auto_as_library(values, inherited, location), location)
     fields = Fields(inherited, str(files[-1]))
     settings = read_settings(fields, {location: base for location, base, _ in layers})
     if is_folder:

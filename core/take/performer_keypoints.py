@@ -20,7 +20,7 @@ from .take import Take
 MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}
 """Points that lie about in the middle of two joints."""
 POSED_STD_M, MATCHED_STD_M = 0.1, 0.25
-"""Of a point at a keyframe that is posed, or matched with a library, by detector and person together."""
+"""Of a point at a keyframe that is posed or found, by detector and person together."""
 FARTHEST_STD_M = 1.5
 """Far from every keyframe, in a stage's width."""
 MARKER_STD, HAND_STD = 0.15, 0.1

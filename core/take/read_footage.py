@@ -48,7 +48,8 @@ def read_footage(take: Take, kept: Reading | None = None) -> Job[Reading]:
     # Before a camera that moves, no background stands still to tell the performer from.
     with_album = take.contours and not take.camera.is_moving
     stage = FOLLOWING if take.markers else READING
-    reading = yield from within(stage, read_clip(clip, take.markers, expected, with_album, kept), 0.0, 1.0)
+    job = read_clip(clip, take.markers, expected, with_album, kept, take.ignored_regions)
+    reading = yield from within(stage, job, 0.0, 1.0)
     check_frame_count(take, reading.tracks.frame_count, clip.frame_count)
     return replace(reading, notes=clip_notes(take, clip, reading))
 

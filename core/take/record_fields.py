@@ -41,6 +41,14 @@ def record_notes(fields: Fields, name: str = "notes") -> tuple[str, ...]:
     return tuple(notes)
 
 
+def record_lines(fields: Fields, name: str, most: int) -> Mapping[str, str]:
+    """An object of texts that are not empty, by name."""
+    found = fields.child(name, f"an object of at most {most} texts")
+    if len(found.values) > most:
+        raise InputError(f"{found.where} has {len(found.values)} names; at most {most} are read")
+    return {key: record_line(found, key) for key in found.values}
+
+
 def record_files(fields: Fields) -> Mapping[str, str]:
     """The SHA-256 of every file of a result, by its path in the folder."""
     files = fields.child("files", f"an object of at most {MOST_FILES} digests by file")

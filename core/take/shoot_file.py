@@ -9,17 +9,20 @@ from ..files.fields import Fields
 from ..files.inherited_fields import COMMENT_PREFIX
 from ..files.json_file import read_json, shown
 from ..files.paths import absolute_path
+from ..library.several_libraries import EVERY_LIBRARY
 
 SHOOT_FILE = "shoot.json"
 SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
-SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "actor")
+SHARED_FIELDS = ("fps", "frame_start", "camera", "markers", "ignored_regions", "actor")
 """Fields of `take.json` that takes may inherit."""
 SETTING_FIELDS = ("library", "floor_m", "method", "pictures", "character", "keypoints", "evidence")
 """Fields that say how takes are converted."""
 FILE_FIELDS = ("$schema", "schema_version", "root")
 """Fields about the file itself; editors read the first."""
-KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, *SETTING_FIELDS)
+KEYFRAMES = "keyframes"
+"""Field of `take.json` that may say `EVERY_LIBRARY` here, and nothing else."""
+KNOWN_FIELDS = (*FILE_FIELDS, *SHARED_FIELDS, KEYFRAMES, *SETTING_FIELDS)
 
 
 def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
@@ -30,7 +33,7 @@ def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
         values: All its fields, as `find_shoot_files` gives them.
 
     Raises:
-        InputError: The file is of a newer Keymark, or has an unknown field.
+        InputError: The file is of a newer Keymark, has an unknown field, or names a keyframe file.
     """
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
@@ -38,6 +41,11 @@ def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
         fields.check_version(SCHEMA_VERSION)
     if not isinstance(values.get("root", False), bool):
         raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
+    if values.get(KEYFRAMES) not in (None, EVERY_LIBRARY):
+        raise InputError(
+            f"{path}: keyframes is {shown(values[KEYFRAMES])}; for all takes below it must be "
+            f"{EVERY_LIBRARY}, which finds keyframes with all libraries: a keyframe file is a take's own"
+        )
     return {name: value for name, value in values.items() if name not in FILE_FIELDS}
 
 

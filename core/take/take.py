@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..body.kinematics import Body
 from ..footage.camera import Camera
+from ..footage.ignored_regions import IgnoredRegion
 from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
 from ..prior.keyframes import Keyframe
@@ -39,6 +40,8 @@ class Take:
     """People seen by each source of keypoints: detectors, Blender's tracks, clicks."""
     contours: bool = True
     """Whether the contours of the body are followed, where the camera stands still."""
+    ignored_regions: tuple[IgnoredRegion, ...] = ()
+    """Regions of the picture that are never a marker."""
 
     @property
     def file(self) -> Path:

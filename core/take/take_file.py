@@ -19,6 +19,7 @@ from ..files.fields import Fields, listed
 from ..files.inherited_fields import InheritedFields
 from ..files.json_file import shown, write_atomically, write_json
 from ..footage.camera import Camera
+from ..footage.ignored_region_fields import IGNORED_REGIONS, ignored_region_fields, read_ignored_regions
 from ..footage.keypoints.keypoint_file import read_keypoints, write_keypoints
 from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
@@ -95,8 +96,8 @@ def read_described(
     if not missing and keyframes is None and not os.path.exists(posed):
         named = f" ({fields.source_of('keyframes')} names it)" if fields.has("keyframes") else ""
         raise InputError(
-            f"{posed}: no such file{named}; a take needs keyframes posed there, or a keyframe library to "
-            'match, as in "library": "auto"'
+            f"{posed}: no such file{named}; a take needs keyframes posed there, or found in its footage: "
+            '--keyframes auto, or "keyframes": "auto" in its description'
         )
     fps = fields.number("fps", 1.0, 1000.0, "frames per second")
     take = Take(
@@ -112,6 +113,7 @@ def read_described(
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
+        ignored_regions=read_ignored_regions(fields, camera.resolution, frame_start),
     )
     if whole:
         return take
@@ -165,6 +167,8 @@ def write_take(take: Take, folder: Path, evidence: Sequence[str] | None = None) 
             style.name: {"segment": style.segment, "color_srgb": list(style.color_srgb)}
             for style in take.markers
         }
+    if take.ignored_regions:
+        fields[IGNORED_REGIONS] = ignored_region_fields(take.ignored_regions, take.frame_start)
     if take.keypoints:
         fields["keypoints"] = _write_keypoints(take, folder)
     if evidence is not None:

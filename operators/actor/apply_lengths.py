@@ -5,9 +5,10 @@ import bpy
 from ...core.body.actor import Actor
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, idle
 from ..shell.takes import active_take
-from .properties import length_names, length_property
+from .properties import panel_lengths
 
 
 class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
@@ -24,9 +25,8 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         from ..bridge.resize import set_lengths
 
         take = active_take(context.scene)
-        lengths = {name: getattr(take.lengths, length_property(name)) for name in length_names()}
-        body = Body(Actor(lengths))
-        set_lengths(take.armature, body)
+        set_lengths(take.armature, Body(Actor(panel_lengths(take.lengths))))
+        give_notices(take, "actor", "lengths")
         say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
 
 

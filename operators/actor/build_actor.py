@@ -21,7 +21,7 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
         name="Height",
         description="The performer's body height",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=1.75,
         min=0.5,
         max=3.0,
@@ -54,7 +54,7 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "INFO",
-                "The actor is {height:.2f} m tall now; its keyframes are kept",
+                "The actor is {height:.4g} m tall now; its keyframes are kept",
                 height=self.stature,
             )
             return
@@ -74,7 +74,7 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
                 "the performer",
             )
         elif had_actor:
-            say(self, "INFO", "The actor is {height:.2f} m tall now", height=self.stature)
+            say(self, "INFO", "The actor is {height:.4g} m tall now", height=self.stature)
         else:
             say(self, "INFO", "The actor stands at the world's origin")
 

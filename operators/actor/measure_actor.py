@@ -9,6 +9,7 @@ from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
 from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
@@ -27,7 +28,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         name="Height",
         description="The performer's body height",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=1.75,
         min=0.5,
         max=3.0,
@@ -116,12 +117,12 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         if not has_keyframes(take):
             write_posture(take.armature, measured.posture)
         if not measured.stands:
-            say(
-                self,
-                "WARNING",
+            sentence = label(
                 "The footage does not fit a performer who stands upright, so the lengths are little better "
-                "than average; go to a frame in which the performer stands, and check the height",
+                "than average; go to a frame in which the performer stands, and check the height"
             )
+            give_notices(take, "actor", "lengths", (sentence,))
+            self.report({"WARNING"}, sentence)
         else:
             say(
                 self,

@@ -5,18 +5,32 @@ import bpy
 from ..bridge.actor_bones import is_actor
 from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_sentence
-from ..shell.takes import active_take
+from ..shell.step_panel import StepPanel
+from ..shell.takes import active_take, has_lost_actor, kept_actions
 from .properties import MIDDLE, SIDED, length_property
 
 
-class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     """The armature, and the operators that build or measure it."""
 
     bl_label = "Actor"
+    step = "actor"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How tall the actor is."""
+        return "" if take.armature is None else label("{height:.4g} m", height=take.stature)
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the actor is gone, or none of Keymark's."""
+        return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw height, operators and armature."""
         take, column = active_take(context.scene), self.column()
+        if has_lost_actor(take):
+            _draw_lost(column, context, take)
         column.prop(take, "stature")
         row = column.row(align=True)
         row.scale_y = 1.2
@@ -28,6 +42,19 @@ class KEYMARK_PT_actor(TakePanel, bpy.types.Panel):
         if take.armature is not None and not is_actor(take.armature):
             sentence = label("This is no actor of Keymark's; choose it in the step Character instead")
             draw_sentence(column, context, sentence, "ERROR")
+
+
+def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    """Draw that the actor is gone, what of it is kept, and the button that brings it back."""
+    box = layout.box().column()
+    if take.keyframe_action is not None and take.motion_action is not None:
+        sentence = label("The actor is gone from the scene; its keyframes and its motion are kept")
+    elif kept_actions(take):
+        sentence = label("The actor is gone from the scene; its keyframes are kept")
+    else:
+        sentence = label("The actor is gone from the scene")
+    draw_sentence(box, context, sentence, "ERROR")
+    box.operator("keymark.restore_actor", icon="LOOP_BACK")
 
 
 class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):

@@ -28,6 +28,11 @@ def length_names() -> tuple[str, ...]:
     return (*MIDDLE, *(f"{part}.{side}" for part in SIDED for side in ("L", "R")))
 
 
+def panel_lengths(lengths: bpy.types.PropertyGroup) -> dict[str, float]:
+    """Return the lengths in the panel [m] by core's names."""
+    return {name: getattr(lengths, length_property(name)) for name in length_names()}
+
+
 def _mirror(part: str, side: str) -> "bpy.types.AnyType":
     other = length_property(f"{part}.{'R' if side == 'L' else 'L'}")
     own = length_property(f"{part}.{side}")

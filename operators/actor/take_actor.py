@@ -6,12 +6,14 @@ import bpy
 
 from ...core.body.kinematics import Body
 from ...core.errors import InputError
-from ..bridge.armature import build_armature
+from ..bridge.actor_bones import hips_at_rest
 from ..bridge.resize import set_lengths
 from ..keypoints.evidence import scene_evidence
+from ..shell.notices import give_notices
 from ..shell.results import reading_of
-from ..shell.takes import footage_of
+from ..shell.takes import footage_of, has_lost_actor
 from .properties import length_names, length_property
+from .restored_actor import new_actor, restore_actor
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
@@ -22,20 +24,8 @@ SYMMETRY_TOLERANCE_M = 5e-4
 
 
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
-    """Build a take's armature, selected and active, and return the armature object.
-
-    The take's keyframe Action and motion Action, those of another armature, are unset.
-    """
-    scene, layer = context.scene, context.view_layer
-    if layer.objects.active is not None and layer.objects.active.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
-    for selected in list(layer.objects.selected):
-        selected.select_set(False, view_layer=layer)
-    armature_object = build_armature(scene, body, f"{take.name} Actor")
-    armature_object.select_set(True, view_layer=layer)
-    layer.objects.active = armature_object
-    take.armature = armature_object
-    take.keyframe_action = take.motion_action = None
+    """Build a take's armature, selected and active, and return the armature object."""
+    armature_object = new_actor(context, take, body)
     show_lengths(take, body)
     return armature_object
 
@@ -43,12 +33,14 @@ def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: B
 def size_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bool:
     """Give the take's actor a body's lengths, or the take an actor; return whether it had one.
 
-    Pose and keyframes stay.
+    Pose and keyframes stay; one that was deleted is brought back with them.
 
     Raises:
         InputError: The take's armature cannot be changed.
     """
-    if take.armature is None or take.armature.name not in context.scene.objects:
+    if has_lost_actor(take):
+        restore_actor(context, take)
+    elif take.armature is None:
         add_actor(context, take, body)
         return False
     set_lengths(take.armature, body)
@@ -59,6 +51,8 @@ def size_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: 
 def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
     """Set the lengths in the panel to a body's."""
     segments = body.actor.segments_m
+    take.rest_hips = hips_at_rest(take.armature)
+    give_notices(take, "actor", "lengths")  # of other lengths
     lengths = take.lengths
     pairs = [(f"{part}.L", f"{part}.R") for part in {name.split(".")[0] for name in segments if "." in name}]
     lengths.symmetric = all(

@@ -8,7 +8,8 @@ import bpy
 from ...core.body.human import HUMAN
 
 ACTOR_BONES = frozenset(segment.name for segment in HUMAN.segments)
-TELLING = ("pelvis", "girdle.L")
+ROOT = "pelvis"
+TELLING = (ROOT, "girdle.L")
 """Bones that every motion of an actor moves; other rigs have hardly both."""
 TURNS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle")
 
@@ -24,6 +25,12 @@ def missing_bones(armature_object: bpy.types.Object) -> list[str]:
     """Bones of Keymark's skeleton that an armature lacks, in the skeleton's order."""
     there = armature_object.data.bones
     return [segment.name for segment in HUMAN.segments if segment.name not in there]
+
+
+def hips_at_rest(armature_object: bpy.types.Object) -> tuple[float, float, float]:
+    """Where an actor's hips are at rest, in its own space; keys move them from there."""
+    x, y, z = armature_object.data.bones[ROOT].head_local
+    return (x, y, z)
 
 
 def moves_an_actor(action: bpy.types.Action) -> bool:

@@ -16,11 +16,13 @@ from mathutils import Vector
 from numpy.typing import ArrayLike
 
 from ...core.body.kinematics import Body
+from ...core.body.side_colors import side_of
 from ...core.body.skeleton import JointKind, Skeleton
+from .bone_colors import color_bones
 from .bones import BoneModel, bone_models, rest_matrices, usual_mode
 
-COLLECTIONS = {"L": ("Left", "THEME01"), "R": ("Right", "THEME04"), "": ("Middle", "THEME09")}
-"""Bone collection and color of each side."""
+COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}
+"""Bone collection of each side."""
 CONNECTED_M = 1e-6
 
 
@@ -40,12 +42,12 @@ def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> b
     armature.display_type = "OCTAHEDRAL"
     armature_object.show_in_front = True
     armature_object.display_type = "WIRE"  # the footage is to be seen through it
-    for side, (title, palette) in COLLECTIONS.items():
+    for side, title in COLLECTIONS.items():
         collection = armature.collections.new(title)
         for model in models:
-            if model.name.partition(".")[2] == side:
+            if side_of(model.name) == side:
                 collection.assign(armature.bones[model.name])
-                armature.bones[model.name].color.palette = palette
+    color_bones(armature)
     for model in models:
         _set_freedoms(armature_object.pose.bones[model.name], body.skeleton, model)
     return armature_object

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.footage.camera import Camera
+from ...core.footage.camera_placement import CameraPlacement
 from ...core.footage.default_camera import default_camera_pose, guess_lens
 from .footage import clip_rate, set_scene_range
 from .footage_camera import (
@@ -28,6 +29,8 @@ class AttachedFootage:
     camera: bpy.types.Object
     guessed_lens_mm: float
     """Focal length, where it is a guess [mm]; 0 where it is known."""
+    guessed_placement: CameraPlacement | None = None
+    """Where a new camera was put; None for one that was there already."""
 
 
 def attach_footage(
@@ -63,15 +66,17 @@ def attach_footage(
     solved = clip.tracking.reconstruction.is_valid
     stays = is_new or not may_move(camera_object)
     follows = bool(solved and (stays or solver_constraint(scene, camera_object, clip)))
+    placement = None
     lens, guessed = _lens(clip, size, camera_object.data, is_new, stays, follows, guessed_lens_mm)
     if lens is not None:
         set_lens(camera_object.data, lens)
         if is_new:
             stand = default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)
             set_still_pose(camera_object, replace(lens, matrix_world=stand))
+            placement = CameraPlacement.of(stand)
     if follows:
         follow_solution(scene, camera_object, clip)
-    return AttachedFootage(camera_object, guessed)
+    return AttachedFootage(camera_object, guessed, None if follows else placement)
 
 
 def _lens(

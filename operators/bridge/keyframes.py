@@ -22,7 +22,7 @@ from .rotation_modes import bone_path, rotation_path
 from .scene_frames import at_scene_frame, showing_action
 
 Matches = Mapping[float, Matched]
-"""What matched keyframes were matched with, by scene frame as `untouched_frames` gives them."""
+"""What found keyframes resemble, by scene frame as `untouched_frames` gives them."""
 
 NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5

@@ -3,7 +3,7 @@
 Only keys of the type GENERATED are ever replaced or removed, and of these not the ones that the animator has
 given another value: Blender leaves their type as it was. `back`, a number which only the interpolation of
 that name uses, holds the value that a key was made with, so that a changed key is recognized. `amplitude`
-marks the keys of a matched keyframe, which stands beside the animator's own.
+marks the keys of a found keyframe, which stands beside the animator's own.
 """
 
 from collections.abc import Iterable, Iterator
@@ -21,7 +21,7 @@ UNMARKED = 0.0
 """`back` of a key without a record of its first value, as earlier versions made all."""
 MARK_OF_ZERO = 1e-30
 MATCH_AMPLITUDE = -1.0
-"""`amplitude` of the keys of a matched keyframe; users cannot set one below zero."""
+"""`amplitude` of the keys of a found keyframe; users cannot set one below zero."""
 SAME_FRAME = 1e-3
 """Keys nearer than this [frames] lie on the same frame."""
 FLOATS = ("back", "amplitude", "period")
@@ -117,7 +117,7 @@ def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -
 
 
 def animator_frames(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys that are not GENERATED, and of those of matched keyframes."""
+    """Frames (N,) of the keys that are not GENERATED, and of those of found keyframes."""
     # Read as little as possible: the timeline's draw function asks for all of an armature's curves.
     points = fcurve.keyframe_points
     coordinates, types = np.empty((len(points), 2), np.float32), np.empty(len(points), np.int32)
@@ -132,7 +132,7 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
 
 
 def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys of matched keyframes that are unchanged."""
+    """Frames (N,) of the keys of found keyframes that are unchanged."""
     if not len(fcurve.keyframe_points):
         return np.zeros(0)
     keys = _read_keys(fcurve)
@@ -210,7 +210,7 @@ def set_posed_keys(
 def set_matched_keys(
     channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
 ) -> None:
-    """Set keys like those of `set_posed_keys`, but marked as a matched keyframe's."""
+    """Set keys like those of `set_posed_keys`, but marked as a found keyframe's."""
     keys = _as_generated(_new_keys(frames, values, "GENERATED", "BEZIER"))
     keys["amplitude"] = np.full(len(frames), MATCH_AMPLITUDE, np.float32)
     _set_keys(ensure_fcurve(channelbag, path, index, group), keys)
@@ -235,7 +235,7 @@ def remove_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], fr
 
 
 def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str], frames: Array) -> None:
-    """Turn keys of matched keyframes on frames (K,) into the animator's own; values and curves stay."""
+    """Turn keys of found keyframes on frames (K,) into the animator's own; values and curves stay."""
     for fcurve, keys, there in _keys_on(channelbag, paths, frames):
         there = there & (keys["amplitude"] == MATCH_AMPLITUDE)
         if there.any():

@@ -1,6 +1,6 @@
-"""Matched keyframes, on the keyframe Action beside the animator's own.
+"""Found keyframes, on the keyframe Action beside the animator's own.
 
-A keyframe counts as matched only while all its keys are as they were written. As soon as the animator changes
+A keyframe counts as found only while all its keys are as they were written. As soon as the animator changes
 one, or moves it to another frame, the posture there is the animator's: corrections need no confirmation.
 """
 
@@ -25,7 +25,7 @@ DIGITS = 3
 def untouched_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
-    """Scene frames whose matched posture is unchanged, in order.
+    """Scene frames whose found posture is unchanged, in order.
 
     Raises:
         InputError: A bone is missing.
@@ -51,7 +51,7 @@ def write_matched(
     frames: Array,
     postures: Sequence[Posture],
 ) -> None:
-    """Key postures as matched keyframes; what is keyed on the same frames is replaced, all else stays.
+    """Key postures as found keyframes; what is keyed on the same frames is replaced, all else stays.
 
     Args:
         armature_object: The actor.
@@ -92,7 +92,7 @@ def take_over(
     skeleton: Skeleton,
     frames: Collection[float],
 ) -> None:
-    """Turn matched keyframes into the animator's own, as if posed by hand.
+    """Turn found keyframes into the animator's own, as if posed by hand.
 
     Raises:
         InputError: A bone is missing.

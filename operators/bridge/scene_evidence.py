@@ -12,6 +12,7 @@ from .keypoint_files import read_keypoint_file
 from .track_keypoints import AssignedTrack, people_of_tracks
 
 if TYPE_CHECKING:
+    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_style import MarkerStyle
 
 
@@ -27,6 +28,8 @@ class SceneEvidence:
     depth_hints: bool = True
     """Whether a detector's guess of depths is used."""
     contours: bool = True
+    ignored_regions: "tuple[IgnoredRegion, ...]" = ()
+    """Regions of the picture that are never a marker."""
 
     @property
     def has_keypoints(self) -> bool:

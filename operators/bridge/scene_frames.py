@@ -61,7 +61,7 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     Poses without keys, of any armature in the scene, are restored as well.
     """
     before = scene.frame_current, scene.frame_subframe
-    poses = [(actor, _pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
+    poses = [(actor, pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
 
     def go_to(frame: float) -> None:
         whole = floor(frame)
@@ -72,7 +72,7 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     finally:
         scene.frame_set(before[0], subframe=before[1])
         for actor, pose in poses:
-            _restore_pose(actor, pose)
+            restore_pose(actor, pose)
 
 
 @contextmanager
@@ -80,7 +80,7 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
     """Assign an Action, or none, to the armature meanwhile; then restore its Action and unkeyed pose."""
     data = armature_object.animation_data_create()
     before = data.action, data.action_slot
-    pose = _pose_of(armature_object)
+    pose = pose_of(armature_object)
     if action is None:
         data.action = None
     elif data.action != action:
@@ -93,19 +93,21 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
             if before[1] is not None:
                 data.action_slot = before[1]
             evaluated(armature_object)  # a new Action is evaluated once, which would undo the unkeyed changes
-        _restore_pose(armature_object, pose)
+        restore_pose(armature_object, pose)
 
 
 def _is_animated(item: bpy.types.Object) -> bool:
     return item.type == "ARMATURE" and item.animation_data is not None and item.is_editable
 
 
-def _pose_of(armature_object: bpy.types.Object) -> Pose:
+def pose_of(armature_object: bpy.types.Object) -> Pose:
+    """All channels of an armature's bones as they stand, keyed or not."""
     bones = armature_object.pose.bones
     return {bone.name: [tuple(getattr(bone, channel)) for channel in CHANNELS] for bone in bones}
 
 
-def _restore_pose(armature_object: bpy.types.Object, pose: Pose) -> None:
+def restore_pose(armature_object: bpy.types.Object, pose: Pose) -> None:
+    """Give an armature's bones the channels that `pose_of` had."""
     for name, values in pose.items():
         bone = armature_object.pose.bones[name]
         for channel, value in zip(CHANNELS, values, strict=True):

@@ -13,10 +13,11 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
+from ...core.estimate.frame_residuals import frame_residuals
 from ...core.estimate.keyframe_evidence import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
-from ...core.estimate.single_frame import FrameFit, calibrated, expected_in_frame, fit_frame
+from ...core.estimate.single_frame import calibrated, expected_in_frame
 from ...core.estimate.terms.keypoints import ObservedKeypoints
 from ...core.estimate.terms.regions import ObservedRegions
 from ...core.footage.keypoints.keypoints import Keypoints
@@ -25,10 +26,13 @@ from ...core.footage.reading import Reading
 from ...core.footage.reading_key import of_same_footage, reading_key
 from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
 from ...core.footage.single_frame_regions import regions_of_frame
-from ...core.observation.depths import DEPTH_STD_M
-from ...core.observation.keypoints import KeypointModel
+from ...core.library.library import Library
+from ...core.matching.candidates import Candidate
+from ...core.matching.posed_constraints import PosedConstraints
 from ...core.observation.regions import MarkerPlacement, RegionModel
-from ...core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose, prior_from_standing
+from ...core.posing.frame_poses import find_frame_poses, near_pose
+from ...core.posing.frame_shown import FrameShown
+from ...core.prior.frame_prior import prior_from_keyframes, prior_from_pose
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
@@ -38,9 +42,6 @@ from .pose import read_posture
 from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 from .scene_performer import performers_keypoints
-
-STANDS_HERE = 1.5
-"""Ratio of marker distances, shown body to one placed anew, above which the shown body is elsewhere."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +82,9 @@ class FrameInFootage:
         time_s = (float(self.clip_frames[self.index]) - self.footage.first_frame) / self.footage.rate
         if not self.styles:
             return self.tracks.frame(self.index)
-        return regions_of_frame(self.footage.open(), time_s, self.styles, expected)
+        return regions_of_frame(
+            self.footage.open(), time_s, self.styles, expected, self.evidence.ignored_regions, self.index
+        )
 
     def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
         """The performer's keypoints in all frames, (F, N); none where no keypoints are followed.
@@ -119,7 +122,7 @@ def frame_in_footage(
     Raises:
         InputError: The clip is missing, or the current frame lies outside it.
     """
-    key = reading_key(footage.path, footage.rate, evidence.markers, None)
+    key = reading_key(footage.path, footage.rate, evidence.markers, None, evidence.ignored_regions)
     if reading is not None and of_same_footage(reading.key, key):
         frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
     else:
@@ -147,26 +150,44 @@ def posed_standing(
     return place_standing(body, camera, 0, regions, frame.segments, keypoints.frame(frame.index))
 
 
+@dataclass(frozen=True, eq=False)
+class FrameResult:
+    """What fitting a frame has found."""
+
+    candidates: tuple[Candidate, ...]
+    """Postures that the frame may show, the likeliest first; a single one near a pose."""
+    contradictions: tuple[str, ...]
+    """Names of the markers and keypoints that the first one does not explain."""
+    residual_px: Array
+    """(M + N,) distances of markers and keypoints from where the first one has them [px]; NaN if hidden."""
+    cost: float = 0.0
+    """Near a pose, what tells the likelier of several poses apart, as in `FramePoses`."""
+
+
 def fit_to_frame(
     frame: FrameInFootage,
     armature_object: bpy.types.Object,
     action: bpy.types.Action | None,
     start: str,
     matches: Matches = NOT_MATCHED,
-) -> FrameFit:
+    libraries: Sequence[Library] = (),
+    floor_m: float | None = None,
+) -> FrameResult:
     """Fit the actor's posture to the frame; scene, Action and pose are as before.
 
     Args:
         frame: The frame.
         armature_object: The actor.
         action: The animator's keyframes; None for none.
-        start: KEYFRAMES for the nearest ones (standing where there are none), POSE for the actor's pose as it
-            is, STANDING for a body that stands where the performer is.
+        start: KEYFRAMES for any posture that the frame shows, of which the nearest keyframes tell too, ANEW
+            for any without asking keyframes, POSE for one near the actor's pose as it is.
         matches: The matched keyframes; marker placements are not calibrated on these.
+        libraries: What is known of postures; not asked near a pose.
+        floor_m: Height of the floor [m]; None for that of the posed keyframes.
 
     Raises:
-        InputError: Neither a marker nor a keypoint is seen in the frame, or clip, camera or a bone is
-            missing.
+        InputError: Neither a marker nor a keypoint is seen in the frame, there is no library, or clip, camera
+            or a bone is missing.
     """
     body = read_body(armature_object, HUMAN)
     keyframes = _keyframes(frame, armature_object, action, body, matches)
@@ -180,8 +201,11 @@ def fit_to_frame(
     elif start == "KEYFRAMES" and keyframes:
         belief = prior_from_keyframes(keyframes, frame.index, frame.footage.rate)
     else:
-        belief = _standing_belief(frame, model, read_posture(armature_object, body).posture, keypoints)
-    regions = frame.regions(expected_in_frame(model, belief, len(posed)))
+        belief = None
+    expected = belief
+    if expected is None and frame.reading is None and frame.styles:
+        expected = prior_from_pose(posed_standing(frame, body, frame.regions(), keypoints))
+    regions = frame.regions(None if expected is None else expected_in_frame(model, expected, len(posed)))
     points = ObservedKeypoints.of(keypoints)
     here = points[np.array([frame.index])]
     if not (regions.visible.any() or here.seen.any()):
@@ -192,7 +216,18 @@ def fit_to_frame(
         seen, frames = ObservedRegions.from_tracks(frame.tracks)[indices], np.arange(len(posed))
         postures = Posture.stack([keyframe.posture for keyframe in posed])
         evidence = calibrated(model, seen, postures, frames, usual, points[indices])
-    return fit_frame(evidence, ObservedRegions.from_tracks(regions), belief, len(posed), points=here)
+    shown = FrameShown(evidence, len(posed), regions, keypoints.frame(frame.index), here)
+    if start == "POSE":
+        assert belief is not None
+        found = near_pose(shown, belief)
+    else:
+        if floor_m is None:
+            floor_m = PosedConstraints.from_keyframes(body, posed).floor_m()
+        found = find_frame_poses(shown, libraries, floor_m, belief)
+    posture = found.candidates[0].posture
+    off = frame_residuals(evidence, shown.regions, here, posture, len(posed))
+    residual_px = np.append(off.marker_px, off.keypoint_px)
+    return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
 
 
 def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:
@@ -203,32 +238,6 @@ def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:
         name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
     )
     return f"none of the {wanted} is seen in frame {shown}; pose the actor by hand"
-
-
-def _standing_belief(
-    frame: FrameInFootage, model: RegionModel, shown: Posture, keypoints: Keypoints
-) -> FramePrior:
-    """Prior about the shown posture if it is at the performer's location, else about one placed there."""
-    regions = frame.regions()
-    placed = posed_standing(frame, model.body, regions, keypoints)
-    both = Posture.stack([shown, placed])
-    last = model.camera.matrix_world.shape[0] - 1 if model.camera.is_moving else 0
-    index = np.array([last, last])
-    pose = model.body.pose(both)
-    points = KeypointModel.usual(model.body, model.camera, keypoints.names).pixels(pose, index)
-    apart = np.concatenate(
-        [
-            np.linalg.norm(model.evaluate(pose, index).centroid - regions.centroid, axis=-1),
-            np.linalg.norm(points - keypoints.pixel[frame.index], axis=-1),
-        ],
-        axis=1,
-    )
-    if not np.isfinite(apart).any():
-        return prior_from_standing(placed)
-    of_shown, of_placed = np.nanmean(apart, axis=1)
-    if of_shown <= STANDS_HERE * of_placed:
-        return prior_from_standing(shown, DEPTH_STD_M)
-    return prior_from_standing(placed)
 
 
 def _keyframes(

@@ -79,6 +79,7 @@ def read_scene_take(
         keyframes=(),
         keypoints=evidence.people(footage, frames),
         contours=evidence.contours,
+        ignored_regions=evidence.ignored_regions,
     )
     if keyframe_action is None:
         return take, ()

@@ -1,11 +1,10 @@
 """Load a character's map from a file."""
 
-from pathlib import Path
-
 import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
+from ..shell.file_browser import browse, chosen_file
 from ..shell.messages import say
 from ..shell.requirements import idle
 from .characters import active_character
@@ -47,9 +46,7 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
         """Ask for the file, in the user's own folder, unless a map is named."""
         if self.filepath or self.title:
             return self.execute(context)
-        self.filepath = f"{map_folders()[0]}/"
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
+        return browse(self, context, str(map_folders()[0]))
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the whole map and hold it against the armature, and only then show it."""
@@ -57,10 +54,10 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
         from ...core.retarget.maps.map_registry import find_map
         from ..bridge.character.read_character import read_character
 
-        if not (self.filepath or self.title):
-            raise InputError("no map is named to load; give filepath or title")
         character = active_character(context.scene)
-        named = Path(bpy.path.abspath(self.filepath)) if self.filepath else self.title
+        named = (
+            self.title if self.title and not self.filepath else chosen_file(self, "a character map, .json")
+        )
         found = find_map(named, map_folders())
         character_map = found.character_map
         if character_map is None:

@@ -5,6 +5,7 @@ import bpy
 from ..bridge.character.read_character import needs_override
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 from .characters import active_character, find_character, missing_roles, shown_result
 from .map_rows import draw_map
@@ -30,16 +31,17 @@ class KEYMARK_UL_characters(RowList, bpy.types.UIList):
             row.label(text="", icon="ERROR")
 
 
-class KEYMARK_PT_character(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     """The characters, and the button that gives the chosen one the motion."""
 
     bl_label = "Character"
+    step = "character"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw the list, the chosen character, and its result."""
         take, character = active_take(context.scene), find_character(context.scene)
         if character is None:
-            row = self.layout.row()
+            row = self.body.row()
             row.scale_y = 1.2
             row.operator("keymark.add_character", icon="COMMUNITY")
             return
@@ -68,7 +70,7 @@ def _draw_choice(
     panel: KEYMARK_PT_character, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
 ) -> bpy.types.UILayout:
     """Draw the list of characters and the chosen one's armature; a single character is one row."""
-    row = panel.layout.row()
+    row = panel.body.row()
     single = len(take.characters) == 1
     if single:
         buttons = row.row(align=True)
@@ -135,7 +137,7 @@ class CharacterPart(TakePanel):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Whether the chosen character has an armature."""
         character = find_character(context.scene)
-        return character is not None and character.armature is not None
+        return super().poll(context) and character is not None and character.armature is not None
 
 
 class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):

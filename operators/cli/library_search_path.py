@@ -23,7 +23,7 @@ def library_folders() -> list[Path]:
 
 
 def requested_libraries(wanted: str) -> tuple[Library, ...]:
-    """The libraries that `--library` means: one by name or file, or every usable one.
+    """The libraries that a setting means: one by name or file, or every usable one.
 
     Raises:
         InputError: There is no such library, or none at all, or a file is unusable.

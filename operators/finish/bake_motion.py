@@ -8,7 +8,8 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.outdated import finished_again
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, actor_of, take_by_identifier
@@ -66,8 +67,10 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         finished_again(take)
         assign_action(armature_object, settings.action)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        for template, values in finished.notes:
-            say(self, "WARNING", template, **values)
+        sentences = [label(template, **values) for template, values in finished.notes]
+        give_notices(take, "finish", "bake", sentences)
+        for sentence in sentences:
+            self.report({"WARNING"}, sentence)
         say(
             self,
             "INFO",

@@ -4,16 +4,29 @@ import bpy
 
 from ..bridge.export_formats import FORMATS
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.panel import TakePanel, draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 
-class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     """The final Action."""
 
     bl_label = "Finish"
+    step = "finish"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How many keys the final Action has."""
+        done = take.finish.action is not None
+        return label("{count} keys", count=take.finish.keys_after) if done else ""
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the motion is newer than the final Action."""
+        return bool(take.finish.outdated)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw the button, the options, and the result."""
         take, column = active_take(context.scene), self.column()
         settings = take.finish
@@ -30,10 +43,12 @@ class KEYMARK_PT_finish(TakePanel, bpy.types.Panel):
         feet.active = settings.plant_feet
         feet.prop(settings, "stray_mm")
         if settings.action is not None and take.armature is not None:
-            _draw_result(column, take)
+            _draw_result(column, context, take)
 
 
-def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+def _draw_result(
+    column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
     """Draw the result of the last bake, and the switch between it and the motion."""
     settings = take.finish
     data = take.armature.animation_data
@@ -47,17 +62,16 @@ def _draw_result(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> N
         depress = action is not None and action == shown
         row.operator("keymark.show_action", text=text, depress=depress).which = which
     lines = column.column(align=True)
-    lines.scale_y = 0.85
     if settings.outdated:
-        lines.label(text="The motion is newer: bake again", icon="ERROR")
+        draw_sentence(lines, context, label("The motion is newer: bake again"), "ERROR")
     kept = label("{after} keys instead of {before}", after=settings.keys_after, before=settings.keys_before)
-    lines.label(text=kept, icon="KEYFRAME_HLT", translate=False)
+    draw_sentence(lines, context, kept, "KEYFRAME_HLT")
     if settings.furthest_mm > 0.0:
         off = label("At most {distance:.1f} mm off", distance=settings.furthest_mm)
-        lines.label(text=off, icon="DRIVER_DISTANCE", translate=False)
+        draw_sentence(lines, context, off, "DRIVER_DISTANCE")
     if settings.rests:
         rests = label("Feet planted: {count} rests", count=settings.rests)
-        lines.label(text=rests, icon="PINNED", translate=False)
+        draw_sentence(lines, context, rests, "PINNED")
 
 
 class FinishPart(TakePanel):

@@ -14,23 +14,35 @@ ZOOMS = (-30.0, 600.0)
 
 Box = tuple[float, float, float, float]
 """Left, bottom, right, top [px]."""
+View = tuple[float, float, float]
+"""Zoom and offset of a camera view, as Blender keeps them in single precision."""
 
 
 def fit_beside_sidebar(
     area: bpy.types.Area, render: bpy.types.RenderSettings, camera: bpy.types.Camera
 ) -> None:
     """Let the camera's picture fill the part of a viewport that no panel covers."""
+    fitting = fitting_view(area, render, camera)
+    if fitting is not None:
+        view = area.spaces.active.region_3d
+        view.view_camera_zoom, view.view_camera_offset = fitting[0], fitting[1:]
+
+
+def fitting_view(
+    area: bpy.types.Area, render: bpy.types.RenderSettings, camera: bpy.types.Camera
+) -> View | None:
+    """Return the camera view that shows the whole picture beside the panels; None where there is no room."""
     region = next((each for each in area.regions if each.type == "WINDOW"), None)
     view = area.spaces.active.region_3d
     if region is None or view is None or min(region.width, region.height) < 2:
-        return
+        return None
     size = (
         render.resolution_x * render.pixel_aspect_x,
         render.resolution_y * render.pixel_aspect_y,
     )
     picture = picture_at_factor_one((region.width, region.height), size, camera.sensor_fit)
     zoom, offset = camera_view((region.width, region.height), free_box(area, region), picture)
-    view.view_camera_zoom, view.view_camera_offset = zoom, offset
+    return zoom, *offset
 
 
 def free_box(area: bpy.types.Area, region: bpy.types.Region) -> Box:

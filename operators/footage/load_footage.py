@@ -1,11 +1,11 @@
 """Load a clip as a take's footage, behind its camera."""
 
-from pathlib import Path
-
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.file_browser import browse, chosen_file
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .occluding_objects import occluding_objects
@@ -50,8 +50,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the file browser, unless a file was dropped; a dropped one never replaces a clip."""
         if not self.filepath:
-            context.window_manager.fileselect_add(self)
-            return {"RUNNING_MODAL"}
+            return browse(self, context)
         take = find_take(context.scene)
         self.as_new_take = take is not None and take.clip is not None
         return self.execute(context)
@@ -61,7 +60,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
-        path = Path(bpy.path.abspath(self.filepath))
+        path = chosen_file(self, "a video, or one image of a numbered sequence")
         clip = load_footage(path)
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(path))
@@ -89,14 +88,16 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
                 lens=take.guessed_lens_mm,
             )
         occluding = occluding_objects(context, take)
-        if occluding:
-            say(
-                self,
-                "WARNING",
-                "In front of the footage: {names}; to see the performer, select what hides them and "
-                "press H (Alt H brings it back)",
-                names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
-            )
+        if not occluding:
+            give_notices(take, "footage", "view")
+            return
+        sentence = label(
+            "In front of the footage: {names}; to see the performer, select what hides them and "
+            "press H (Alt H brings it back)",
+            names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
+        )
+        give_notices(take, "footage", "view", (sentence,), occluding)
+        self.report({"WARNING"}, sentence)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

@@ -2,34 +2,45 @@
 
 import bpy
 
-from ..bridge.footage_camera import may_move, solver_constraint
 from ..shell.messages import label
-from ..shell.panel import TakePanel
+from ..shell.panel import draw_sentence, side_by_side
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
-from .take_footage import lens_is_guess
+from .camera_panel import draw_camera
 
 
-class KEYMARK_PT_footage(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     """Clip, camera and the take's files."""
 
     bl_label = "Footage"
+    step = "footage"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How long the clip is."""
+        return label("{count} frames", count=take.clip.frame_duration) if take.clip is not None else ""
+
+    @classmethod
+    def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
+        """Whether the clip's file is missing."""
+        return bool(take.clip_state.missing)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw clip, camera and the take's files."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")
         if take.clip is not None:
-            _draw_clip(column, take)
+            _draw_clip(column, context, take)
         column.separator()
         column.prop(take, "camera")
         if take.camera is not None:
-            _draw_camera(column, context.scene, take)
+            draw_camera(column, context, take)
         column.separator()
         row = column.row(align=True)
         text = "Load Footage" if take.clip is None else "Replace Clip"
         row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE")
         row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
-        row = column.row(align=True)
+        row = side_by_side(column)
         row.operator("keymark.open_take", icon="FILE_FOLDER")
         row.operator("keymark.save_take", icon="FILE_TICK")
 
@@ -48,7 +59,7 @@ class KEYMARK_MT_clips(bpy.types.Menu):
             entry.as_new_take = take is not None and take.clip is not None
 
 
-def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
     """Draw the clip's size, length and rate, or that its file is missing."""
     clip, state = take.clip, take.clip_state
     if state.missing:
@@ -61,27 +72,9 @@ def _draw_clip(column: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
     facts.active = False
     size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])
     extent = label("{count} frames at {rate:.5g} fps", count=clip.frame_duration, rate=state.rate)
-    facts.label(text=f"{size}, {extent}", translate=False, icon="INFO")
+    draw_sentence(facts, context, f"{size}, {extent}", "INFO")
     if state.variable_rate:
-        column.label(text="Variable rate: keys lie between frames", icon="ERROR")
-
-
-def _draw_camera(column: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """Draw the lens, whether it is a guess, and whether the camera moves."""
-    camera = take.camera
-    column.prop(camera.data, "lens")
-    column.prop(camera.data, "sensor_width")
-    if camera.name not in scene.objects:
-        column.label(text="Camera is not in the scene", icon="ERROR")
-    if lens_is_guess(take):
-        row = column.row(align=True)
-        text = label("Lens is a guess: {lens:.1f} mm", lens=take.guessed_lens_mm)
-        row.label(text=text, translate=False, icon="QUESTION")
-        row.operator("keymark.keep_lens", text="", icon="CHECKMARK")
-    if take.clip is not None and solver_constraint(scene, camera, take.clip):
-        column.label(text="Camera moves as the clip was solved", icon="CON_CAMERASOLVER")
-    elif may_move(camera):
-        column.label(text="Camera moves; its animation is used", icon="ANIM")
+        draw_sentence(column, context, label("Variable rate: keys lie between frames"), "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))

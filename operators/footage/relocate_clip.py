@@ -1,12 +1,12 @@
 """Relocate a clip whose file was moved."""
 
-from pathlib import Path
-
 import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.file_browser import chosen_file
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
 from .load_footage import PATTERNS
@@ -42,7 +42,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)
-        clip, path = take.clip, Path(bpy.path.abspath(self.filepath))
+        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
         if clip.library is not None:
             raise InputError(
                 f"clip '{clip.name}' is linked from {clip.library.filepath}; "
@@ -56,22 +56,24 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             for other in scene.keymark.takes:
                 if other.clip == clip and scene.library is None:
                     update_clip_state(other)
-        if all(size) and (found.size != size or clip.frame_duration != count):
-            say(
-                self,
-                "WARNING",
-                "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
-                "{old_width} x {old_height}; is it the right one?",
-                file=path.name,
-                count=clip.frame_duration,
-                width=found.size[0],
-                height=found.size[1],
-                old_count=count,
-                old_width=size[0],
-                old_height=size[1],
-            )
-        else:
+        differs = all(size) and (found.size != size or clip.frame_duration != count)
+        if not differs:
+            give_notices(take, "footage", "clip")
             say(self, "INFO", "Found {name}", name=clip.name)
+            return
+        sentence = label(
+            "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
+            "{old_width} x {old_height}; is it the right one?",
+            file=path.name,
+            count=clip.frame_duration,
+            width=found.size[0],
+            height=found.size[1],
+            old_count=count,
+            old_width=size[0],
+            old_height=size[1],
+        )
+        give_notices(take, "footage", "clip", (sentence,))
+        self.report({"WARNING"}, sentence)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_relocate_clip,))

@@ -10,6 +10,7 @@ from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from ..bridge.attach_footage import attach_footage, is_guess
 from ..bridge.footage import clip_path
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
+from ..shell.placement_guess import NO_GUESS, as_numbers
 from ..shell.results import clear_review
 from ..shell.takes import find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
@@ -28,12 +29,16 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
     scene = take.id_data
     attached = attach_footage(scene, clip, _camera_for(take, clip), take.guessed_lens_mm)
     take.guessed_lens_mm = attached.guessed_lens_mm or _guess_of_others(take, attached.camera)
+    if attached.camera != take.camera:
+        take.guessed_placement = _guessed_placement_of_others(take, attached.camera)
+    if attached.guessed_placement is not None:
+        take.guessed_placement = as_numbers(attached.guessed_placement)
     take.camera = attached.camera
     take.clip = clip  # its update notes the state, see `clip_chosen`
 
 
 def clip_chosen(take: bpy.types.PropertyGroup) -> None:
-    """Update a take whose clip was set; results and keypoints from another clip are dropped."""
+    """Update a take whose clip was set; results, keypoints and lines from another clip are dropped."""
     clip, before = take.clip, take.clip_state.contents
     if clip is not None and not shows_behind(take.camera, clip):
         give_footage(take, clip)  # sets the clip, and so calls this again
@@ -43,9 +48,11 @@ def clip_chosen(take: bpy.types.PropertyGroup) -> None:
         take.reading_key = take.review_key = ""
         take.proposals.clear()
         take.notes.clear()
+        take.notices.clear()
         clear_review(take)
-        for sources in (take.follow.files, take.follow.tracks, take.follow.clicks):
-            sources.clear()
+        take.camera_findings = ""
+        for drawn in (take.camera_lines, take.follow.files, take.follow.tracks, take.follow.clicks):
+            drawn.clear()
 
 
 def camera_chosen(take: bpy.types.PropertyGroup) -> None:
@@ -151,6 +158,15 @@ def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) ->
     """Return the guessed focal length of another take with the same camera; 0 for none."""
     takes = take.id_data.keymark.takes
     return next((other.guessed_lens_mm for other in takes if other != take and other.camera == camera), 0.0)
+
+
+def _guessed_placement_of_others(
+    take: bpy.types.PropertyGroup, camera: bpy.types.Object
+) -> tuple[float, ...]:
+    """Return the guessed placement of another take with the same camera; zeros for none."""
+    takes = take.id_data.keymark.takes
+    others = (tuple(other.guessed_placement) for other in takes if other != take and other.camera == camera)
+    return next(others, NO_GUESS)
 
 
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:

@@ -7,11 +7,13 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import points_to_follow
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
+from ..shell.contradictions import note_contradictions
 from ..shell.keyframe_action import show_keyframes
 from ..shell.messages import say
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
+from .offered_poses import offer_poses
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
@@ -24,19 +26,21 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
 
     start: bpy.props.EnumProperty(
         name="Start From",
-        description="The pose that is changed as little as the footage allows",
+        description="What the pose may depend on beside what this frame shows",
         items=[
             (
                 "KEYFRAMES",
                 "Nearest Keyframes",
-                "The keyframes before and after this frame; standing where none is stored yet",
+                "Any pose that this frame shows, whichever way the performer faces; keyframes near it count "
+                "as well",
             ),
             (
                 "POSE",
                 "Current Pose",
-                "The pose as it is: set roughly by you, or applied from a pose library",
+                "The pose as it is, set roughly by you or applied from a pose library, is changed as little "
+                "as the footage allows",
             ),
-            ("STANDING", "Standing", "A body that stands where the performer is"),
+            ("ANEW", "Nothing", "Any pose that this frame shows, whatever the keyframes say"),
         ],
     )
 
@@ -48,50 +52,64 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         return finished
 
     def run(self, context: bpy.types.Context) -> None:
-        """Fit the pose, set it, and report its distance from the markers."""
+        """Fit the pose, set it, offer the others that the frame may show, and say what contradicts."""
         from ..bridge.pose import write_posture
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
+        from ..library.registry_files import all_libraries
 
-        take = active_take(context.scene)
-        frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
-        matches = known_matches(take)
-        fit = fit_to_frame(frame, take.armature, take.keyframe_action, self.start, matches)
-        show_keyframes(take)
-        write_posture(take.armature, fit.posture)
-        before, after = (
-            np.concatenate(each)
-            for each in ((fit.before_px, fit.keypoint_before_px), (fit.residual_px, fit.keypoint_residual_px))
+        scene = context.scene
+        take = active_take(scene)
+        frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
+        libraries = () if self.start == "POSE" else all_libraries()
+        found = fit_to_frame(
+            frame,
+            take.armature,
+            take.keyframe_action,
+            self.start,
+            known_matches(take),
+            libraries,
+            _floor_m(take.matching),
         )
-        if fit.misplaced:
-            names = ", ".join(frame.styles[marker].name for marker in fit.misplaced)
+        show_keyframes(take)
+        write_posture(take.armature, found.candidates[0].posture)
+        offer_poses(take, scene.frame_current_final, found.candidates)
+        note_contradictions(take, scene.frame_current_final, found.contradictions)
+        if found.contradictions:
             say(
                 self,
                 "WARNING",
-                "No pose near the start explains the marker(s) {names}; correct the pose there by hand",
-                names=names,
+                "No plausible pose explains {names} here; the panel says it until this frame is posed",
+                names=", ".join(found.contradictions),
             )
-        elif fit.misplaced_points:
-            say(
-                self,
-                "WARNING",
-                "No pose near the start explains the keypoint(s) {names}; correct the pose there by hand",
-                names=", ".join(fit.misplaced_points),
-            )
-        elif not (np.isfinite(before).any() and np.isfinite(after).any()):
+        elif not np.isfinite(found.residual_px).any():
             say(
                 self,
                 "WARNING",
                 "Seen from the camera, the body hides the markers that this frame shows; check the pose",
             )
+        elif len(found.candidates) > 1:
+            say(
+                self,
+                "INFO",
+                "{chance:.0%} sure, {others} more in the panel; look at it from the side too, then store it",
+                chance=found.candidates[0].confidence,
+                others=len(found.candidates) - 1,
+            )
         else:
             say(
                 self,
                 "INFO",
-                "Off by {before:.1f} pixels before, {after:.1f} now; "
-                "look at it from the side too, as little tells the depth, then store it",
-                before=float(np.nanmean(before)),
-                after=float(np.nanmean(after)),
+                "Off by {after:.1f} pixels; look at it from the side too, as little tells the depth, then "
+                "store it",
+                after=float(np.nanmean(found.residual_px)),
             )
+
+
+def _floor_m(matching: bpy.types.PropertyGroup) -> float | None:
+    """Height of the floor where it is given or was found [m]."""
+    if matching.floor == "HEIGHT":
+        return float(matching.floor_height)
+    return float(matching.floor_found) if matching.is_property_set("floor_found") else None
 
 
 def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object) -> None:

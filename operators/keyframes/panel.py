@@ -1,36 +1,75 @@
-"""The panels of step 4: the frames to pose, and the operators that pose."""
+"""The panels of step 4: posing all frames at once, the frames to pose, and the operators that pose one."""
 
 import bpy
 
-from ..shell.keyed_frames import has_frame, matched_frames, posed_frames, proposed_frames, unposed_proposals
+from ..matching.candidate_buttons import draw_candidates, draw_candidates_head
+from ..shell.contradictions import draw_contradictions
+from ..shell.found_frames import offered_at
+from ..shell.job_progress import steady_frame
+from ..shell.keyed_frames import (
+    has_frame,
+    keyframes_of,
+    matched_frames,
+    posed_frames,
+    proposed_frames,
+    unposed_proposals,
+)
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_progress
+from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
+PROMINENT = 1.6
+"""Height of the button that does the step's whole work."""
 
-class KEYMARK_PT_keyframes(TakePanel, bpy.types.Panel):
+
+class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
     bl_label = "Keyframes"
+    step = "keyframes"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the number of posed frames, the state of this frame, and the operators."""
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """How many keyframes there are."""
+        return label("{count} keyed", count=len(keyframes_of(take))) if take.keyframe_action else ""
+
+    def draw_step(self, context: bpy.types.Context) -> None:
+        """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
+        everything = column.column()
+        everything.scale_y = PROMINENT
+        if not draw_progress(everything, context, "keymark.pose_all"):
+            everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
         if not len(take.proposals):
             _draw_propose(column, context)
-        _draw_posed(column, take)
+        _draw_posed(column, context, take)
         row = column.row(align=True)
         row.operator("keymark.jump_to_proposal", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
         going = row.operator("keymark.jump_to_proposal", text="Next to Pose")
         going.direction, going.skip_posed = "NEXT", True
         row.operator("keymark.jump_to_proposal", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
-        _draw_here(column, context.scene, take)
+        _draw_here(column, round(steady_frame(context)), take)
+        draw_contradictions(column, context, take)
         posing = column.column(align=True)
         posing.scale_y = 1.2
         if not draw_progress(posing, context, "keymark.fit_pose"):
             posing.operator("keymark.fit_pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
         posing.operator("keymark.fit_pose", text="Fit from Current Pose", icon="POSE_HLT").start = "POSE"
-        posing.operator("keymark.store_keyframe", icon="KEY_HLT")
+        _draw_offered(column, context, take)
+        column.operator("keymark.store_keyframe", icon="KEY_HLT")
+
+
+def _draw_offered(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the poses that the frame may show, if it was fitted and is not keyed."""
+    offered = offered_at(take, context.scene.frame_current_final)
+    if offered is None:
+        return
+    box = layout.column(align=True)
+    draw_candidates_head(box, context, offered)
+    draw_candidates(box, offered, "keymark.show_offered")
 
 
 def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -39,17 +78,19 @@ def _draw_propose(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
-def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the numbers of proposed frames that are posed, of other posed frames, and of matched ones."""
+def _draw_posed(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the numbers of proposed frames that are posed, of other posed frames, and of found ones."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
-    matched = len(matched_frames(take))
-    if matched:
-        text = label("{posed} posed, {matched} matched", posed=posed, matched=matched)
-        layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+    found = len(matched_frames(take))
+    if found:
+        text = label("{posed} posed, {found} found", posed=posed, found=found)
+        draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
         return
     if not proposed:
         text = label("{posed} posed; none proposed yet", posed=posed)
-        layout.label(text=text, icon="INFO", translate=False)
+        draw_sentence(layout, context, text, "INFO")
         return
     done = proposed - left
     text = label("{done} of {count} posed", done=done, count=proposed)
@@ -57,22 +98,22 @@ def _draw_posed(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> No
         text = label(
             "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
         )
-    layout.label(text=text, icon="INFO" if left else "CHECKMARK", translate=False)
+    draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
 
 
-def _draw_here(layout: bpy.types.UILayout, scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> None:
-    """Draw whether this frame is posed, matched or proposed, or that the motion is shown instead."""
-    frame = scene.frame_current
+def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyGroup) -> None:
+    """Draw whether this frame is posed, found or proposed, or that the motion is shown instead."""
     data = take.armature.animation_data if take.armature is not None else None
     shown = data.action if data is not None else None
     if shown is not None and shown in (take.motion_action, take.finish.action):
         row = layout.row(align=True)
-        row.label(text="Motion shown", icon="ERROR")
+        if is_roomy(bpy.context):
+            row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        text = label("Frame {frame} is matched, not posed", frame=frame)
+        text = label("Frame {frame} is found, not posed", frame=frame)
         layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
         text = label("Frame {frame} is proposed, not posed yet", frame=frame)

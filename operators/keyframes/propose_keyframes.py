@@ -10,6 +10,7 @@ from ..bridge.scene_frames import scene_frames
 from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -61,10 +62,11 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
         styles = evidence.markers
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
-        if reading is None or not of_same_footage(
-            reading.key, reading_key(clip.path, clip.fps, styles, None)
-        ):
-            reading = yield from within("Following the performer", read_clip(clip, styles), 0.0, READ)
+        ignored = evidence.ignored_regions
+        key = reading_key(clip.path, clip.fps, styles, None, ignored)
+        if reading is None or not of_same_footage(reading.key, key):
+            job = read_clip(clip, styles, ignored=ignored)
+            reading = yield from within("Following the performer", job, 0.0, READ)
         segments = tuple(style.segment for style in styles)
         keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
         moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
@@ -83,6 +85,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         for frame in result.frames:
             take.proposals.add().frame = frame
         say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
+        give_notices(take, "keyframes", "proposals", (result.note,) if result.note else ())
         if result.note:
             self.report({"WARNING"}, result.note[:1].upper() + result.note[1:])
 

@@ -3,14 +3,14 @@
 import bpy
 
 from ...core.body.human import HUMAN
-from ..bridge.actions import assign_action
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
-from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import say
+from ..shell.messages import label, say
+from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
+from .key_pose import key_pose
 
 
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
@@ -24,7 +24,7 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Key the pose; report how far it goes beyond the skeleton, if it does."""
         from ..bridge.actor_lengths import read_body
-        from ..bridge.keyframes import NOTICEABLE_M, store_pose
+        from ..bridge.keyframes import NOTICEABLE_M
         from ..bridge.pose import read_posture
 
         scene = context.scene
@@ -36,24 +36,32 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         frame = scene.frame_current_final
         switched = not shows_keyframes(take)
         straighten_unposed(take)
-        was_matched = frame in known_matches(take)
-        store_pose(armature_object, take.keyframe_action, HUMAN, frame)
-        assign_action(armature_object, take.keyframe_action)
-        invalidate_keyed_frames()
+        was_found = frame in known_matches(take)
+        about = f"pose at {frame:g}"
+        give_notices(take, "keyframes", about)
+        improved = key_pose(context, take)
         if read.furthest_m > NOTICEABLE_M:
-            say(
-                self,
-                "WARNING",
+            sentence = label(
                 "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
                 "can do, and its nearest posture will be used",
                 frame=frame,
                 beyond=1000.0 * read.furthest_m,
             )
-        elif was_matched:
+            give_notices(take, "keyframes", about, (sentence,), frame=frame)
+            self.report({"WARNING"}, sentence)
+        elif improved:
             say(
                 self,
                 "INFO",
-                "Stored a keyframe at frame {frame:g}; it was matched, and counts as posed now",
+                "Stored a keyframe at frame {frame:g}; {improved} found ones around it were posed anew",
+                frame=frame,
+                improved=improved,
+            )
+        elif was_found:
+            say(
+                self,
+                "INFO",
+                "Stored a keyframe at frame {frame:g}; it was found, and counts as posed now",
                 frame=frame,
             )
         elif switched:

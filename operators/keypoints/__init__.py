@@ -9,5 +9,6 @@ MODULES = (
     "remove_clicks",
     "click_performer",
     "assign_track",
+    "camera_from_walk",
     "panel",
 )

@@ -7,9 +7,9 @@ import bpy
 from ...core.errors import InputError
 from ...core.footage.keypoints.body_points import BODY_POINTS
 from ..shell.base_operator import BaseOperator
-from ..shell.cancel_on_esc import cancel_click
-from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import pixel_under
+from ..shell.click_sequence import ClickSequence
+from ..shell.footage_clicks import footage_is_shown
+from ..shell.footage_request import FootageRequest, side_of, stop_asking
 from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import footage, idle
@@ -17,16 +17,10 @@ from ..shell.takes import active_take
 from .body_point_items import body_point_items, point_title
 from .clicks import clicked_here, set_click
 
-DONE = {"RET", "NUMPAD_ENTER"}
-REQUESTS = {
-    ".L": "Click on: {point}, the performer's own left",
-    ".R": "Click on: {point}, the performer's own right",
-}
-MIDDLE_REQUEST = "Click on: {point}"
-KEYS = "{request}   |   Tab: Next Point   |   Enter: Done   |   Esc: Cancel"
+KEYS = "Tab: Next Point   |   Backspace: Previous   |   Enter: Done   |   Esc: Cancel"
 
 
-class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     """Click on points of the body in this frame, one after another; the arrow keys go to other frames"""
 
     bl_idname = "keymark.click_point"
@@ -55,34 +49,36 @@ class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
         self._before = take.follow.clicked_point, _all_clicks(take)
-        context.window.cursor_modal_set("CROSSHAIR")
-        _ask(context, take)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return self.wait_for_clicks(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Take clicks until Enter, or a click beside the footage; Esc takes all of them back."""
-        if cancel_click(self, context, event):
-            return {"CANCELLED"}
-        take = active_take(context.scene)
-        if event.value == "PRESS" and event.type in DONE:
-            return self._finish(context)
-        if event.value == "PRESS" and event.type == "TAB":
-            _choose_next(take)
-            _ask(context, take)
-            return {"RUNNING_MODAL"}
-        if event.type == "LEFTMOUSE" and event.value == "PRESS":
-            pixel = pixel_under(context, take, event.mouse_x, event.mouse_y)
-            if pixel is None:
-                return {*self._finish(context), "PASS_THROUGH"}
-            set_click(take, take.follow.clicked_point, pixel)
-            _choose_next(take)
-            _ask(context, take)
-            return {"RUNNING_MODAL"}
-        # Navigation: the animator may zoom in, or click on the same points in other frames.
-        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        return self.take_event(context, event)
 
-    def _finish(self, context: bpy.types.Context) -> set[str]:
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        """The point that is chosen in the panel."""
+        point = active_take(context.scene).follow.clicked_point
+        title = label("Click on: {point}", point=label(point_title(point)))
+        return FootageRequest(title, side_of(point)), label(KEYS)
+
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+        """Set the point, and ask for the next one; the same points may be clicked on in other frames."""
+        take = active_take(context.scene)
+        set_click(take, take.follow.clicked_point, pixel)
+        _choose_next(take)
+        self.ask(context)
+        return {"RUNNING_MODAL"}
+
+    def go_on(self, context: bpy.types.Context) -> None:
+        """Choose the next point that has no click in this frame."""
+        _choose_next(active_take(context.scene))
+
+    def go_back(self, context: bpy.types.Context) -> None:
+        """Choose the point before; a click on it takes the place of an earlier one."""
+        follow = active_take(context.scene).follow
+        follow.clicked_point = BODY_POINTS[BODY_POINTS.index(follow.clicked_point) - 1]
+
+    def done(self, context: bpy.types.Context) -> set[str]:
         """Keep the clicks, as one step of undo; without any nothing has happened."""
         take = active_take(context.scene)
         changed = _all_clicks(take) != self._before[1]
@@ -103,10 +99,7 @@ class KEYMARK_OT_click_point(BaseOperator, bpy.types.Operator):
                 click = follow.clicks.add()
                 click.point, click.frame, click.pixel = point, frame, pixel
             self._before = None
-        if context.window is not None:  # None while Blender closes it or opens another file
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
-            redraw_footage(context)
+        stop_asking(context)
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
@@ -136,13 +129,6 @@ def _choose_next(take: bpy.types.PropertyGroup) -> None:
     done = clicked_here(take)
     order = (*BODY_POINTS[begun:], *BODY_POINTS[:begun])
     take.follow.clicked_point = next((point for point in order if point not in done), order[0])
-
-
-def _ask(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
-    point = take.follow.clicked_point
-    request = label(REQUESTS.get(point[-2:], MIDDLE_REQUEST), point=label(point_title(point)))
-    context.workspace.status_text_set(label(KEYS, request=request))
-    redraw_footage(context)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_click_point,))

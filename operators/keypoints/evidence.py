@@ -7,6 +7,7 @@ import bpy
 from ..bridge.clicked_keypoints import ClickedPoint
 from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import SceneEvidence
+from ..markers.ignored_regions import ignored_regions
 from ..markers.marker_styles import marker_styles
 from .assigned_tracks import assigned_tracks
 from .keypoint_paths import keypoint_path
@@ -30,6 +31,7 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
         clicks=clicked_points(take) if follow.use_keypoints else (),
         depth_hints=bool(follow.use_depth_hints),
         contours=bool(follow.use_contours),
+        ignored_regions=ignored_regions(take) if follow.use_markers else (),
     )
 
 

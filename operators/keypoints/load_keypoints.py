@@ -8,6 +8,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run
 from ..shell.base_operator import BaseOperator
+from ..shell.file_browser import browse, chosen_path
 from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
@@ -48,14 +49,12 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         if self.filepath:
             return self.execute(context)
         clip = active_take(context.scene).clip
-        self.filepath = str(Path(bpy.path.abspath(clip.filepath)).parent) + "/"
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
+        return browse(self, context, str(Path(bpy.path.abspath(clip.filepath)).parent))
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the keypoints and hold them against the clip, and only then add them to the take."""
         take = active_take(context.scene)
-        path = _whole(Path(bpy.path.abspath(self.filepath)))
+        path = _whole(chosen_path(self))
         people = _read(context.scene, take, path)
         add_keypoint_file(take, path, self.replace)
         take.follow.use_keypoints = True

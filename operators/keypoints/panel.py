@@ -5,7 +5,7 @@ import bpy
 from ..bridge.footage_camera import may_move
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
 from ..shell.messages import count_label, label
-from ..shell.panel import RowList, draw_progress, draw_sentence
+from ..shell.panel import RowList, draw_progress, draw_sentence, property_column
 from ..shell.preferences import EXTENSION, preferences
 from ..shell.shown_frame import clip_index
 from ..shell.takes import active_take
@@ -255,6 +255,8 @@ def _draw_file(
     people = reading.people
     here = people_at(people, clip_index(take))
     layout.label(text=seen_label(here), translate=False, icon="INFO")
+    for note in people.notes:
+        draw_sentence(layout, context, note[:1].upper() + note[1:], "ERROR")
     if people.most_people > 1:
         row = layout.row(align=True)
         text = count_label(len(here.pixel), "1 person here", "{count} people here")
@@ -270,8 +272,7 @@ def _draw_file(
 
 def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     """Draw the next point to click on, and those of this frame."""
-    follow, column = take.follow, layout.column()
-    column.use_property_split, column.use_property_decorate = True, False
+    follow, column = take.follow, property_column(layout.column())
     column.prop(follow, "clicked_point")
     column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
     if not len(follow.clicks):

@@ -1,13 +1,12 @@
 """Import keyframe libraries: from a .json, or from a .blend of pose assets."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
+from ..shell.file_browser import browse, chosen_file
 from ..shell.messages import say
 from ..shell.requirements import idle
 from .conflict_dialog import CHOICES, WIDTH, Conflict, draw_question
@@ -46,8 +45,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the file, unless one was dropped; then what to do where its identifier is taken."""
         if not self.filepath:
-            context.window_manager.fileselect_add(self)
-            return {"RUNNING_MODAL"}
+            return browse(self, context)
         with reported(self):
             self._found = registry_conflicts(self._read())
             if not self._found:
@@ -79,9 +77,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     def _read(self) -> "tuple[Library, ...]":
         from ..bridge.library.library_file import read_libraries
 
-        if not self.filepath:
-            raise InputError("no file is named to import; give filepath")
-        return read_libraries(Path(bpy.path.abspath(self.filepath)))
+        return read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.messages import count_label, label
-from ..shell.panel import RowList, SubPanel, draw_progress, draw_sentence
+from ..shell.panel import RowList, SubPanel, draw_progress, draw_sentence, property_column
 from ..shell.takes import find_take
 from .editing.scene_libraries import active_motion, active_posture, find_library_here, library_here
 from .registry import chosen_entry
@@ -137,9 +137,7 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
             draw_sentence(layout, context, item.problem, "ERROR", MOST_LINES)
             return
         _facts(layout, context, item)
-        column = layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
+        column = property_column(layout.column())
         column.prop_search(registry, "posture", item, "postures", icon="ARMATURE_DATA")
         column.prop(registry, "mirrored")
         apply = column.operator("keymark.apply_posture", icon="POSE_HLT")

@@ -11,7 +11,6 @@ from zlib import crc32
 import bpy
 from bpy.app import timers
 
-from ...core.library.texts import EVERY_LIBRARY
 from ..shell.redraw import redraw_sidebars
 from . import user_folder
 
@@ -32,13 +31,11 @@ def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
 
 
 def library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
-    """Items of a menu of libraries: the automatic choice, then all that can be used."""
+    """Items of a menu of all libraries that can be used."""
     manager = (context or bpy.context).window_manager
     if bpy.app.background and not len(manager.keymark_shelf.libraries):
         refresh()  # no timer runs, and nothing is drawn
-    automatic = "Choose the library that fits the footage best, and say how sure that is"
-    found: list[Item] = [(EVERY_LIBRARY, "Automatic", automatic, "VIEWZOOM", 0)]
-    found += [
+    found: list[Item] = [
         (library.name, library.title, library.description, "ASSET_MANAGER", _number(library.name))
         for library in manager.keymark_shelf.libraries
         if not library.problem

@@ -1,13 +1,14 @@
 """Files of the registry: the user's folder and the libraries that come with Keymark, read and written."""
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.library.library import Library
 from ...core.library.library_file import write_library
 from ...core.library.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.several_libraries import EVERY_LIBRARY
 from . import user_folder
 
 
@@ -41,16 +42,23 @@ def shipped_libraries() -> list[Library]:
     return list(find_libraries(EVERY_LIBRARY, [SHIPPED]))
 
 
-def libraries_to_match(name: str) -> Sequence[Library]:
-    """The library of an identifier, title or file; all registered ones for `EVERY_LIBRARY`.
+def all_libraries() -> Sequence[Library]:
+    """All registered libraries; the same objects for as long as no file changes.
+
+    What is made of them (`core/posing/part_pools`) is kept by the objects: asked again, it is at hand.
 
     Raises:
         InputError: There is none.
     """
-    libraries = find_libraries(name, folders())
-    if not libraries:
-        raise InputError("there is no library to match with; import one, or install Keymark as a whole")
-    return libraries
+    files = sorted(file for folder in folders() if folder.is_dir() for file in folder.glob("*.json"))
+    stats = [(file, file.stat()) for file in files]
+    return _libraries(tuple((file, stat.st_mtime_ns, stat.st_size) for file, stat in stats))
+
+
+@lru_cache(maxsize=1)
+def _libraries(_files: tuple[tuple[Path, int, int], ...]) -> Sequence[Library]:
+    """All registered libraries, read from files of these times and sizes."""
+    return find_libraries(EVERY_LIBRARY, folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:

@@ -9,11 +9,13 @@ from ..shell.job_operator import JobOperator
 from ..shell.messages import say
 from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
+from .ignored_regions import ignored_regions
 from .marker_readouts import check_unchanged, find_markers, write_readouts
 from .marker_styles import picked_styles
 from .mask_previews import update_shown_masks
 
 if TYPE_CHECKING:
+    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.marker_style import MarkerStyle
     from ...core.progress import Job
@@ -26,6 +28,7 @@ class Checked:
     take: str
     """The take's identifier."""
     styles: "tuple[MarkerStyle, ...]"
+    ignored: "tuple[IgnoredRegion, ...]"
     check: "MarkerCheck"
 
 
@@ -41,12 +44,13 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         """Return the job that finds the markers in sampled frames."""
         take = active_take(scene)
         source, identifier, styles = footage_of(scene, take), take.identifier, picked_styles(take)
-        return Checked(identifier, styles, (yield from find_markers(source, styles)))
+        ignored = ignored_regions(take)
+        return Checked(identifier, styles, ignored, (yield from find_markers(source, styles, ignored)))
 
     def finish(self, scene: bpy.types.Scene, result: Checked) -> None:
         """Store the readouts, and report their warnings."""
         take = take_by_identifier(scene, result.take)
-        check_unchanged(picked_styles(take), result.styles)
+        check_unchanged((picked_styles(take), ignored_regions(take)), (result.styles, result.ignored))
         warnings = write_readouts(take, result.styles, result.check)
         update_shown_masks(scene)
         for sentence in warnings:

@@ -7,18 +7,30 @@ what it sees in this frame.
 import bpy
 
 from ..shell.messages import label
-from ..shell.panel import TakePanel, draw_sentence
+from ..shell.panel import draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
 
 
-class KEYMARK_PT_follow(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_follow(StepPanel, bpy.types.Panel):
     """What the motion is held against in the footage."""
 
     bl_label = "What to Follow"
+    step = "follow"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """What is followed, beside the contours."""
+        follow = take.follow
+        used = (
+            (label("Markers"), follow.use_markers and len(take.markers)),
+            (label("Keypoints"), follow.use_keypoints and (len(follow.files) or len(follow.clicks))),
+        )
+        return ", ".join(name for name, is_used in used if is_used)
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw what to begin with, until there is something."""
-        _draw_hint(self.layout, context)
+        _draw_hint(self.body, context)
 
 
 class KEYMARK_PT_clip_follow(bpy.types.Panel):

@@ -12,6 +12,7 @@ from .mask_previews import keep_preview
 
 if TYPE_CHECKING:
     from ...core.footage.clips.clip_samples import ClipSamples
+    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.marker_style import MarkerStyle
     from ...core.progress import Job
@@ -24,7 +25,9 @@ _samples: "dict[str, ClipSamples]" = {}
 """By the digest of the clip's file, the least recently used first."""
 
 
-def find_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job[MarkerCheck]":
+def find_markers(
+    footage: Footage, styles: "tuple[MarkerStyle, ...]", ignored: "tuple[IgnoredRegion, ...]"
+) -> "Job[MarkerCheck]":
     """Find markers in frames sampled over a clip, which are decoded once a session.
 
     Yields:
@@ -45,12 +48,12 @@ def find_markers(footage: Footage, styles: "tuple[MarkerStyle, ...]") -> "Job[Ma
     _samples[key] = samples  # the most recently used one last
     while len(_samples) > MOST_CLIPS:
         del _samples[next(iter(_samples))]
-    check = check_markers(samples, styles)
+    check = check_markers(samples, styles, ignored=ignored)
     return (yield from within("Finding the markers", check, SAMPLING_SHARE, 1.0))
 
 
-def check_unchanged(now: "tuple[MarkerStyle, ...]", then: "tuple[MarkerStyle, ...]") -> None:
-    """Refuse a result if the markers were changed while the job ran.
+def check_unchanged(now: object, then: object) -> None:
+    """Refuse a result if the markers, or what is ignored, were changed while the job ran.
 
     Raises:
         InputError: They were.
@@ -74,6 +77,9 @@ def write_readouts(
         marker.area, marker.area_share = readout.area_px, readout.area_share
         marker.distinctness = readout.distinctness
         marker.warning = "\n".join(readout.warnings)
+        marker.still_areas.clear()
+        for box in readout.still_boxes:
+            marker.still_areas.add().box = box
         marker.checked_clip = take.clip_state.contents
     keep_preview(take, styles, check)
     return [sentence for readout in check.readouts for sentence in readout.warnings]

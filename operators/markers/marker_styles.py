@@ -1,12 +1,13 @@
 """Marker styles: from a take's markers in the scene to core's, and back."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
 
 from ...core.errors import InputError
-from .new_markers import free_name, next_segment
+from .new_markers import USUAL_SEGMENTS
 
 if TYPE_CHECKING:
     from ...core.footage.marker_style import MarkerStyle
@@ -41,30 +42,28 @@ def picked_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     return tuple(style for marker, style in pairs if marker.is_picked)
 
 
-def styles_with_color(
-    take: bpy.types.PropertyGroup, index: int | None, color: Rgb
-) -> "tuple[MarkerStyle, ...]":
-    """Return the styles of a take's markers that have a color, once one of them is given a new color.
+def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb]) -> "tuple[MarkerStyle, ...]":
+    """The styles of a take's markers that have a color, once some are given new ones.
 
     Args:
-        take: The take.
-        index: The marker that is given the color; None for a new marker, which comes last.
-        color: The color.
+        take: The take; without a marker it counts as one with the usual five.
+        colors: The new colors, by the markers' names.
 
     Raises:
-        InputError: Two markers have one name or one segment, or all segments have markers.
+        InputError: Two markers have one name or one segment, or there is no marker of a name.
     """
-    styles = [
-        replace(style, color_srgb=color) if number == index else style
-        for number, style in enumerate(marker_styles(take))
-        if number == index or take.markers[number].is_picked
-    ]
-    if index is None:
-        segment = next_segment(take)
-        if segment is None:
-            raise InputError("every body part has a marker already; choose the one to pick a color for")
-        styles.append(_style(free_name(take, segment), segment, color))
-    return tuple(styles)
+    styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
+    if not styles:
+        styles = tuple(_style(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
+    unknown = set(colors) - {style.name for style in styles}
+    if unknown:
+        known = ", ".join(style.name for style in styles)
+        raise InputError(f"no marker is called '{min(unknown)}'; the markers are {known}")
+    return tuple(
+        replace(style, color_srgb=colors.get(style.name, style.color_srgb))
+        for style in styles
+        if style.name in colors or style.name in picked
+    )
 
 
 def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: Rgb) -> None:

@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.arrays import Array, SingleArray
+from ...core.arrays import Array, Image, SingleArray
 from ..bridge.footage import Footage
+from ..shell.redraw import redraw_footage
 from ..shell.takes import find_take, footage_of
+from .ignored_regions import ignored_pixels_key, ignored_regions
 
 if TYPE_CHECKING:
     from ...core.footage.clips.frame_reader import FrameReader
+    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.marker_style import MarkerStyle
 
-Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...]]
+Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...], tuple[object, ...]]
 
 MOST_PREVIEWS = 4
 
@@ -51,29 +54,41 @@ class Preview:
 
 
 _previews: dict[Key, Preview] = {}
+_picked: dict[str, Preview] = {}
+"""Preview of colors that are being picked and are not the take's yet, by the take's identifier."""
 
 
 def keep_preview(
     take: bpy.types.PropertyGroup, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck"
 ) -> None:
     """Cache the learned colors of a take's markers."""
-    groups = check.groups
-    labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
-    colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
     _previews.pop(key := _key(take), None)
-    _previews[key] = Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
+    _previews[key] = _preview(styles, check)
     while len(_previews) > MOST_PREVIEWS:
         del _previews[next(iter(_previews))]
 
 
+def show_picked(identifier: str, styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> None:
+    """Let colors that are being picked be the preview of the take with an identifier, until `end_picked`."""
+    _picked[identifier] = _preview(styles, check)
+
+
+def end_picked() -> None:
+    """Let the takes' own markers be their previews again."""
+    _picked.clear()
+
+
 def preview_of(take: bpy.types.PropertyGroup) -> Preview | None:
     """Return the preview of a take's markers as they are now; None if they were not checked."""
-    return _previews.get(_key(take)) if take.clip is not None else None
+    if take.clip is None:
+        return None
+    return _picked.get(take.identifier) or _previews.get(_key(take))
 
 
 def clear_previews() -> None:
     """Drop all previews, and close their files."""
     _previews.clear()
+    _picked.clear()
 
 
 def update_masks(scene: bpy.types.Scene) -> Preview | None:
@@ -87,7 +102,8 @@ def update_masks(scene: bpy.types.Scene) -> Preview | None:
     if preview is None or is_of_frame(preview, scene):
         return preview
     footage = footage_of(scene, take)
-    preview.masks = _masks(preview, footage)
+    ignored = ignored_mask(take)
+    preview.masks = _masks(preview, footage, ignored)
     preview.time_s = footage.shown_s
     return preview
 
@@ -96,6 +112,14 @@ def update_shown_masks(scene: bpy.types.Scene) -> None:
     """Make the masks of the current frame if they are shown."""
     if bpy.context.window_manager.keymark_show_masks:
         update_masks(scene)
+
+
+def show_masks(context: bpy.types.Context, shown: bool) -> bool:
+    """Switch the masks on or off; return whether they were shown."""
+    before = bool(context.window_manager.keymark_show_masks)
+    context.window_manager.keymark_show_masks = shown
+    redraw_footage(context)
+    return before
 
 
 def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
@@ -108,7 +132,16 @@ def is_of_frame(preview: Preview, scene: bpy.types.Scene) -> bool:
     return take is not None and preview.time_s == footage_of(scene, take).shown_s
 
 
-def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
+def ignored_mask(take: bpy.types.PropertyGroup, more: "tuple[IgnoredRegion, ...]" = ()) -> Image | None:
+    """The mask (rows, columns) of what is ignored in the current frame, and of more; None if nothing is."""
+    from ...core.footage.ignored_regions import IgnoredPixels
+
+    scene = take.id_data
+    pixels = IgnoredPixels((*ignored_regions(take), *more), (take.clip.size[0], take.clip.size[1]))
+    return pixels.mask(scene.frame_current - footage_of(scene, take).first_frame)
+
+
+def _masks(preview: Preview, footage: Footage, ignored: Image | None) -> tuple[ColorMask, ...]:
     from ...core.footage.clips.frame_reader import FrameReader
     from ...core.footage.segmentation.region_outlines import mask_outlines
     from ...core.footage.segmentation.regions import color_masks
@@ -118,14 +151,21 @@ def _masks(preview: Preview, footage: Footage) -> tuple[ColorMask, ...]:
     image = preview.reader.image_at(footage.shown_s)
     if image is None:
         return ()
-    coverages = color_masks(image, preview.check.model)
+    coverages = color_masks(image, preview.check.model, ignored)
     return tuple(
         ColorMask(label, color, coverage, mask_outlines(coverage, image.shape[1] // coverage.shape[1]))
         for label, color, coverage in zip(preview.labels, preview.colors, coverages, strict=True)
     )
 
 
+def _preview(styles: "tuple[MarkerStyle, ...]", check: "MarkerCheck") -> Preview:
+    groups = check.groups
+    labels = tuple(" / ".join(styles[marker].name for marker in group) for group in groups)
+    colors = [tuple(value / 255.0 for value in styles[group[0]].color_srgb) for group in groups]
+    return Preview(check, labels, tuple((red, green, blue) for red, green, blue in colors))
+
+
 def _key(take: bpy.types.PropertyGroup) -> Key:
-    """Return the key: digest of the footage, names and colors of the markers that have one."""
+    """Return the key: the footage's digest, names and colors of markers that have one, what is ignored."""
     picked = tuple((marker.name, tuple(marker.color)) for marker in take.markers if marker.is_picked)
-    return take.clip_state.contents, picked
+    return take.clip_state.contents, picked, ignored_pixels_key(take)

@@ -4,10 +4,20 @@ import bpy
 
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
 from ..shell.messages import label
-from ..shell.panel import RowList, draw_progress, draw_sentence
+from ..shell.panel import (
+    RowList,
+    draw_progress,
+    draw_sentence,
+    is_roomy,
+    property_column,
+    side_by_side,
+)
 from ..shell.takes import active_take
 from .frame_markers import markers_label
 
+IGNORING = ("keymark.ignore_region", "keymark.ignore_still_areas")
+SWATCH_UNITS, NARROW_SWATCH_UNITS = 1.6, 0.8
+"""Width of a marker's color in the list, which leaves a narrow sidebar to the names."""
 LABEL_SHARE = 0.4
 """Share of the width that Blender gives to the labels of its two columns."""
 
@@ -18,21 +28,42 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one marker: color, name, status."""
+        """Draw one marker: color, name, status, and the eyedropper that picks this one alone."""
         row = layout.row(align=True)
         swatch = row.row()
-        swatch.ui_units_x = 1.6
+        roomy = is_roomy(context)
+        swatch.ui_units_x = SWATCH_UNITS if roomy else NARROW_SWATCH_UNITS
         swatch.enabled = item.is_picked
         swatch.prop(item, "color", text="")
         row.prop(item, "name", text="", emboss=False)
         status = row.row()
         status.alignment = "RIGHT"
-        if not item.is_picked:
-            status.label(text="Not Picked", icon="EYEDROPPER")
-        elif not item.has_readout(active_take(context.scene)):
-            status.label(text="Not Checked", icon="QUESTION")
-        else:
+        take = active_take(context.scene)
+        if item.warning and not roomy:
+            status.label(text="", icon="ERROR")
+        elif item.is_picked and roomy and not item.has_readout(take):
+            status.label(text="", icon="QUESTION")
+        elif item.is_picked and roomy:
             status.label(text=f"{item.found}/{item.sampled}", icon="ERROR" if item.warning else "CHECKMARK")
+        here = next((index for index, marker in enumerate(take.markers) if marker == item), -1)
+        pick = row.row()
+        pick.emboss = "NONE" if item.is_picked else "NORMAL"
+        pick.operator("keymark.pick_marker_color", text="", icon="EYEDROPPER").row = here
+
+
+class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
+    """Regions of the picture that are never a marker, each with its frames."""
+
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one region."""
+        row = layout.row(align=True)
+        row.prop(item, "name", text="", emboss=False, icon="BRUSH_DATA" if len(item.stroke) else "MESH_PLANE")
+        status = row.row()
+        status.alignment = "RIGHT"
+        text = f"{item.first_frame} - {item.last_frame}" if item.some_frames else label("All Frames")
+        status.label(text=text, translate=False)
 
 
 class Markers:
@@ -70,23 +101,58 @@ def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     """Draw the list, the active marker, and the operators of both."""
     take = active_take(context.scene)
     if not len(take.markers):
+        _draw_pick(layout, context, label("Pick Markers"))
         layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
         layout.operator("keymark.add_marker", icon="ADD")
         return
+    picked = all(marker.is_picked for marker in take.markers)
+    _draw_pick(layout, context, label("Pick All Anew") if picked else label("Pick Markers"))
     row = layout.row()
     row.template_list("KEYMARK_UL_markers", "", take, "markers", take, "active_marker", rows=5)
     buttons = row.column(align=True)
     buttons.operator("keymark.add_marker", text="", icon="ADD")
     buttons.operator("keymark.remove_marker", text="", icon="REMOVE")
-    buttons.separator()
-    buttons.operator("keymark.pick_marker_color", text="", icon="EYEDROPPER").add = True
     if take.active_marker < len(take.markers):
         _draw_marker(layout, context, take, take.markers[take.active_marker])
-    row = layout.row(align=True)
+    _draw_ignored(layout, context, take)
+    row = side_by_side(layout)
     if not draw_progress(row, context, "keymark.check_markers"):
         row.operator("keymark.check_markers", icon="VIEWZOOM")
     shown = context.window_manager.keymark_show_masks
     row.operator("keymark.show_masks", icon="HIDE_OFF" if shown else "HIDE_ON", depress=shown)
+
+
+def _draw_pick(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
+    """Draw the button that asks for all markers, or its progress."""
+    pick = layout.row()
+    pick.scale_y = 1.3
+    jobs = ("keymark.pick_markers", "keymark.pick_marker_color")
+    if not any(draw_progress(pick, context, job) for job in jobs):
+        pick.operator("keymark.pick_markers", text=text, translate=False, icon="EYEDROPPER")
+
+
+def _draw_ignored(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw what is never a marker: the brush, the list of regions, and the frames of the chosen one."""
+    if not any(draw_progress(layout, context, job) for job in IGNORING):
+        row = layout.row(align=True)
+        row.operator("keymark.ignore_region", icon="BRUSH_DATA")
+        if any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers):
+            row.operator("keymark.ignore_still_areas")
+    if not len(take.ignored_regions):
+        return
+    row = layout.row()
+    source = (take, "ignored_regions", take, "active_ignored")
+    row.template_list("KEYMARK_UL_ignored_regions", "", *source, rows=2, maxrows=5)
+    row.column(align=True).operator("keymark.remove_ignored_region", text="", icon="REMOVE")
+    if take.active_ignored < len(take.ignored_regions):
+        region, column = take.ignored_regions[take.active_ignored], property_column(layout.column())
+        column.prop(region, "some_frames")
+        if region.some_frames:
+            frames = column.column(align=True)
+            frames.prop(region, "first_frame")
+            frames.prop(region, "last_frame")
 
 
 def _draw_marker(
@@ -95,14 +161,8 @@ def _draw_marker(
     take: bpy.types.PropertyGroup,
     marker: bpy.types.PropertyGroup,
 ) -> None:
-    """Draw the active marker: the button that picks its color, its properties and its readout."""
-    pick = layout.row()
-    pick.scale_y = 1.3
-    if not draw_progress(pick, context, "keymark.pick_marker_color"):
-        pick.operator("keymark.pick_marker_color", text="Pick from Footage", icon="EYEDROPPER")
-    column = layout.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
+    """Draw the active marker: its properties and its readout."""
+    column = property_column(layout.column())
     column.prop(marker, "segment")
     column.prop(marker, "color")
     if not marker.has_readout(take):
@@ -127,5 +187,5 @@ def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_markers, KEYMARK_PT_markers, KEYMARK_PT_clip_markers)
+    (KEYMARK_UL_markers, KEYMARK_UL_ignored_regions, KEYMARK_PT_markers, KEYMARK_PT_clip_markers)
 )

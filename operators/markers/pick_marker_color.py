@@ -8,28 +8,23 @@ import bpy
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_request import ask, follow_mouse, stop_asking
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
 from ..shell.messages import label, say
-from ..shell.redraw import redraw_footage
-from ..shell.requirements import footage, idle
+from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_by_identifier
+from .ignored_regions import ignored_regions
 from .marker_readouts import check_unchanged, find_markers, write_readouts
-from .marker_styles import Rgb, set_marker_color, styles_with_color
-from .mask_previews import update_shown_masks
-from .new_markers import append_marker, next_segment
-from .properties import segment_title
+from .marker_requests import request_for
+from .marker_styles import Rgb, set_marker_color, styles_with_colors
+from .mask_previews import show_masks, update_shown_masks
 
 if TYPE_CHECKING:
+    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.marker_style import MarkerStyle
     from ...core.progress import Job
-
-REQUESTS = {
-    ".L": "Click on the marker: {segment}, the performer's own left",
-    ".R": "Click on the marker: {segment}, the performer's own right",
-}
-MIDDLE_REQUEST = "Click on the marker: {segment}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,20 +33,21 @@ class Picked:
 
     take: str
     """The take's identifier."""
-    index: int | None
-    """The marker that is given the color; None for a new one."""
+    marker: str
+    """Name of the marker that is given the color."""
     color: Rgb
     styles: "tuple[MarkerStyle, ...]"
+    ignored: "tuple[IgnoredRegion, ...]"
     check: "MarkerCheck"
 
 
 class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
-    """Click on the marker in the footage to take its color from there, and look for it all over the clip"""
+    """Click on this one marker in the footage, to take its color from there and look for it in the clip"""
 
     bl_idname = "keymark.pick_marker_color"
     bl_label = "Pick Marker Color"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, idle)
+    requirements = (footage, markers, idle)
 
     pixel: bpy.props.FloatVectorProperty(
         name="Pixel",
@@ -59,39 +55,26 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         size=2,
         options={"SKIP_SAVE"},
     )
-    add: bpy.props.BoolProperty(
-        name="Add",
-        description="Give the color to a new marker on the next body part instead of the active one",
-        default=False,
+    row: bpy.props.IntProperty(
+        name="Row",
+        description="Row of the marker in the list, from 0; -1 for the active one",
+        default=-1,
         options={"SKIP_SAVE"},
     )
 
     _masks_before: bool | None = None
     """Whether masks were shown before the eyedropper; None in a script, which shows none."""
 
-    @classmethod
-    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip, which says which marker is given the color."""
-        if properties.add:
-            return "Click on another marker in the footage, to add it on the next body part in its color"
-        return "Click on the active marker in the footage, to take its color from there and look for it"
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for a click on the footage."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
-        segment = self._segment(take)
-        if segment is None:
-            say(self, "ERROR", "Every body part has a marker already")
-            return {"CANCELLED"}
-        sentence = label(REQUESTS.get(segment[-2:], MIDDLE_REQUEST), segment=label(segment_title(segment)))
-        manager = context.window_manager
-        manager.keymark_progress.show("", 0.0)
-        self._masks_before = manager.keymark_show_masks
-        _show_masks(context, False)  # the footage itself is what is clicked on
-        context.workspace.status_text_set(label("{sentence}   |   Esc: Cancel", sentence=sentence))
+        segment = self._marker(take).segment
+        context.window_manager.keymark_progress.show("", 0.0)
+        self._masks_before = show_masks(context, False)  # the footage itself is what is clicked on
         context.window.cursor_modal_set("EYEDROPPER")
+        ask(context, request_for(segment), label("Esc: Cancel"))
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -101,6 +84,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             return super().modal(context, event)
         if cancel_click(self, context, event):
             return {"CANCELLED"}
+        follow_mouse(context, event)
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
             return self._clicked(context, event)
         # Navigation: the animator may zoom in on the marker or go to another frame.
@@ -113,7 +97,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             context.workspace.status_text_set(sentence)
             return {"RUNNING_MODAL"}
         self.pixel = pixel
-        context.window.cursor_modal_restore()
+        stop_asking(context)
         with reported(self):
             self.begin(context)
             return {"RUNNING_MODAL"}
@@ -122,10 +106,9 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Restore cursor and masks, and close the job; Blender calls this as well."""
-        if self._job is None and context.window is not None:
-            context.window.cursor_modal_restore()
+        stop_asking(context)
         if self._masks_before is not None:
-            _show_masks(context, self._masks_before)
+            show_masks(context, self._masks_before)
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
@@ -136,24 +119,22 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         from ..bridge.footage_color import footage_color
 
         take = active_take(scene)
-        source, identifier, index = footage_of(scene, take), take.identifier, self._index(take)
+        source, identifier, name = footage_of(scene, take), take.identifier, self._marker(take).name
         color = footage_color(source, self.pixel)
-        styles = styles_with_color(take, index, color)
-        check = yield from find_markers(source, styles)
-        return Picked(identifier, index, color, styles, check)
+        styles, ignored = styles_with_colors(take, {name: color}), ignored_regions(take)
+        check = yield from find_markers(source, styles, ignored)
+        return Picked(identifier, name, color, styles, ignored, check)
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
         """Give the marker its color, and store the readouts of all markers."""
         take = take_by_identifier(scene, result.take)
-        check_unchanged(styles_with_color(take, result.index, result.color), result.styles)
-        if result.index is None:
-            marker = append_marker(take, result.styles[-1].segment)
-        else:
-            marker = take.markers[result.index]
+        styles = styles_with_colors(take, {result.marker: result.color})
+        check_unchanged((styles, ignored_regions(take)), (result.styles, result.ignored))
+        marker = next(marker for marker in take.markers if marker.name == result.marker)
         set_marker_color(marker, result.color)
         write_readouts(take, result.styles, result.check)
         if self._masks_before is not None:  # picked by a click: its mask is shown at once
-            _show_masks(bpy.context, True)
+            show_masks(bpy.context, True)
         update_shown_masks(scene)
         for sentence in marker.warning.splitlines():
             self.report({"WARNING"}, sentence)
@@ -167,21 +148,10 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             sampled=marker.sampled,
         )
 
-    def _index(self, take: bpy.types.PropertyGroup) -> int | None:
-        """Return the index of the marker whose color is picked; None for a new one."""
-        if self.add or not len(take.markers):
-            return None
-        return min(int(take.active_marker), len(take.markers) - 1)
-
-    def _segment(self, take: bpy.types.PropertyGroup) -> str | None:
-        """Return the segment whose marker is picked; None if there is none left for a new marker."""
-        index = self._index(take)
-        return next_segment(take) if index is None else str(take.markers[index].segment)
-
-
-def _show_masks(context: bpy.types.Context, shown: bool) -> None:
-    context.window_manager.keymark_show_masks = shown
-    redraw_footage(context)
+    def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+        """The marker whose color is picked."""
+        row = int(take.active_marker) if self.row < 0 else self.row
+        return take.markers[min(row, len(take.markers) - 1)]
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

@@ -3,6 +3,7 @@
 import bpy
 
 from ...core.body.human import HUMAN
+from .ignored_properties import KEYMARK_PG_ignored_region
 
 WHOLE_TRUNK = "trunk"
 WITHOUT_VOLUME = "girdle"
@@ -85,6 +86,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
     warning: bpy.props.StringProperty(
         name="Warning", description="Likely problems with the marker, one sentence a line"
     )
+    still_areas: bpy.props.CollectionProperty(type=KEYMARK_PG_ignored_region)
     checked_clip: bpy.props.StringProperty(
         name="Checked Clip",
         description="Digest of the clip in which the marker was looked for",

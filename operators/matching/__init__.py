@@ -1,4 +1,13 @@
-"""Matching of footage with libraries: finding keyframes, and choosing among a frame's candidates."""
+"""Finding keyframes in the footage: all at once, or with one library; choosing among candidates."""
 
 PROPERTIES = ("properties",)
-MODULES = ("match_library", "jump_to_match", "replace_match", "accept_match", "remove_match", "panel")
+MODULES = (
+    "pose_all",
+    "match_library",
+    "jump_to_match",
+    "replace_match",
+    "accept_match",
+    "remove_match",
+    "remove_found",
+    "panel",
+)

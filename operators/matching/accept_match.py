@@ -1,18 +1,21 @@
-"""Accept a matched keyframe as the animator's own."""
+"""Accept a found keyframe as the animator's own."""
 
 import bpy
 
 from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
+from ..shell.contradictions import note_contradictions
+from ..shell.found_frames import state_of
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
-from .matches import chosen_match, state_of
+from .improve_neighbors import improve_neighbors
+from .matches import chosen_match
 
 
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
-    """Count the chosen match as posed by you: it is trusted as much, and matching again leaves it alone"""
+    """Count this frame as posed by you: it is trusted as much, and finding again leaves it alone"""
 
     bl_idname = "keymark.accept_match"
     bl_label = "Accept"
@@ -26,12 +29,24 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         match = chosen_match(take)
         invalidate_keyed_frames()
-        if state_of(take, match) != "MATCHED":
-            say(self, "INFO", "Nothing is matched at frame {frame:g} any more", frame=match.frame)
+        if state_of(take, match) != "FOUND":
+            say(self, "INFO", "Frame {frame:g} is no found keyframe any more", frame=match.frame)
             return {"CANCELLED"}
-        take_over(take.armature, take.keyframe_action, HUMAN, (round(match.frame, 3),))
+        frame = round(match.frame, 3)
+        take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
+        note_contradictions(take, frame, ())
         invalidate_keyed_frames()
-        say(self, "INFO", "Frame {frame:g} counts as posed now", frame=match.frame)
+        improved = improve_neighbors(context, take, frame)
+        if improved:
+            say(
+                self,
+                "INFO",
+                "Frame {frame:g} counts as posed now; {improved} found ones around it were posed anew",
+                frame=frame,
+                improved=improved,
+            )
+        else:
+            say(self, "INFO", "Frame {frame:g} counts as posed now", frame=frame)
         return None
 
 

@@ -1,111 +1,53 @@
-"""Match the footage with keyframe libraries, to get keyframes without posing."""
+"""Match the footage with a keyframe library that the animator names."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.library.texts import EVERY_LIBRARY
 from ...core.progress import stretch
-from ..bridge.scene_frames import scene_frames
-from ..keypoints.evidence import scene_evidence
-from ..keypoints.requirements import points_to_follow
-from ..shell.job_operator import JobOperator
-from ..shell.messages import say
-from ..shell.requirements import actor, all_colors, camera, footage, idle
-from ..shell.results import reading_of
-from ..shell.takes import active_take, footage_of
-from .matches import known_matches
-from .properties import FLOORS
+from ..shell.takes import active_take
+from .find_operator import READ, FindOperator
+from .properties import UNCHOSEN
+from .scene_clip import read_scene_clip
 
 if TYPE_CHECKING:
     from ...core.progress import Job
-    from .match_result import MatchResult
-
-TIMES, READ = 0.05, 0.5
-"""Shares of the job at which the clip's times are read, and its pictures."""
+    from .found_result import FoundResult
 
 
-class KEYMARK_OT_match_library(JobOperator, bpy.types.Operator):
-    """Find the postures of a library in the footage, and key the actor with them; what you posed stays"""
+WELL = 0.85
+"""Fit below which the footage probably shows something else."""
+
+
+class KEYMARK_OT_match_library(FindOperator, bpy.types.Operator):
+    """Find the postures of one library in the footage, and key the actor with them; what you posed stays"""
 
     bl_idname = "keymark.match_library"
     bl_label = "Match Library"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, camera, actor, points_to_follow, all_colors, idle)
 
     library: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier or file of the library; auto tries all and chooses",
-        default=EVERY_LIBRARY,
-    )
-    floor: bpy.props.EnumProperty(
-        name="Floor",
-        description="Source of the floor's height, which determines the performer's distance",
-        items=FLOORS,
-    )
-    floor_height: bpy.props.FloatProperty(
-        name="Floor Height",
-        description="Height of the floor that the performer stands on",
-        subtype="DISTANCE",
-        precision=3,
-        default=0.0,
+        name="Library", description="Identifier, title or file of the library; the panel's where empty"
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take library and floor from the panel."""
-        matching = active_take(context.scene).matching
-        self.library, self.floor = matching.library_name, matching.floor
-        self.floor_height = matching.floor_height
-        return super().invoke(context, event)
-
-    def start(self, scene: bpy.types.Scene) -> "Job[MatchResult]":
-        """Read the scene's take and match it; earlier matches are ignored."""
-        from ...core.matching.match_take import match_take, with_matches
-        from ...core.take.read_footage import read_footage
-        from ..bridge.take_from_scene import read_scene_take
-        from ..library.registry_files import libraries_to_match
-        from .match_result import MatchResult
+    def start(self, scene: bpy.types.Scene) -> "Job[FoundResult]":
+        """Read the scene's take and match it; what was found earlier is ignored."""
+        from ...core.posing.match_clip import match_clip
+        from ..library.registry_files import load_registered
+        from .found_result import FoundResult, found_keyframes
 
         settings = active_take(scene)
-        identifier, kept, count = settings.identifier, reading_of(settings), settings.keyframe_count or None
-        floor_m = self.floor_height if self.floor == "HEIGHT" else None
-        libraries = libraries_to_match(self.library)
-        reading_scene = read_scene_take(
-            footage_of(scene, settings),
-            settings.armature,
-            settings.keyframe_action,
-            scene_evidence(settings),
-            known_matches(settings),
-        )
-        whole, notes = yield from stretch(reading_scene, 0.0, TIMES)
-        posed = replace(whole, keyframes=tuple(each for each in whole.keyframes if each.matched is None))
-        reading = yield from stretch(read_footage(posed, kept), TIMES, READ)
-        frames = scene_frames(reading.tracks.time_s, posed.frame_start, posed.fps)
-        choice = yield from stretch(match_take(posed, reading, libraries, floor_m, count), READ, 1.0)
-        found = with_matches(posed, choice.match).keyframes if choice.match is not None else ()
-        matched = tuple(keyframe for keyframe in found if keyframe.matched is not None)
-        # Matching corrects the reading where another object of a marker's color was taken for the marker.
-        return MatchResult(identifier, frames, choice.reading or reading, choice, matched, notes)
-
-    def finish(self, scene: bpy.types.Scene, result: "MatchResult") -> None:
-        """Key the matches beside what is posed, in place of earlier ones."""
-        take = result.write(scene)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        for note in result.notes:
-            self.report({"WARNING"}, note[:1].upper() + note[1:])
-        matches, reason = take.matching.matches, take.matching.reason
-        if result.choice.match is None:
-            self.report({"WARNING"}, reason)
-        else:
-            self.report({"INFO"}, reason)
-            say(
-                self,
-                "INFO",
-                "Matched {count} keyframes, {doubtful} of them doubtful",
-                count=len(matches),
-                doubtful=sum(match.is_doubtful for match in matches),
-            )
+        identifier, count, floor_m = settings.identifier, settings.keyframe_count or None, self.floor_m
+        matching = settings.matching
+        chosen = matching.library if matching.library_name in UNCHOSEN else matching.library_name
+        library = load_registered(self.library or chosen)
+        clip = yield from stretch(read_scene_clip(scene, settings), 0.0, READ)
+        job = match_clip(clip.take, clip.reading, library, floor_m, count)
+        found = yield from stretch(job, READ, 1.0)
+        if found.fit < WELL:
+            found = replace(found, reason=f"{found.reason}; it probably shows something else")
+        return FoundResult(identifier, clip, found, found_keyframes(clip.take, found))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_match_library,))

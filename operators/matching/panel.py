@@ -1,72 +1,79 @@
-"""Panel of matching: settings, results, and the choice among a frame's candidates."""
-
-from math import degrees
+"""Panels of found keyframes: the list with the candidates of a frame, and matching a named library."""
 
 import bpy
 
+from ...core.library.several_libraries import COMPOSED
+from ..shell.contradictions import contradictions_at
+from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
-from .matches import state_of
-from .properties import DOUBTFUL, SURE
+from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
-WORTH_NAMING = 0.005
-"""Probability above which the second best library is named."""
-WELL = 0.85
-"""Fit below which the footage probably shows something else."""
-FRAME_UNITS, PERCENT_UNITS = 1.6, 2.1
-NOTICEABLE_TURN_DEG = 15.0
-ICONS = {"POSED": "KEYFRAME_HLT", "GONE": "X"}
+SURE = 0.8
+"""Confidence above which a found keyframe is ticked."""
+FRAME_UNITS = 1.6
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+"""Icon and words of what is no found keyframe any more."""
 
 
 class KEYMARK_UL_matches(RowList, bpy.types.UIList):
-    """Matches: frame, posture and confidence."""
+    """Found keyframes: frame, posture and confidence."""
 
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one match, or that it is posed or has no key any more."""
-        state = state_of(active_take(context.scene), item)
+        """Draw one, or that it is posed or has no key any more."""
+        take = active_take(context.scene)
+        state = state_of(take, item)
         row = layout.row(align=True)
         row.active = state != "GONE"
         number = row.row()
         number.ui_units_x = FRAME_UNITS
         number.label(text=f"{item.frame:g}", translate=False)
+        is_found = state == "FOUND"
+        icon, words = how_sure(take, item) if is_found else STATES[state]
         shown = item.candidate
-        row.label(text=shown.name, icon=ICONS.get(state, confidence_icon(item)), translate=False)
-        if shown.mirrored:
+        named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else label(words), icon=icon, translate=False)
+        if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
-        said = row.row()
-        said.ui_units_x = PERCENT_UNITS
-        said.alignment = "RIGHT"
-        words = {"POSED": label("posed"), "GONE": label("no key")}.get(state, percent(item.confidence))
-        said.label(text=words, translate=False)
+        if is_found:
+            said = row.row()
+            said.ui_units_x = PERCENT_UNITS
+            said.alignment = "RIGHT"
+            said.label(text=percent(item.confidence), translate=False)
 
 
-def confidence_icon(match: bpy.types.PropertyGroup) -> str:
-    """Icon of a match's confidence: chosen by hand, sure, fair or doubtful."""
+def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
+    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN"
+        return "VIEW_PAN", "chosen"
+    if contradictions_at(take, match.frame):
+        return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
-        return "QUESTION"
-    return "CHECKMARK" if match.confidence >= SURE else "DOT"
+        return "QUESTION", "doubtful"
+    return ("CHECKMARK", "sure") if match.confidence >= SURE else ("DOT", "likely")
 
 
-def percent(share: float) -> str:
-    """A probability in percent."""
-    return label("{percent:.0f} %", percent=100.0 * share)
+class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
+    """Found keyframes, and the choice among a frame's candidates."""
 
-
-class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
-    """Matching and its results."""
-
-    bl_label = "Match a Library"
+    bl_label = "Found Keyframes"
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the settings, the button or the running job, and the results."""
-        matching, column = active_take(context.scene).matching, self.column()
-        column.prop(matching, "library")
+        """Draw how sure they are, the list, the candidates, and what finding assumes."""
+        take, column = active_take(context.scene), self.column()
+        matching = take.matching
+        if len(matching.matches):
+            _draw_counts(column, context, take)
+            column.template_list(
+                "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
+            )
+            _draw_jumps(column, take)
+            _draw_candidates(column, context, take)
+        column.prop(matching, "improve_neighbors")
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
             column.prop(matching, "floor_height")
@@ -74,102 +81,71 @@ class KEYMARK_PT_matches(TakePanel, bpy.types.Panel):
             found = column.row()
             found.enabled = False
             found.prop(matching, "floor_found")
-        row = column.row()
-        row.scale_y = 1.2
-        if not draw_progress(row, context, "keymark.match_library"):
-            row.operator("keymark.match_library", icon="VIEWZOOM")
-        _draw_choice(column, context, matching)
         if len(matching.matches):
-            _draw_matches(column, active_take(context.scene))
-            _draw_candidates(column, active_take(context.scene))
+            column.operator("keymark.remove_found", icon="TRASH")
 
 
-def _draw_choice(
-    layout: bpy.types.UILayout, context: bpy.types.Context, matching: bpy.types.PropertyGroup
+def _draw_counts(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
-    """Draw the best libraries with their probabilities; how much they explain, where that is doubtful."""
-    if not len(matching.ranking):
-        return
-    best, *others = matching.ranking
-    sure = best.probability >= SURE and matching.fit >= WELL
-    icon = "CHECKMARK" if sure else "QUESTION"
-    if not others:
-        draw_sentence(layout, context, matching.reason, icon)
-        if matching.fit < WELL:
-            draw_sentence(layout, context, label("It probably shows something else"), "BLANK1")
-        return
-    words = label("{best} {percent:.0f} %", best=best.name, percent=100.0 * best.probability)
-    if others[0].probability >= WORTH_NAMING:
-        words = label(
-            "{best} {percent:.0f} %, {other} {less:.0f} %",
-            best=best.name,
-            percent=100.0 * best.probability,
-            other=others[0].name,
-            less=100.0 * others[0].probability,
-        )
-    draw_sentence(layout, context, words, icon)
-    if not len(matching.matches):
-        draw_sentence(layout, context, matching.reason, "BLANK1")
-    elif not sure:
-        explained = label("Explains {percent:.0f} % of the footage", percent=100.0 * matching.fit)
-        draw_sentence(layout, context, explained, "BLANK1")
+    """Draw how many were found, how many of them are in doubt, and the reason that was given."""
+    count, doubtful = count_found(take)
+    words = label("{count} found, none of them doubtful", count=count)
+    if doubtful:
+        words = label("{count} found, {doubtful} of them doubtful", count=count, doubtful=doubtful)
+    layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
+    if take.matching.reason:
+        draw_sentence(layout, context, take.matching.reason, "BLANK1")
 
 
-def _draw_matches(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    matching = take.matching
-    layout.template_list(
-        "KEYMARK_UL_matches", "", matching, "matches", matching, "active_match", rows=3, maxrows=5
-    )
+def _draw_jumps(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
     row = layout.row(align=True)
     row.operator("keymark.jump_to_match", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
-    left = sum(match.is_doubtful and state_of(take, match) == "MATCHED" for match in matching.matches)
+    doubtful = count_found(take)[1]
     going = row.row(align=True)
-    going.enabled = left > 0
-    words = label("Next Doubtful ({count})", count=left) if left else label("None Doubtful")
-    doubtful = going.operator("keymark.jump_to_match", text=words, translate=False)
-    doubtful.direction, doubtful.only_doubtful = "NEXT", True
+    going.enabled = doubtful > 0
+    words = label("Next Doubtful ({count})", count=doubtful) if doubtful else label("None Doubtful")
+    jump = going.operator("keymark.jump_to_match", text=words, translate=False)
+    jump.direction, jump.only_doubtful = "NEXT", True
     row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
 
 
-def _draw_candidates(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the candidates of the chosen match as buttons, and its other operators."""
+def _draw_candidates(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the candidates of the chosen frame as buttons in their figures' colors, and what can be done."""
     matching = take.matching
-    if matching.active_match >= len(matching.matches):
+    if matching.shown_match >= len(matching.matches):
         return
-    match = matching.matches[matching.active_match]
+    match = matching.matches[matching.shown_match]
     box = layout.column(align=True)
-    box.label(text=label("Frame {frame:g} may show", frame=match.frame), translate=False)
-    for index, candidate in enumerate(match.candidates):
-        row = box.row(align=True)
-        button = row.operator(
-            "keymark.replace_match",
-            text=_candidate_label(candidate),
-            translate=False,
-            icon="MOD_MIRROR" if candidate.mirrored else "ARMATURE_DATA",
-            depress=index == match.chosen,
-        )
-        button.candidate = index
-        said = row.row()
-        said.ui_units_x = PERCENT_UNITS
-        said.alignment = "RIGHT"
-        said.label(text=percent(candidate.confidence), translate=False)
+    draw_candidates_head(box, context, match)
+    is_found = state_of(take, match) == "FOUND"
+    draw_candidates(box, match, "keymark.replace_match", is_found)
     row = layout.row(align=True)
     accept = row.row(align=True)
-    accept.enabled = state_of(take, match) == "MATCHED"
+    accept.enabled = is_found
     accept.operator("keymark.accept_match", icon="CHECKMARK")
     row.operator("keymark.remove_match", icon="X")
 
 
-def _candidate_label(candidate: bpy.types.PropertyGroup) -> str:
-    """A candidate's name, after its turn: several often differ by that alone, and a sidebar is narrow."""
-    angle = degrees(candidate.turned)
-    if abs(angle) < NOTICEABLE_TURN_DEG:
-        return str(candidate.name)
-    if abs(angle) > 180.0 - NOTICEABLE_TURN_DEG:
-        return label("Turned round: {posture}", posture=candidate.name)
-    if angle > 0.0:
-        return label("{angle:.0f}° left: {posture}", angle=angle, posture=candidate.name)
-    return label("{angle:.0f}° right: {posture}", angle=-angle, posture=candidate.name)
+class KEYMARK_PT_matching(TakePanel, bpy.types.Panel):
+    """Matching with a library that the animator names."""
+
+    bl_label = "Match a Library"
+    bl_parent_id = "KEYMARK_PT_keyframes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the library, and the button or the running job."""
+        matching, column = active_take(context.scene).matching, self.column()
+        column.prop(matching, "library")
+        row = column.row()
+        row.scale_y = 1.2
+        if not draw_progress(row, context, "keymark.match_library"):
+            row.operator("keymark.match_library", icon="VIEWZOOM")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches, KEYMARK_PT_matches))
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_UL_matches, KEYMARK_PT_found, KEYMARK_PT_matching)
+)

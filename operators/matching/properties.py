@@ -1,26 +1,27 @@
-"""Properties of matching: settings, ranking of the libraries, and matches with their candidates."""
+"""Properties of finding keyframes: settings, and found keyframes with their candidates."""
 
 from typing import TYPE_CHECKING
 
 import bpy
 
 from ...core.body.human import HUMAN
-from ...core.library.texts import EVERY_LIBRARY
+from ...core.library.several_libraries import EVERY_LIBRARY
 from ..library.registry import library_items
+from ..shell.found_frames import match_at
 
 if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
 
 PLACE_VALUES = 6
 """Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short."""
-DOUBTFUL = 0.5
-"""Confidence below which a match is doubtful."""
-SURE = 0.8
 FLOORS = (
     ("AUTO", "Find from Footage", "How high the floor is follows from the performer's size in the footage"),
     ("HEIGHT", "Known Height", "The floor that the performer stands on is this high in the scene"),
 )
 
+
+UNCHOSEN = ("", EVERY_LIBRARY)
+"""Names while no library is chosen; earlier versions offered all of them as one entry."""
 
 Entry = tuple[str, str, str, str, int]
 _entries: list[Entry] = []
@@ -28,10 +29,10 @@ _entries: list[Entry] = []
 
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
-    """The automatic choice, all registered libraries, and the chosen one even if it is missing."""
+    """All registered libraries, and the chosen one even if it is missing."""
     rows = [item[:4] for item in library_items(matching, context)]
     name = matching.library_name
-    if all(name != row[0] for row in rows):
+    if name not in UNCHOSEN and all(name != row[0] for row in rows):
         rows.append((name, name, "This library is not there any more; import it again", "ERROR"))
     _entries[:] = [(*row, number) for number, row in enumerate(rows)]
     return _entries
@@ -39,17 +40,26 @@ def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | N
 
 def _library_number(matching: bpy.types.PropertyGroup) -> int:
     names = [entry[0] for entry in _libraries(matching, None)]
-    return names.index(matching.library_name)
+    return names.index(matching.library_name) if matching.library_name in names else 0
 
 
 def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
     matching.library_name = _libraries(matching, None)[number][0]
 
 
-def _chosen(matching: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Go to the frame of the match that was clicked in the list."""
-    if matching.active_match < len(matching.matches):
-        matching.matches[matching.active_match].go_to(matching.id_data)
+def _shown_match(matching: bpy.types.PropertyGroup) -> int:
+    """The found keyframe of the current frame; elsewhere the one that was chosen last."""
+    scene = matching.id_data
+    take = next((take for take in scene.keymark.takes if take.matching == matching), None)
+    here = -1 if take is None else match_at(take, scene.frame_current_final)
+    return here if here >= 0 else min(matching.active_match, max(len(matching.matches) - 1, 0))
+
+
+def _choose_match(matching: bpy.types.PropertyGroup, index: int) -> None:
+    """Go to the frame of the found keyframe that was clicked in the list."""
+    matching.active_match = index
+    if index < len(matching.matches):
+        matching.matches[index].go_to(matching.id_data)
 
 
 class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
@@ -71,8 +81,13 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
     )
     turned: bpy.props.FloatProperty(
         name="Turned",
-        description="Turn to the performer's left from the posture that matching chose, seen from above",
+        description="Turn to the performer's left from the posture that was chosen first, seen from above",
         subtype="ANGLE",
+    )
+    limbs: bpy.props.StringProperty(
+        name="Limbs",
+        description="Limbs that are elsewhere than the first candidate's, which shows what is chosen between",
+        options={"HIDDEN"},
     )
     turns: bpy.props.FloatVectorProperty(
         name="Turns", description="Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES
@@ -80,10 +95,12 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
 
 
 class KEYMARK_PG_match(bpy.types.PropertyGroup):
-    """A matched frame with its candidates."""
+    """A found keyframe with its candidates."""
 
     frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
-    library: bpy.props.StringProperty(name="Library", description="Identifier of the posture's library")
+    library: bpy.props.StringProperty(
+        name="Library", description="Identifier of the posture's library; composed of several"
+    )
     candidates: bpy.props.CollectionProperty(type=KEYMARK_PG_candidate)
     chosen: bpy.props.IntProperty(
         name="Chosen", description="Index of the candidate that the frame has", default=0, min=0
@@ -105,11 +122,6 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
         return float(self.candidate.confidence)
 
     @property
-    def is_doubtful(self) -> bool:
-        """Whether the match is worth a check."""
-        return not self.by_hand and self.confidence < DOUBTFUL
-
-    @property
     def matched(self) -> "Matched":
         """The match as core's `Matched`."""
         from ...core.prior.keyframes import Matched
@@ -123,35 +135,9 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
         scene.frame_set(whole, subframe=self.frame - whole)
 
 
-class KEYMARK_PG_library_chance(bpy.types.PropertyGroup):
-    """Probability that the footage shows a library's motions."""
+class FloorSettings:
+    """Mixin of properties: the floor that performers stand on while they are sought."""
 
-    name: bpy.props.StringProperty(name="Library", description="The library's title")
-    probability: bpy.props.FloatProperty(
-        name="Probability",
-        description="Probability that the footage shows this library's motions, of all that were tried",
-        subtype="FACTOR",
-        min=0.0,
-        max=1.0,
-    )
-
-
-class KEYMARK_PG_matching(bpy.types.PropertyGroup):
-    """Settings and results of matching a take."""
-
-    library_name: bpy.props.StringProperty(
-        name="Library",
-        description="Identifier of the library to match with; the numbers of menu items may change",
-        default=EVERY_LIBRARY,
-        options={"HIDDEN"},
-    )
-    library: bpy.props.EnumProperty(
-        name="Library",
-        description="Library that the footage is matched with",
-        items=_libraries,
-        get=_library_number,
-        set=_set_library,
-    )
     floor: bpy.props.EnumProperty(
         name="Floor",
         description="Source of the floor's height, which determines the performer's distance",
@@ -161,38 +147,63 @@ class KEYMARK_PG_matching(bpy.types.PropertyGroup):
         name="Floor Height",
         description="Height of the floor that the performer stands on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=0.0,
         soft_min=-5.0,
         soft_max=5.0,
     )
-    ranking: bpy.props.CollectionProperty(type=KEYMARK_PG_library_chance)
+
+
+class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
+    """Settings and results of finding a take's keyframes."""
+
+    library_name: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of the library to match with; the numbers of menu items may change",
+        options={"HIDDEN"},
+    )
+    library: bpy.props.EnumProperty(
+        name="Library",
+        description="Library that the footage is matched with",
+        items=_libraries,
+        get=_library_number,
+        set=_set_library,
+    )
+    improve_neighbors: bpy.props.BoolProperty(
+        name="Improve Neighbors",
+        description="When you store, accept or replace a keyframe, pose the found ones up to the next one of "
+        "yours anew, with what yours tells; what you posed or chose never changes",
+        default=True,
+    )
     reason: bpy.props.StringProperty(
-        name="Reason", description="Reason of the last matching for this library, or for none"
+        name="Reason", description="What was found last, and how well it explains the footage"
     )
     fit: bpy.props.FloatProperty(
         name="Fit",
-        description="Share of the footage that the matches explain; negative before the first matching",
+        description="Share of the footage that the found poses explain; negative before any were found",
         default=-1.0,
         min=-1.0,
         max=1.0,
     )
     floor_found: bpy.props.FloatProperty(
         name="Floor Found",
-        description="Height of the floor in the last matching",
+        description="Height of the floor that the found poses stand on",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
     )
     matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
     active_match: bpy.props.IntProperty(
-        name="Match",
-        description="The match chosen in the list; choosing one goes there",
-        default=0,
+        name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}
+    )
+    shown_match: bpy.props.IntProperty(
+        name="Found Keyframe",
+        description="The found keyframe of the current frame; choosing one goes there",
         min=0,
-        update=_chosen,
+        get=_shown_match,
+        set=_choose_match,
     )
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_library_chance, KEYMARK_PG_matching)
+    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_matching)
 )

@@ -1,18 +1,20 @@
-"""Remove a matched keyframe."""
+"""Remove a found keyframe."""
 
 import bpy
 
 from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
+from ..shell.contradictions import note_contradictions
+from ..shell.found_frames import state_of
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
-from .matches import chosen_match, state_of
+from .matches import chosen_match
 
 
 class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
-    """Remove the chosen match and its keys; a pose of your own at its frame stays"""
+    """Remove this found keyframe and its keys; a pose of your own at its frame stays"""
 
     bl_idname = "keymark.remove_match"
     bl_label = "Remove"
@@ -20,7 +22,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the match; the next in the list is chosen."""
+        """Remove it; the next in the list is chosen."""
         from ..bridge.matched_keyframes import remove_keyframes
 
         scene = context.scene
@@ -28,13 +30,14 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         matching, match = take.matching, chosen_match(take)
         invalidate_keyed_frames()
         frame = round(match.frame, 3)
-        if state_of(take, match) == "MATCHED":
+        if state_of(take, match) == "FOUND":
             remove_keyframes(take.armature, take.keyframe_action, HUMAN, (frame,))
             invalidate_keyed_frames()
-        matching.matches.remove(matching.active_match)
-        matching.active_match = max(0, min(matching.active_match, len(matching.matches) - 1))
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        say(self, "INFO", "Removed the match at frame {frame:g}", frame=frame)
+        note_contradictions(take, frame, ())
+        removed = matching.shown_match
+        matching.matches.remove(removed)
+        matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
+        say(self, "INFO", "Removed the found keyframe at frame {frame:g}", frame=frame)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_match,))

@@ -1,28 +1,46 @@
-"""Replace the posture of a matched frame by another candidate."""
+"""Replace the posture of a found keyframe by another candidate."""
 
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.contradictions import note_contradictions
+from ..shell.messages import label, say
 from ..shell.requirements import actor, idle, matches
-from ..shell.takes import active_take
+from ..shell.takes import active_take, find_take
+from .candidate_titles import candidate_title
+from .improve_neighbors import improve_neighbors
 from .matches import chosen_match
 
 
 class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
-    """Key this posture at the chosen match's frame instead; what is keyed there is replaced"""
+    """Key this posture instead; what is keyed at the frame is replaced"""
 
     bl_idname = "keymark.replace_match"
-    bl_label = "Replace Match"
+    bl_label = "Take Candidate"
     bl_options = {"REGISTER", "UNDO"}
     requirements = (actor, matches, idle)
 
     candidate: bpy.props.IntProperty(
         name="Candidate",
-        description="Index of the chosen match's candidate to take; 0 is the one that matching chose",
+        description="Index of the candidate to take; 0 is the one that was chosen first",
         default=0,
         min=0,
     )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
+        take = find_take(context.scene)
+        matching = take.matching if take is not None else None
+        if matching is None or matching.shown_match >= len(matching.matches):
+            return str(cls.__doc__)
+        match = matching.matches[matching.shown_match]
+        if properties.candidate >= len(match.candidates):
+            return str(cls.__doc__)
+        said = candidate_title(match, match.candidates[properties.candidate])
+        return label(
+            "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said
+        )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key the candidate, and go to its frame."""
@@ -43,13 +61,20 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         match.chosen, match.by_hand = self.candidate, True
         key_candidate(take, match)
         match.go_to(context.scene)
-        say(
-            self,
-            "INFO",
-            "Frame {frame:g} shows {posture} now",
-            frame=match.frame,
-            posture=match.candidate.name,
-        )
+        frame, number = float(match.frame), self.candidate + 1
+        note_contradictions(take, frame, ())
+        improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
+        if improved:
+            say(
+                self,
+                "INFO",
+                "Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
+                frame=frame,
+                number=number,
+                improved=improved,
+            )
+        else:
+            say(self, "INFO", "Frame {frame:g} shows candidate {number}", frame=frame, number=number)
         return None
 
 

@@ -47,22 +47,24 @@ def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) 
     if closed and len(line):
         line = np.concatenate([line, line[:1]])
     finite = np.isfinite(line).all(axis=-1)
-    runs = np.split(line, np.flatnonzero(np.diff(finite)) + 1)
+    runs = [line] if finite.all() else np.split(line, np.flatnonzero(np.diff(finite)) + 1)
     parts = [_dashed_run(run, dash, gap) for run in runs if len(run) > 1 and np.isfinite(run[0]).all()]
     return np.concatenate(parts) if parts else np.empty((0, 2, line.shape[-1]))
 
 
 def _dashed_run(line: Array, dash: float, gap: float) -> Array:
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=-1))])
+    steps = line[1:] - line[:-1]
+    along = np.zeros(len(line))
+    np.cumsum(np.sqrt(np.einsum("nd,nd->n", steps, steps)), out=along[1:])
     period = max(dash + gap, along[-1] / MOST_DASHES)
     if along[-1] == 0.0:
         return np.empty((0, 2, line.shape[-1]))
     share = dash / (dash + gap)
     starts = np.arange(0.0, along[-1], period)
-    cuts = np.unique(np.concatenate([along, starts, starts + share * period]))
-    cuts = cuts[cuts <= along[-1]]
+    cuts = np.sort(np.concatenate([along, starts, starts + share * period]))
+    cuts = cuts[: np.searchsorted(cuts, along[-1], side="right")]
     middles = 0.5 * (cuts[1:] + cuts[:-1])
-    inked = (middles / period) % 1.0 < share
+    inked = ((middles / period) % 1.0 < share) & (cuts[1:] > cuts[:-1])
     at = np.stack([np.interp(cuts, along, column) for column in line.T], axis=-1)
     return np.stack([at[:-1], at[1:]], axis=1)[inked]
 

@@ -5,6 +5,7 @@ on the other side of the body a cross in a square.
 """
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -102,13 +103,20 @@ def not_yet_compared(
     found = []
     for each in seen:
         pixel = each.pixel.copy()
-        for column, name in enumerate(each.names):
-            same = [i for i, other in enumerate(keypoints.names) if other in (name, mirrored_point(name))]
+        for column, same in enumerate(_same_points(tuple(each.names), tuple(keypoints.names))):
             apart = np.linalg.norm(pixel[:, column, None] - keypoints.seen[index, same], axis=-1)
             pixel[(apart < SAME_PX).any(axis=1), column] = np.nan
         if np.isfinite(pixel).any():
             found.append(FrameKeypoints(each.source, each.names, pixel, each.score))
     return tuple(found)
+
+
+@lru_cache(maxsize=16)
+def _same_points(names: tuple[str, ...], others: tuple[str, ...]) -> tuple[list[int], ...]:
+    """For each name the indices of the others that are of its body point, on either side."""
+    return tuple(
+        [i for i, other in enumerate(others) if other in (name, mirrored_point(name))] for name in names
+    )
 
 
 def _crosses(places: Array, shown: BoolArray, colors: Array, directions: Array, style: Style) -> Stroke:

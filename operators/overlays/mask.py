@@ -5,6 +5,7 @@ names tell masks apart for color-blind eyes.
 """
 
 from collections.abc import Sequence
+from time import monotonic
 
 import bpy
 import gpu
@@ -22,6 +23,7 @@ from ..markers.mask_previews import (
     preview_of,
     update_masks,
 )
+from ..shell.footage_request import shown_request
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.takes import find_take
 from . import drawing
@@ -35,11 +37,14 @@ NAME_GAP = 4.0
 """Distance between an outline and the name above it [unscaled px]."""
 SHORTEST_NAMED = 0.25
 """Share of the longest outline's length below which outlines get no name."""
+LARGEST_SHARE = 0.2
+"""Of a frame's time: masks that take longer are not made while the animation plays. Overlays together are to
+take at most a third."""
 MESH = 24
 """Cells across the picture, which follow the lens distortion."""
 
-_drawn: dict[int, tuple[tuple[ColorMask, ...], gpu.types.GPUTexture]] = {}
-"""Cache of one: the masks that were drawn last, and their texture."""
+_drawn: dict[int, tuple[tuple[ColorMask, ...], float, gpu.types.GPUTexture]] = {}
+"""Cache of one: the masks that were drawn last, how dark all else was, and their texture."""
 
 
 def draw(context: bpy.types.Context) -> None:
@@ -57,17 +62,17 @@ def draw(context: bpy.types.Context) -> None:
 
 def draw_masks(preview: Preview, view: FootageView) -> None:
     """Draw the masks of a preview in the region of a view."""
-    _picture(_texture(preview), view)
+    draw_picture(_texture(preview), view)
     for mask in preview.masks:
         _outlines(mask, view)
     _names(preview.masks, view)
 
 
-def tinted(masks: Sequence[ColorMask]) -> SingleArray:
+def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleArray:
     """The masks as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
     rows, columns = masks[0].coverage.shape
     picture = np.zeros((rows, columns, 4), dtype=np.float32)
-    picture[..., 3] = DARKENING
+    picture[..., 3] = darkening
     for mask in masks:
         share = mask.coverage[..., None]
         picture = (1.0 - share) * picture + share * np.array([*mask.color, TINT], dtype=np.float32)
@@ -75,13 +80,14 @@ def tinted(masks: Sequence[ColorMask]) -> SingleArray:
 
 
 def _texture(preview: Preview) -> gpu.types.GPUTexture:
-    """The texture of a preview's masks; cached until the masks change."""
-    if 0 not in _drawn or _drawn[0][0] is not preview.masks:
-        _drawn[0] = (preview.masks, drawing.texture(tinted(preview.masks)))
-    return _drawn[0][1]
+    """The texture of a preview's masks, cached; what is still to be clicked on is not darkened."""
+    darkening = DARKENING if shown_request() is None else 0.0
+    if 0 not in _drawn or _drawn[0][0] is not preview.masks or _drawn[0][1] != darkening:
+        _drawn[0] = (preview.masks, darkening, drawing.texture(tinted(preview.masks, darkening)))
+    return _drawn[0][2]
 
 
-def _picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
+def draw_picture(texture: gpu.types.GPUTexture, view: FootageView) -> None:
     """Draw a texture over the footage, distorted as the view shows the footage."""
     cells = MESH if view.lens is not None else 1
     steps = np.linspace(0.0, 1.0, cells + 1)
@@ -139,21 +145,52 @@ def _frame_changed(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | Non
     """Make the masks of the scene's current frame."""
     if not bpy.context.window_manager.keymark_show_masks or bpy.app.is_job_running("RENDER"):
         return
+    if is_played() and not _cost.is_fast(scene):
+        return  # `draw` shows none that are of another frame
     try:
+        started = monotonic()
         update_masks(scene)
+        _cost.last_s = monotonic() - started
     except KeymarkError:
         clear_previews()  # the clip is missing, which the operator that shows masks reports
+
+
+@persistent
+def _stopped(scene: bpy.types.Scene, _depsgraph: bpy.types.Depsgraph | None = None) -> None:
+    """Make the masks that playback has left out."""
+    _cost.last_s = 0.0
+    _frame_changed(scene)
+
+
+def is_played() -> bool:
+    """Whether any window plays the animation."""
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+
+
+class Cost:
+    """How long the masks of a frame took to make."""
+
+    last_s = 0.0
+
+    def is_fast(self, scene: bpy.types.Scene) -> bool:
+        """Whether they take no more than their share of a frame's time, so that playback keeps its speed."""
+        return self.last_s <= LARGEST_SHARE * scene.render.fps_base / scene.render.fps
+
+
+_cost = Cost()
 
 
 def register() -> None:
     """Follow the scene's frame, unless Blender runs in the background."""
     if not bpy.app.background:
         bpy.app.handlers.frame_change_post.append(_frame_changed)
+        bpy.app.handlers.animation_playback_post.append(_stopped)
 
 
 def unregister() -> None:
     """Stop following it; release textures and open files."""
     if _frame_changed in bpy.app.handlers.frame_change_post:
         bpy.app.handlers.frame_change_post.remove(_frame_changed)
+        bpy.app.handlers.animation_playback_post.remove(_stopped)
     _drawn.clear()
     clear_previews()

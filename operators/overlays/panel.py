@@ -23,6 +23,8 @@ def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None
     column.prop(settings, "show_predicted")
     column.prop(settings, "show_keypoints")
     column.prop(settings, "show_skeleton")
+    column.prop(settings, "show_candidates")
+    column.prop(settings, "show_floor_grid")
     column.prop(settings, "show_legend")
     column = layout.column()
     column.prop(settings, "opacity")

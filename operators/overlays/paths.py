@@ -42,9 +42,10 @@ def paths(
         items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
         items.append(Stroke(ahead, color, style.width, style.halo))
     items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
-    for name, mark in zip(names, marks, strict=True):
-        color = style.color(side_color(name))
-        corners = diamonds(mark, style.size(DIAMOND))
-        items.append(Stroke(segments(corners, closed=True), color, 1.5, style.halo))
-        items.append(Fill(corners, color))
+    # All edges, then all diamonds: alike neighbors are drawn in one call.
+    corners = [diamonds(mark, style.size(DIAMOND)) for mark in marks]
+    colors = [style.color(side_color(name)) for name in names]
+    pairs = list(zip(corners, colors, strict=True))
+    items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]
+    items += [Fill(mark, color) for mark, color in pairs]
     return items

@@ -41,9 +41,23 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
+    show_candidates: bpy.props.BoolProperty(
+        name="Candidates",
+        description="Draw what else a found keyframe may show as faint figures, in the colors and with the "
+        "numbers of the buttons that take them",
+        default=True,
+        update=_changed,
+    )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
         description="Draw the paths of chosen points: past solid, future dashed, diamonds at keyframes",
+        default=False,
+        update=_changed,
+    )
+    show_floor_grid: bpy.props.BoolProperty(
+        name="Floor Grid",
+        description="Draw the floor as a grid of meters over the footage, and the horizon; if the camera is "
+        "right, feet stand on it, and what is parallel on the floor is parallel in the grid",
         default=False,
         update=_changed,
     )

@@ -33,12 +33,23 @@ class Overlay:
 OVERLAYS = (
     Overlay("Masks in the Viewport", "mask", "SpaceView3D"),
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
+    Overlay("Ignored Regions in the Viewport", "ignored", "SpaceView3D"),
+    Overlay("Ignored Regions in the Clip Editor", "ignored", "SpaceClipEditor"),
     Overlay("Keypoints in the Viewport", "keypoints", "SpaceView3D"),
     Overlay("Keypoints in the Clip Editor", "keypoints", "SpaceClipEditor"),
+    Overlay("Candidates in the Viewport", "candidates", "SpaceView3D"),
+    Overlay("Candidates in the Clip Editor", "candidates", "SpaceClipEditor"),
     Overlay("Motion in the Viewport", "viewport", "SpaceView3D"),
     Overlay("Motion in the Clip Editor", "clip_editor", "SpaceClipEditor"),
+    Overlay("Floor Grid in the Viewport", "floor_grid", "SpaceView3D"),
+    Overlay("Floor Grid in the Clip Editor", "floor_grid", "SpaceClipEditor"),
+    Overlay("Camera's Lines in the Viewport", "camera_lines", "SpaceView3D"),
+    Overlay("Camera's Lines in the Clip Editor", "camera_lines", "SpaceClipEditor"),
     Overlay("Measuring in the Viewport", "measuring", "SpaceView3D"),
     Overlay("Measuring in the Clip Editor", "measuring", "SpaceClipEditor"),
+    Overlay("Requests in the Viewport", "request", "SpaceView3D"),
+    Overlay("Requests in the Clip Editor", "request", "SpaceClipEditor"),
+    Overlay("Joints to Drag", "handles", "SpaceView3D"),
     Overlay("Speed and Confidence in the Timeline", "timeline", "SpaceDopeSheetEditor"),
 )
 """All overlays; those of one editor are drawn in this order."""

@@ -52,15 +52,29 @@ def skeleton(
     ]
 
 
-def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
-    """Lines in the colors of their sides; those of the right have a dark core."""
+def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, BoolArray]:
+    """Lines (N, 2, 2) of a body from its points (13, 2), and which of them (N,) are of the right side.
+
+    A line with an end that is not finite is left out.
+    """
+    lines, sides = _lines(names, positions)
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    return lines[seen], np.array([side == "R" for side in sides])[seen]
+
+
+def _lines(names: tuple[str, ...], positions: Array) -> tuple[Array, list[str]]:
     at = dict(zip(names, positions, strict=True))
     at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
     at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
-    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
-    colors = np.array([style.color(SIDES[side]) for side, _, _ in LIMBS])
+    return np.array([[at[start], at[end]] for _, start, end in LIMBS]), [side for side, _, _ in LIMBS]
+
+
+def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
+    """Lines in the colors of their sides; those of the right have a dark core."""
+    lines, sides = _lines(names, positions)
+    colors = np.array([style.color(SIDES[side]) for side in sides])
     seen = np.isfinite(lines).all(axis=(-2, -1))
-    hollow = seen & np.array([side == "R" for side, _, _ in LIMBS])
+    hollow = seen & np.array([side == "R" for side in sides])
     width = LIMB * style.width * style.body_scale
     return [
         Stroke(lines[seen], colors[seen], width, style.halo),

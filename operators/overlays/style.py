@@ -6,15 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.side_colors import LIGHT, Rgb, side_of
 from .drawing import Color, faded
 
-LEFT: Color = (0.34, 0.71, 0.91, 1.0)
-RIGHT: Color = (0.96, 0.66, 0.10, 1.0)
-MIDDLE: Color = (0.92, 0.92, 0.92, 1.0)
-"""Sky blue and orange, told apart by every kind of eye: Okabe and Ito (2008), *Color Universal Design*."""
+
+def _opaque(rgb: Rgb) -> Color:
+    red, green, blue = (level / 255.0 for level in rgb)
+    return (red, green, blue, 1.0)
+
+
+SIDES: Mapping[str, Color] = {side: _opaque(rgb) for side, rgb in LIGHT.items()}
+LEFT, RIGHT, MIDDLE = SIDES["L"], SIDES["R"], SIDES[""]
+"""Colors of the performer's sides, and of what has none."""
 CORE: Color = (0.08, 0.08, 0.08, 1.0)
 """Color of the core of a hollow line."""
-SIDES: Mapping[str, Color] = {"L": LEFT, "R": RIGHT, "": MIDDLE}
 SOURCES: tuple[Color, ...] = (
     (0.90, 0.55, 0.78, 1.0),
     (0.94, 0.89, 0.26, 1.0),
@@ -28,6 +33,10 @@ DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
 CORE_SHARE = 0.45
 """Thickness of the core of a hollow line, as a share of the line's."""
+CANDIDATE_COLORS = 8
+"""Colors of collections that Blender's themes have, with an icon each: those of a frame's candidates."""
+GHOST = 0.6
+"""Opacity of figures that are only offered."""
 LIMB = 2.4
 """Thickness of limbs relative to outlines."""
 METER, SMALLEST = 160.0, 0.35
@@ -69,9 +78,14 @@ def body_scale(pixels_per_meter: Array, scale: float) -> float:
     return float(np.clip(meter / METER, SMALLEST, 1.0))
 
 
+def candidate_icon(index: int) -> str:
+    """Icon in a candidate's color."""
+    return f"COLLECTION_COLOR_{index % CANDIDATE_COLORS + 1:02d}"
+
+
 def side_color(name: str) -> Color:
     """The color of a point by the side of the body in its name."""
-    return SIDES[name.partition(".")[2]]
+    return SIDES[side_of(name)]
 
 
 def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:

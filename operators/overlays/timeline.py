@@ -1,4 +1,4 @@
-"""Overlay of Timeline and Dope Sheet: speed in the footage, proposed and matched keyframes, confidence."""
+"""Overlay of Timeline and Dope Sheet: speed in the footage, proposed and found keyframes, confidence."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,8 @@ import numpy as np
 
 from ...core.arrays import Array, BoolArray
 from ..bridge.scene_frames import scene_frames
-from ..shell.keyed_frames import has_frame, is_posed, matched_frames
+from ..shell.found_frames import doubtful_matches
+from ..shell.keyed_frames import have_frames, matched_frames, posed_frames
 from ..shell.lru_cache import LruCache
 from ..shell.messages import label
 from ..shell.results import FootageSpeed, reading_of, review_of, speed_of
@@ -140,19 +141,20 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
         )
     weak = [weak.frame for weak in take.review.weak_frames] if settings.show_weak_frames else []
     proposed = [proposal.frame for proposal in take.proposals] if settings.show_proposals else []
+    posed = posed_frames(take) if weak or proposed else ()
     if weak:
-        frames = np.array([frame for frame in weak if not is_posed(take, frame)], dtype=np.float64)
-        items += weak_pointers(frames, timeline)
+        frames = np.array(weak, dtype=np.float64)
+        items += weak_pointers(frames[~have_frames(posed, frames)], timeline)
     shown_speed = speed if settings.show_speed else None
     matched = matched_frames(take) if settings.show_matches else ()
-    still = [frame for frame in proposed if not has_frame(matched, frame)]
-    if still:
-        frames = np.array(still, dtype=np.float64)
-        done = np.array([is_posed(take, frame) for frame in still])
-        items += proposals(frames, _level(frames, shown_speed), done, timeline)
+    if proposed:
+        frames = np.array(proposed, dtype=np.float64)
+        still = frames[~have_frames(matched, frames)]
+        items += proposals(still, _level(still, shown_speed), have_frames(posed, still), timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
-        doubtful = {round(match.frame, 3) for match in take.matching.matches if match.is_doubtful}
+        found = take.matching.matches
+        doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
         sure = np.array([frame not in doubtful for frame in matched])
         items += matches(frames, _level(frames, shown_speed), sure, timeline)
     return items
@@ -230,7 +232,7 @@ def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) 
 
 
 def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
-    """Squares on the graph at matched keyframes: hollow for doubtful ones, filled for sure ones."""
+    """Squares on the graph at found keyframes: hollow for doubtful ones, filled for sure ones."""
     x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
     marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))

@@ -25,8 +25,8 @@ class KEYMARK_PG_timeline(bpy.types.PropertyGroup):
         update=_changed,
     )
     show_matches: bpy.props.BoolProperty(
-        name="Matched Keyframes",
-        description="Squares at the keyframes matched with a library: hollow where the match is in doubt",
+        name="Found Keyframes",
+        description="Squares at the keyframes that were found and not posed: hollow where in doubt",
         default=True,
         update=_changed,
     )

@@ -3,15 +3,17 @@
 import bpy
 
 from ..shell.panel import TakePanel, draw_progress, draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
 
 
-class KEYMARK_PT_reconstruct(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     """Reconstruction, and the Action on the actor."""
 
     bl_label = "Reconstruct"
+    step = "reconstruct"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw the button or the running job, the method, and the switch between keyframes and motion."""
         take, column = active_take(context.scene), self.column()
         row = column.row()
@@ -48,7 +50,7 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
     def poll(cls, context: bpy.types.Context) -> bool:
         """There are notes."""
         take = find_take(context.scene)
-        return take is not None and len(take.notes) > 0
+        return super().poll(context) and take is not None and len(take.notes) > 0
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draw an icon, so that notes are noticed in the closed panel."""

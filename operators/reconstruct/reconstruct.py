@@ -100,7 +100,7 @@ def _check_enough(count: int, notes: tuple[str, ...]) -> None:
     """
     if count < 2:
         posed = "one keyframe lies" if count else "no keyframe lies"
-        asked = f"{posed} in the footage; at least 2 are needed, so match a library or pose the actor"
+        asked = f"{posed} in the footage; at least 2 are needed, so press Pose All or pose the actor"
         raise InputError(". ".join((asked, *notes)))
 
 

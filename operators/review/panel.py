@@ -5,7 +5,8 @@ import bpy
 from ..markers.properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.messages import label
-from ..shell.panel import RowList, TakePanel
+from ..shell.panel import RowList, TakePanel, draw_sentence
+from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
 
@@ -37,12 +38,19 @@ def reason_words(item: bpy.types.PropertyGroup) -> str:
     return f"{words}: {what}" if what else words
 
 
-class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
+class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
     """Confidence and weak frames."""
 
     bl_label = "Review"
+    step = "review"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    @classmethod
+    def summary(cls, take: bpy.types.PropertyGroup) -> str:
+        """The confidence, where it is known."""
+        believed = take.review.confidence
+        return label("{percent:.0f} %", percent=100.0 * believed) if believed >= 0.0 else ""
+
+    def draw_step(self, context: bpy.types.Context) -> None:
         """Draw confidence and the list."""
         review, column = active_take(context.scene).review, self.column()
         if review.frame_count == 0:
@@ -52,7 +60,7 @@ class KEYMARK_PT_review(TakePanel, bpy.types.Panel):
             words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
             column.progress(factor=review.confidence, text=words, type="BAR")
         if not len(review.weak_frames):
-            column.label(text="No frame needs another keyframe", icon="CHECKMARK")
+            draw_sentence(column, context, label("No frame needs another keyframe"), "CHECKMARK")
             return
         column.label(text="Worth Another Keyframe")
         column.template_list(

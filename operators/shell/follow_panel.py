@@ -2,8 +2,11 @@
 
 import bpy
 
-from .panel import TakePanel
+from .panel import TakePanel, is_roomy
 from .takes import active_take
+
+MOST_LETTERS = 7
+"""Of what fits beside a name in the header of a narrow sidebar: `13 of 17`, and no more."""
 
 
 class FollowPanel(TakePanel):
@@ -27,7 +30,9 @@ def draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, switch: 
 
 
 def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
-    """Draw what is seen in this frame, at the right end of a header."""
+    """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
+    if not is_roomy(bpy.context) and len(text) > MOST_LETTERS:
+        return
     row = layout.row()
     row.active = False
     row.label(text=text, translate=False)

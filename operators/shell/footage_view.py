@@ -65,10 +65,10 @@ def footage_view(
     return None
 
 
-def pixel_under(
+def view_of_footage_under(
     context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
-) -> tuple[float, float] | None:
-    """Return the footage pixel under the mouse; None if no editor shows the footage there.
+) -> FootageView | None:
+    """Return the region under the mouse that shows the footage; the mouse may lie beside the picture.
 
     Args:
         context: Its window is searched.
@@ -77,16 +77,27 @@ def pixel_under(
         mouse_y: The same from its bottom edge [px].
     """
     for area in context.screen.areas:
-        if not (area.x <= mouse_x < area.x + area.width and area.y <= mouse_y < area.y + area.height):
-            continue
         for region in area.regions:
-            view = footage_view(context.scene, take, area, region)
-            if view is None:
-                continue
-            x, y = view.to_footage((mouse_x - region.x, mouse_y - region.y))
-            if 0.0 <= x < view.size[0] and 0.0 <= y < view.size[1]:
-                return float(x), float(y)
+            x, y = mouse_x - region.x, mouse_y - region.y
+            if 0 <= x < region.width and 0 <= y < region.height:
+                view = footage_view(context.scene, take, area, region)
+                if view is not None:
+                    return view
     return None
+
+
+def pixel_under(
+    context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
+) -> tuple[float, float] | None:
+    """Return the footage pixel under the mouse; None if no editor shows the footage there.
+
+    The arguments are those of `view_of_footage_under`.
+    """
+    view = view_of_footage_under(context, take, mouse_x, mouse_y)
+    if view is None:
+        return None
+    x, y = view.to_footage((mouse_x - view.region.x, mouse_y - view.region.y))
+    return (float(x), float(y)) if 0.0 <= x < view.size[0] and 0.0 <= y < view.size[1] else None
 
 
 def shows_footage(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> bool:

@@ -68,6 +68,7 @@ class JobOperator(BaseOperator):
         """Start the job and its timer, whose events Blender passes to `modal`."""
         self._job = self.start(context.scene)
         self._scene_uid = context.scene.session_uid
+        context.window_manager.keymark_progress.frame = context.scene.frame_current_final
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
         self._slice_end = self._begun = monotonic()
         self._show(context, "Starting", 0.0)

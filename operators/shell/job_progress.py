@@ -2,9 +2,12 @@
 
 import bpy
 
+from .file_browser import is_browsing
 from .messages import label
 
 OPERATOR_PREFIX = "KEYMARK_OT_"
+TOOLS = ("KEYMARK_OT_drag_joints",)
+"""Modal operators that wait for the mouse in a view, and let everything else go on meanwhile."""
 EARLIEST_S, LEAST_FRACTION = 1.5, 0.03
 """Time and share done of a job before which the time left is not estimated."""
 
@@ -15,6 +18,7 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
     stage: bpy.props.StringProperty()
     fraction: bpy.props.FloatProperty(min=0.0, max=1.0)
     time_left: bpy.props.StringProperty()
+    frame: bpy.props.FloatProperty(description="The scene frame at which the job was begun")
 
     def show(self, stage: str, fraction: float, time_left: str = "") -> None:
         """Set all three."""
@@ -24,18 +28,30 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
 
 
 def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
-    """Whether one of Keymark's jobs runs in any window.
+    """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
     Args:
         context: Its windows are searched.
-        job: Only jobs whose operator's name begins so, as `keymark.reconstruct`; any by default.
+        job: Only operators whose name begins so, as `keymark.reconstruct`; any but `TOOLS` by default.
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
         operator.bl_idname.startswith(wanted)
+        and (job or operator.bl_idname not in TOOLS)
+        and not is_browsing(operator, context.window_manager)
         for window in context.window_manager.windows
         for operator in window.modal_operators
     )
+
+
+def steady_frame(context: bpy.types.Context) -> float:
+    """The scene's frame; while a job runs, the one at which it was begun.
+
+    Previews go through the clip, and panels that followed them would change their height under the mouse.
+    """
+    manager = context.window_manager
+    begun = manager.keymark_progress.stage and job_is_running(context)
+    return float(manager.keymark_progress.frame if begun else context.scene.frame_current_final)
 
 
 def time_left(elapsed_s: float, fraction: float) -> str:

@@ -1,12 +1,15 @@
-"""Scene frames of keyframes, posed and matched, cached so that redraws need not read the keys."""
+"""Scene frames of keyframes, posed and found, cached so that redraws need not read the keys."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
+from numpy.typing import ArrayLike
 
+from ...core.arrays import BoolArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
@@ -20,7 +23,7 @@ class KeyedFrames:
 
     all: tuple[float, ...] = ()
     untouched: tuple[float, ...] = ()
-    """Those whose keys are unchanged since matching wrote them."""
+    """Those whose keys are unchanged since they were found."""
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
@@ -28,12 +31,12 @@ _keyed: dict[tuple[int, int], KeyedFrames] = {}
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames of a take's keyframes, posed and matched, in ascending order."""
+    """Return the scene frames of a take's keyframes, posed and found, in ascending order."""
     return _keyed_of(take).all
 
 
 def matched_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that were matched with a library and not changed since, in ascending order."""
+    """Return the scene frames that were found in the footage and not changed since, in ascending order."""
     known = {round(match.frame, 3) for match in take.matching.matches}
     return tuple(frame for frame in _keyed_of(take).untouched if frame in known)
 
@@ -69,6 +72,16 @@ def has_frame(frames: Sequence[float], frame: float) -> bool:
     """Whether ascending frames contain one within `SAME_FRAME`."""
     after = bisect_left(frames, frame)
     return any(abs(near - frame) < SAME_FRAME for near in frames[max(0, after - 1) : after + 1])
+
+
+def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
+    """Which of the wanted frames (K,) ascending frames contain, as `has_frame` tells of one."""
+    asked, known = np.asarray(wanted, dtype=np.float64), np.asarray(frames, dtype=np.float64)
+    if not len(known):
+        return np.zeros(len(asked), dtype=bool)
+    after = np.searchsorted(known, asked)
+    near = np.stack([known[np.maximum(after - 1, 0)], known[np.minimum(after, len(known) - 1)]])
+    return np.asarray((np.abs(near - asked) < SAME_FRAME).any(axis=0))
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:

@@ -9,10 +9,16 @@ from textwrap import wrap
 import bpy
 
 from .job_progress import job_is_running
+from .steps import is_open
 from .takes import find_take
 
 ESCAPE_UNITS = 2.9
 """Width of the label Esc with its icon."""
+ROOMY_PX = 270.0
+"""Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""
+LINE_HEIGHT = 0.8
+"""Height of a line of a sentence, in rows."""
+FEWEST_LETTERS = 16
 LETTER_PX, MARGIN_PX = 6.2, 80.0
 """Width of a label's letter, and of what stands beside its text, at a UI scale of 1."""
 
@@ -33,18 +39,21 @@ class SubPanel(SidebarPanel):
 
     def column(self) -> bpy.types.UILayout:
         """Return the panel's column of properties."""
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
-        return self.layout.column()
+        return property_column(self.layout)
 
 
 class TakePanel(SubPanel):
-    """A panel of the active take; hidden without a take."""
+    """A panel of the active take; hidden without a take, and in a step that is folded."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a take."""
-        return find_take(context.scene) is not None
+        """Whether there is a take, and the step that the panel is in, if it is in one, is open."""
+        take = find_take(context.scene)
+        if take is None:
+            return False
+        parent = bpy.types.Panel.bl_rna_get_subclass_py(cls.bl_parent_id)
+        step = getattr(parent, "step", "")
+        return not step or is_open(take, step)
 
 
 class RowList:
@@ -93,6 +102,28 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     return True
 
 
+def property_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """Return a column of properties in Blender's two columns; in a narrow sidebar names are in the fields."""
+    layout.use_property_split = is_roomy(bpy.context)
+    layout.use_property_decorate = False
+    return layout.column()
+
+
+def side_by_side(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """Return where buttons stand side by side; in a narrow sidebar, which cuts names, in a column."""
+    return layout.row(align=True) if is_roomy(bpy.context) else layout.column(align=True)
+
+
+def is_roomy(context: bpy.types.Context) -> bool:
+    """Whether the sidebar that is drawn has room for two things in a row."""
+    return context.region is None or unscaled_width(context) >= ROOMY_PX
+
+
+def unscaled_width(context: bpy.types.Context) -> float:
+    """Width of the sidebar that is drawn, at a UI scale of 1 [px]."""
+    return float(context.region.width / (context.preferences.system.ui_scale or 1.0))
+
+
 def draw_sentence(
     layout: bpy.types.UILayout,
     context: bpy.types.Context,
@@ -109,10 +140,19 @@ def draw_sentence(
         icon: Icon before the first line.
         most_lines: Number of lines after which the sentence is cut off with dots.
     """
-    scale = context.preferences.system.ui_scale
-    letters = max(20, int((context.region.width / scale - MARGIN_PX) / LETTER_PX))
-    lines = layout.column(align=True)
-    lines.scale_y = 0.8
+    column = layout.column(align=True)
+    column.scale_y = LINE_HEIGHT
+    lines = _lines(context, sentence, most_lines)
+    for number, line in enumerate(lines):
+        column.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
+
+
+def sentence_height(context: bpy.types.Context, sentence: str) -> float:
+    """Height of what `draw_sentence` draws, in rows."""
+    return LINE_HEIGHT * len(_lines(context, sentence))
+
+
+def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = None) -> list[str]:
+    letters = max(FEWEST_LETTERS, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
-    for number, line in enumerate(wrap(kept, letters, max_lines=most_lines, placeholder=" ...")):
-        lines.label(text=line, icon=icon if number == 0 else "BLANK1", translate=False)
+    return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")

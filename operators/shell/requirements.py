@@ -8,7 +8,7 @@ from ..bridge.actor_bones import is_actor, missing_bones
 from .job_progress import job_is_running
 from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .messages import label
-from .takes import find_take
+from .takes import find_take, has_lost_actor, present_actor
 
 MOST_NAMED = 3
 """Missing bones that a sentence names."""
@@ -31,8 +31,10 @@ def camera(context: bpy.types.Context) -> str | None:
 def actor(context: bpy.types.Context) -> str | None:
     """The take's actor is in the scene and can be edited."""
     take = find_take(context.scene)
-    armature_object = take.armature if take else None
-    if armature_object is None or armature_object.name not in context.scene.objects:
+    if take is not None and has_lost_actor(take):
+        return "Bring the deleted actor back first, in the step Actor"
+    armature_object = present_actor(take) if take else None
+    if armature_object is None:
         return "Build the actor first, or choose its armature"
     if not is_actor(armature_object):
         return label(
@@ -86,9 +88,9 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
 
 
 def matches(context: bpy.types.Context) -> str | None:
-    """The take has frames matched with a library."""
+    """The take has found keyframes."""
     take = find_take(context.scene)
-    return None if take and len(take.matching.matches) else "Match a library first"
+    return None if take and len(take.matching.matches) else "Find keyframes first (Pose All)"
 
 
 def motion(context: bpy.types.Context) -> str | None:

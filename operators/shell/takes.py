@@ -55,6 +55,27 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
     return take.armature
 
 
+def present_actor(take: bpy.types.PropertyGroup) -> bpy.types.Object | None:
+    """Return a take's armature if it is in the scene.
+
+    Deleted with X it is in no scene any more, yet in the file, as long as the take points to it.
+    """
+    armature_object = take.armature
+    there = armature_object is not None and armature_object.name in take.id_data.objects
+    return armature_object if there else None
+
+
+def kept_actions(take: bpy.types.PropertyGroup) -> tuple[bpy.types.Action, ...]:
+    """Return the Actions of a take's actor: keyframes, motion and final; they outlive the actor."""
+    actions = (take.keyframe_action, take.motion_action, take.finish.action)
+    return tuple(action for action in actions if action is not None)
+
+
+def has_lost_actor(take: bpy.types.PropertyGroup) -> bool:
+    """Whether a take had an actor that is gone from the scene."""
+    return present_actor(take) is None and (take.armature is not None or bool(kept_actions(take)))
+
+
 def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
     """Add a take and make it the active one; a number makes its name unique."""
     settings = scene.keymark

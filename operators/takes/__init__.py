@@ -6,6 +6,7 @@ MODULES = (
     "save_take",
     "add_performer",
     "remove_take",
+    "dismiss_notice",
     "open_dropped",
     "file_handlers",
     "panel",

@@ -17,15 +17,16 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
     requirements = (footage, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add a take that shares clip, camera, guessed lens and keypoint files with the active one."""
+        """Add a take that shares clip, camera, guesses and keypoint files with the active one."""
         scene = context.scene
         source = active_take(scene)
         clip, camera, guessed = source.clip, source.camera, source.guessed_lens_mm
+        placement = tuple(source.guessed_placement)
         files = [keypoint_path(entry) for entry in source.follow.files]
         stem = source.name.partition(" Performer ")[0]
         number = sum(take.clip == clip for take in scene.keymark.takes) + 1
         take = add_take(scene, f"{stem} Performer {number}")  # may move `source` in memory
-        take.guessed_lens_mm = guessed
+        take.guessed_lens_mm, take.guessed_placement = guessed, placement
         take.camera, take.clip = camera, clip
         for path in files:
             add_keypoint_file(take, path)

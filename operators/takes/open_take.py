@@ -1,12 +1,12 @@
 """Open a take from disk: footage, camera, actor, what is followed, and keyframes."""
 
-from pathlib import Path
-
 import bpy
 
 from ..footage.take_footage import VIDEOS, look_through_camera, show_range
 from ..shell.base_operator import BaseOperator
+from ..shell.file_browser import browse, chosen_path
 from ..shell.messages import say
+from ..shell.notices import give_notices
 from ..shell.requirements import idle, object_mode_possible
 from ..shell.takes import active_take
 
@@ -39,18 +39,18 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
         """Show the file browser, unless a file was dropped."""
         if self.filepath:
             return self.execute(context)
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
+        return browse(self, context)
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the take, and only then change the scene."""
         from ...core.shoot.discovery.take_path import take_path
         from .take_to_scene import add_take_to_scene, read_for_scene
 
-        opened = read_for_scene(take_path(Path(bpy.path.abspath(self.filepath))), self.keyframes)
+        opened = read_for_scene(take_path(chosen_path(self)), self.keyframes)
         add_take_to_scene(context, opened)
         look_through_camera(context, active_take(context.scene))
         show_range(context)
+        give_notices(active_take(context.scene), "footage", "files", opened.notes)
         for note in opened.notes:
             self.report({"WARNING"}, note)
         count = len(opened.take.keyframes)

@@ -2,18 +2,20 @@
 
 import bpy
 
+from ..footage.fitted_view import keep_beside_sidebar
 from ..library import registry
 from ..shell.job_progress import job_is_running
-from ..shell.panel import RowList, SidebarPanel, draw_progress
+from ..shell.messages import label
+from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer
 
 STEPS = (
-    ("FILE_MOVIE", "Footage: load the clip, or open a take"),
+    ("FILE_MOVIE", "Footage: load the clip, say where the camera stood"),
     ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
     ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
-    ("KEY_HLT", "Keyframes: match a library, or pose the actor"),
+    ("KEY_HLT", "Keyframes: pose all, then correct the doubtful ones"),
     ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
     ("OVERLAY", "Review: see where another keyframe helps"),
     ("CHECKMARK", "Finish: bake, mark as asset, export"),
@@ -88,6 +90,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the takes, and the running job or the next step."""
         registry.refresh_if_empty()
+        keep_beside_sidebar(context)
         layout, take = self.layout, find_take(context.scene)
         if is_newer(context.scene):
             box = layout.box().column(align=True)
@@ -99,8 +102,13 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
                 _draw_beginning(layout)
             return
         _draw_takes(layout, context.scene.keymark)
-        if not draw_progress(layout, context):
-            layout.label(text=next_step(take), icon="FORWARD")
+        # As high as the sentence, so that nothing moves when a job begins or ends.
+        sentence = label(next_step(take))
+        row = layout.row()
+        row.scale_y = sentence_height(context, sentence)
+        if not draw_progress(row, context):
+            row.scale_y = 1.0
+            draw_sentence(row, context, sentence, "FORWARD")
 
 
 def _draw_beginning(layout: bpy.types.UILayout) -> None:

@@ -1,6 +1,7 @@
 """Properties of a take: a performer in a clip, what the animator enters and what Keymark finds."""
 
 from contextlib import suppress
+from math import pi
 
 import bpy
 
@@ -10,12 +11,16 @@ from ..actor.properties import KEYMARK_PG_lengths
 from ..bridge.actor_bones import is_actor
 from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
-from ..footage.properties import KEYMARK_PG_clip_state
+from ..footage import camera_fields
+from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state
 from ..footage.take_footage import camera_chosen, clip_chosen
 from ..keypoints.properties import KEYMARK_PG_follow
+from ..markers.ignored_properties import KEYMARK_PG_ignored_region
 from ..markers.properties import KEYMARK_PG_marker
-from ..matching.properties import KEYMARK_PG_matching
+from ..matching.properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
+from ..shell.contradictions import KEYMARK_PG_contradiction
+from ..shell.notices import KEYMARK_PG_notice
 from ..shell.takes import unique_name
 from ..turntable.properties import KEYMARK_PG_turntable
 
@@ -26,16 +31,21 @@ METHODS = (
 )
 
 
-def _is_actor(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return is_actor(candidate)
+def _is_actor(take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
+    """Whether an object may be the take's actor; deleted ones, which other takes still keep, may not."""
+    return is_actor(candidate) and candidate.name in take.id_data.objects
 
 
 def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Show the lengths of the chosen armature in the panel."""
+    """Show the lengths of the chosen armature in the panel, and animate it by what the take has."""
+    if not is_actor(take.armature):
+        return
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
+        from ..actor.restored_actor import reattach
         from ..actor.take_actor import show_lengths
         from ..bridge.actor_lengths import read_body
 
+        reattach(take)
         show_lengths(take, read_body(take.armature, HUMAN))
 
 
@@ -99,6 +109,54 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         min=0.0,
         options={"HIDDEN"},
     )
+    guessed_placement: bpy.props.FloatVectorProperty(
+        name="Guessed Place",
+        description="Height, tilt and roll with which the camera was put there by guess; zeros for none",
+        size=3,
+        precision=6,
+        options={"HIDDEN"},
+    )
+    camera_height: bpy.props.FloatProperty(
+        name="Height",
+        description="Height of the camera above the floor",
+        subtype="DISTANCE",
+        precision=3,
+        step=1,
+        min=0.01,
+        soft_max=10.0,
+        max=1000.0,
+        get=camera_fields.get_height,
+        set=camera_fields.set_height,
+    )
+    camera_tilt: bpy.props.FloatProperty(
+        name="Tilt",
+        description="By how much the camera looks up; negative where it looks down, 0 where it is level",
+        subtype="ANGLE",
+        precision=2,
+        step=10,
+        min=-pi / 2,
+        max=pi / 2,
+        get=camera_fields.get_tilt,
+        set=camera_fields.set_tilt,
+    )
+    camera_roll: bpy.props.FloatProperty(
+        name="Roll",
+        description="By how much the camera is turned about its view, counterclockwise from behind it; the "
+        "picture then leans clockwise",
+        subtype="ANGLE",
+        precision=2,
+        step=10,
+        min=-pi,
+        max=pi,
+        get=camera_fields.get_roll,
+        set=camera_fields.set_roll,
+    )
+    camera_lines: bpy.props.CollectionProperty(type=KEYMARK_PG_camera_line)
+    camera_findings: bpy.props.StringProperty(
+        name="Findings",
+        description="What the camera was found from, and how sure that is",
+        options={"HIDDEN"},
+    )
     turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
         name="Actor",
@@ -111,15 +169,28 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Height",
         description="The performer's body height, from which an actor of average proportions is built",
         subtype="DISTANCE",
-        precision=3,
+        precision=4,
         default=1.75,
         min=0.5,
         max=3.0,
     )
     lengths: bpy.props.PointerProperty(type=KEYMARK_PG_lengths)
+    rest_hips: bpy.props.FloatVectorProperty(
+        name="Hips at Rest",
+        description="Where the actor's hips are at rest in its own space, for one that is built anew",
+        size=3,
+        options={"HIDDEN"},
+    )
     markers: bpy.props.CollectionProperty(type=KEYMARK_PG_marker)
     active_marker: bpy.props.IntProperty(
         name="Active Marker", description="The marker that is chosen in the list", default=0, min=0
+    )
+    ignored_regions: bpy.props.CollectionProperty(type=KEYMARK_PG_ignored_region)
+    active_ignored: bpy.props.IntProperty(
+        name="Active Region",
+        description="The region without markers that is chosen in the list",
+        default=0,
+        min=0,
     )
     follow: bpy.props.PointerProperty(type=KEYMARK_PG_follow)
     keyframe_action: bpy.props.PointerProperty(
@@ -136,6 +207,8 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     proposals: bpy.props.CollectionProperty(type=KEYMARK_PG_proposal)
     matching: bpy.props.PointerProperty(type=KEYMARK_PG_matching)
+    contradictions: bpy.props.CollectionProperty(type=KEYMARK_PG_contradiction)
+    offered: bpy.props.PointerProperty(type=KEYMARK_PG_match)
     method: bpy.props.EnumProperty(
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )
@@ -150,6 +223,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         default=True,
     )
     notes: bpy.props.CollectionProperty(type=KEYMARK_PG_note)
+    notices: bpy.props.CollectionProperty(type=KEYMARK_PG_notice)
     reading_key: bpy.props.StringProperty(
         name="Reading", description="Key of the cached reading of the clip", options={"HIDDEN"}
     )

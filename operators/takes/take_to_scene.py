@@ -19,6 +19,7 @@ from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
 from ..keypoints.keypoint_paths import add_keypoint_file
+from ..markers.ignored_regions import add_ignored_regions
 from ..markers.marker_styles import set_marker_color
 from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
@@ -95,6 +96,7 @@ def _add_evidence(settings: bpy.types.PropertyGroup, opened: OpenedTake) -> None
         marker = settings.markers.add()
         marker.name, marker.segment = style.name, style.segment
         set_marker_color(marker, style.color_srgb)
+    add_ignored_regions(settings, opened.take.ignored_regions)
     for people in opened.take.keypoints:
         if people.file:
             add_keypoint_file(settings, Path(people.file))

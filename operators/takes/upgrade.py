@@ -7,6 +7,8 @@ from uuid import uuid4
 import bpy
 from bpy.app.handlers import persistent
 
+from ..bridge.actor_bones import hips_at_rest, is_actor
+from ..bridge.bone_colors import recolor_earlier
 from ..footage.take_footage import is_missing, update_clip_digest
 from ..shell.takes import VERSION, add_take
 
@@ -30,6 +32,10 @@ def upgrade_scene(scene: bpy.types.Scene) -> None:
         take.clip_state.missing = is_missing(take.clip)
         if take.clip is not None:
             update_clip_digest(take)
+        if is_actor(take.armature):
+            take.rest_hips = hips_at_rest(take.armature)
+            if take.armature.data.library is None:
+                recolor_earlier(take.armature.data)
     if len(settings.takes):
         settings.version = VERSION
 

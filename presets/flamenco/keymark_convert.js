@@ -54,11 +54,20 @@ const JOB_TYPE = {
                 "paper's filter. interpolation: the keyframes alone",
         },
         {
+            key: "keyframes",
+            type: "string",
+            choices: [AS_TAKES_SAY, "auto"],
+            default: AS_TAKES_SAY,
+            label: "Keyframes",
+            description:
+                "Keyframes of takes for which no file of the shoot says how they are found. auto finds them in the " +
+                "footage with all of the workers' libraries",
+        },
+        {
             key: "library",
             type: "string",
             choices: [
                 AS_TAKES_SAY,
-                "auto",
                 "aerobic",
                 "balance",
                 "jumping",
@@ -74,8 +83,8 @@ const JOB_TYPE = {
             default: AS_TAKES_SAY,
             label: "Keyframe Library",
             description:
-                "Library to match takes with for which no file of the shoot names one. auto chooses among all of the " +
-                "workers' libraries",
+                "Library to match takes with, in place of finding keyframes with all of them, for which no file of " +
+                "the shoot names one",
         },
         {
             key: "own_library",
@@ -222,10 +231,16 @@ function convertTask(settings, shoot, output, part, count) {
         words.push("--method", settings.method);
     }
     const own = settings.own_library_path || settings.own_library;
-    if (own) {
-        words.push("--library", own);
-    } else if (settings.library && settings.library !== AS_TAKES_SAY) {
-        words.push("--library", settings.library);
+    const library = own || (settings.library !== AS_TAKES_SAY && settings.library);
+    const found = settings.keyframes && settings.keyframes !== AS_TAKES_SAY;
+    if (found && library) {
+        throw `Keyframes is ${settings.keyframes} and the library is ${library}; it must be one of them`;
+    }
+    if (found) {
+        words.push("--keyframes", settings.keyframes);
+    }
+    if (library) {
+        words.push("--library", library);
     }
     for (const option of ["keypoints", "evidence"]) {
         if (settings[option]) {

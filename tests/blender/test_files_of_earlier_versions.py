@@ -65,6 +65,18 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return scene.keymark.takes[scene.keymark.active_take]
 
 
+DROPPED = ("].matching.ranking",)
+"""Properties of then that nothing needs any more: libraries are not ranked, all of them take part."""
+REPLACED = {"].matching.library_name": "auto", "].matching.library": "auto"}
+"""Values of then that say what another button says now: to find keyframes with all libraries is Pose All."""
+
+
+def is_gone(path: str, value: Any) -> bool:
+    """Whether a property of then, or what it said, is nothing that is kept in a file any more."""
+    replaced = any(path.endswith(name) and value == said for name, said in REPLACED.items())
+    return replaced or any(name in path for name in DROPPED)
+
+
 def found(scene: bpy.types.Scene, path: str) -> Any:
     """The value under a path of a scene's properties, as JSON."""
     value: Any = scene
@@ -115,7 +127,7 @@ def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> N
     differing = [
         f"{path}: {value} became {found(scene, path)}"
         for path, value in expected.items()
-        if not is_same(found(scene, path), value)
+        if not is_gone(path, value) and not is_same(found(scene, path), value)
     ]
     assert differing == []
 
@@ -168,7 +180,8 @@ def test_the_motion_is_reconstructed_and_finished_anew(saved: Saved, scene: bpy.
     take = active_take(scene)
     assert take.finish.outdated and take.review.frame_count == scene.frame_end
     assert take.notes[0].text.startswith(f"2 of {2 + matched} keyframes are posed")
-    assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.05)
+    # Intervals of found keyframes follow from their confidence now, and these are not too sure of themselves.
+    assert take.review.confidence == pytest.approx(saved.property("review.confidence"), abs=0.1)
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
     settings = active_take(scene).finish
     assert not settings.outdated and 0 < settings.keys_after < settings.keys_before
@@ -182,7 +195,7 @@ def test_matches_are_accepted_and_others_chosen(saved: Saved, scene: bpy.types.S
     (path,) = {path for path, _ in curves(action) if path.endswith('["pelvis"].location')}
     matched = saved.property("matching.matches.len")
     assert keys_by_type(curves(action)[path, 2]) == {"GENERATED": matched, "KEYFRAME": 2}
-    active_take(scene).matching.active_match = 1
+    active_take(scene).matching.shown_match = 1
     assert scene.frame_current == saved.property("matching.matches[1].frame")
     value = curves(action)[path, 2].evaluate(scene.frame_current)
     assert bpy.ops.keymark.replace_match(candidate=2) == {"FINISHED"}

@@ -46,6 +46,8 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
         ("add_usual_markers", ops.add_usual_markers),
         ("pick", pick),
         ("check_markers", ops.check_markers),
+        ("ignore_region", lambda: ops.ignore_region(path=CORNER, radius=3.0)),
+        ("remove_ignored_region", ops.remove_ignored_region),
         ("build_actor", lambda: ops.build_actor(stature=1.72)),
         ("apply_lengths", lambda: (_lengthen(), ops.apply_lengths())),
         ("propose_keyframes", ops.propose_keyframes),
@@ -62,6 +64,10 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
         ("add_performer", ops.add_performer),
         ("remove_take", ops.remove_take),
     ]
+
+
+CORNER = [{"name": "", "loc": (4.0, 4.0 + number), "time": 0.0} for number in range(3)]
+"""A short stroke of the brush, where no marker is."""
 
 
 def _lengthen() -> None:

@@ -24,6 +24,7 @@ ROOMS = (
     ("core.take",),
     ("core.matching",),
     ("core.estimate",),
+    ("core.posing",),
     ("core.finish", "core.review"),
     ("core.retarget",),
     ("core.shoot",),

@@ -14,12 +14,13 @@ from ...body.kinematics import Body
 from ...observation import depths
 from ...prior.frame_prior import FramePrior
 from ...prior.process_noise import REFERENCE_STEP_S
-from ..ankle_height import ANKLE_HEIGHT_STD_M
+from ..ankle_height import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from ..clip_problem import ClipProblem
 from ..clip_state import ClipState
 from ..keyframe_evidence import KeyframeEvidence
 from ..keypoint_evidence import KeypointEvidence
 from ..windows import Window
+from .balance import BalanceTerm
 from .belief import BeliefTerm
 from .contours import ContourTerm
 from .depth_hints import DepthHintTerm
@@ -117,6 +118,45 @@ def frame_terms(
     if points is not None and evidence.keypoints.model.names:
         terms += _frame_point_terms(evidence.keypoints, points, starts)
     return terms
+
+
+def free_frame_terms(
+    evidence: KeyframeEvidence,
+    observed: ObservedRegions,
+    starts: int,
+    floor_m: float | None,
+    noise: RegionNoise,
+    width_px: Array,
+    points: ObservedKeypoints | None = None,
+) -> tuple[CostTerm, list[CostTerm]]:
+    """The terms of one frame of which nothing is believed but that a person stands before the camera.
+
+    Args:
+        evidence: The models of markers and keypoints.
+        observed: The regions of this one frame, (1, M).
+        starts: Number of states of it, S.
+        floor_m: Height of the floor [m]; None where it is not known.
+        noise: Noise of the regions' features.
+        width_px: (1, M) half-width of each marker's limb [px].
+        points: The keypoints of this one frame, (1, N); None without any.
+
+    Returns:
+        The belief of each descent in its own start, and all else.
+    """
+    model, body = evidence.model, evidence.model.body
+    bias_std = noise.bias_std(width_px).reshape(1, -1)
+    repeated = observed[np.zeros(starts, dtype=np.intp)]
+    width = np.repeat(width_px, starts, axis=0)
+    terms: list[CostTerm] = [
+        RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
+        LimitTerm(),
+        BalanceTerm(body),
+    ]
+    if floor_m is not None:
+        terms.append(GroundTerm(_ankles(body), floor_m + standing_ankle_m(body)))
+    if points is not None and evidence.keypoints.model.names:
+        terms += _frame_point_terms(evidence.keypoints, points, starts)
+    return BeliefTerm.of(starts, body.skeleton.dof_count, bias_std), terms
 
 
 def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[CostTerm]:

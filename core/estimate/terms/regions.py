@@ -181,6 +181,7 @@ class RegionTerm:
         weight = np.sqrt(self.weights(residual, predicted, temperature))  # (F, M, 5)
         residual = np.where(weight > 0.0, residual, 0.0) * weight
         jacobian = (jacobian @ state.tangent_jacobian[:, None]) * weight[..., None]
+        jacobian[weight == 0.0] = 0.0  # a prediction behind the camera is no number
         shape = (state.frames, count * FEATURES)
         by_posture = jacobian.reshape(*shape, jacobian.shape[-1])
         equations.add_biased_rows(residual.reshape(shape), by_posture, weight.reshape(shape))
@@ -219,4 +220,4 @@ class RegionTerm:
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
         variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
-        return np.asarray(np.where(usable, trust, 0.0)[..., None] / variance)
+        return np.asarray(np.where(usable[..., None], trust[..., None] / variance, 0.0))

@@ -45,6 +45,7 @@ def learn_colors(
     images: Sequence[Image],
     samples_srgb: Sequence[tuple[int, int, int]],
     allowed: Sequence[Image | None] | None = None,
+    ignored: Sequence[Image | None] = (),
 ) -> LearnedColors:
     """Learn each marker's color distribution and the background's histogram.
 
@@ -56,8 +57,10 @@ def learn_colors(
         images: Sampled frames, (rows, columns, 3) uint8, on the searching grid.
         samples_srgb: One (red, green, blue) in 0..255 per marker.
         allowed: Per image, (M, rows, columns) 1 where each marker may be, or None for everywhere.
+        ignored: Per image, the mask (rows, columns) of pixels that are neither a marker nor background, or
+            None; empty for none at all.
     """
-    sampled = IndexedFrames(images)
+    sampled = IndexedFrames(images, ignored)
     initial = [sample_distribution(sample) for sample in samples_srgb]
     distributions = list(initial)
     core = labels = sampled.near(initial)

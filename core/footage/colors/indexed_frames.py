@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Image, IndexArray, IntArray
+from ..ignored_regions import is_ignored
 from ..segmentation.working_image import smooth
 from .color_model import ColorDistribution, weigh
 from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
@@ -57,8 +58,8 @@ class CroppedMask(NamedTuple):
 class IndexedFrames:
     """The sampled frames as indices into the table of the colors that occur in them."""
 
-    def __init__(self, images: Sequence[Image]) -> None:
-        """Count the colors of images (rows, columns, 3) uint8."""
+    def __init__(self, images: Sequence[Image], ignored: Sequence[Image | None] = ()) -> None:
+        """Count the colors of images (rows, columns, 3) uint8, each with the mask of its ignored pixels."""
         cells = [cell_index(smooth(image)) for image in images]
         present = np.zeros(CELL_COUNT, dtype=np.bool_)
         for cell in cells:
@@ -68,6 +69,9 @@ class IndexedFrames:
         rank = np.zeros(CELL_COUNT, dtype=np.intp)
         rank[self._table] = np.arange(len(self._table))
         self._images = [rank.take(cell) for cell in cells]
+        self._ignored = [
+            None if mask is None else is_ignored(mask) for mask in ignored or [None] * len(cells)
+        ]
 
     def near(self, distributions: Sequence[ColorDistribution]) -> Image:
         """Label each color of the table by the distribution in whose core it lies; 255 for none."""
@@ -89,8 +93,10 @@ class IndexedFrames:
     def regions(self, labels: Image, core: Image, markers: int) -> list[list[CroppedMask]]:
         """For each frame and marker, its connected regions with enough of its core color."""
         result = []
-        for image in self._images:
+        for image, ignored in zip(self._images, self._ignored, strict=True):
             label = labels.take(image)
+            if ignored is not None:
+                label[ignored] = NO_MARKER
             result.append([_core_regions(label, image, core, marker) for marker in range(markers)])
         return result
 
@@ -105,10 +111,12 @@ class IndexedFrames:
         return self._chroma[index].astype(np.float64), self._luma[index].astype(np.float64)
 
     def background_counts(self, masks: Sequence[Sequence[CroppedMask]]) -> Array:
-        """Smoothed histogram (CELL_COUNT,) of the colors at a distance from all masks."""
+        """Smoothed histogram (CELL_COUNT,) of the colors at a distance from all masks and ignored pixels."""
         total = np.zeros(len(self._table))
-        for image, placed in zip(self._images, masks, strict=True):
+        for image, ignored, placed in zip(self._images, self._ignored, masks, strict=True):
             covered = np.zeros(image.shape, dtype=np.uint8)
+            if ignored is not None:
+                covered[ignored] = 1
             for mask in placed:
                 mask.crop(covered)[:] |= mask.mask
             near = cv2.dilate(covered, KERNEL, iterations=BACKGROUND_MARGIN)

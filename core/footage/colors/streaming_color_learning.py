@@ -13,6 +13,7 @@ from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
 from ..detections import Detections, LearningRound
+from ..ignored_regions import IgnoredPixels
 from ..marker_style import MarkerStyle, color_groups
 from ..region_tracks import ExpectedRegions
 from ..segmentation.working_image import halvings, learning_image, measuring_image
@@ -49,6 +50,7 @@ class StreamingColorLearner:
         size: tuple[int, int],
         styles: Sequence[MarkerStyle],
         expected: ExpectedRegions | None = None,
+        ignored: IgnoredPixels | None = None,
     ) -> None:
         """Prepare for a clip.
 
@@ -57,9 +59,10 @@ class StreamingColorLearner:
             size: Width and height of its images in px.
             styles: The markers, M of them.
             expected: Their expected regions, to learn from the markers rather than from clutter.
+            ignored: The pixels that are no marker's in each frame.
         """
         self.groups = color_groups(styles)
-        self._path, self._styles, self._expected = path, styles, expected
+        self._path, self._styles, self._expected, self._ignored = path, styles, expected, ignored
         self._size, self._times = size, halvings(size)
         self._samples: list[tuple[int, Image]] = []
         self._spacing = 1
@@ -142,7 +145,11 @@ class StreamingColorLearner:
             allowed = [
                 self._allowed(index, image.shape[:2], self._expected) for index, image in self._samples
             ]
-        self._learned = learn_colors([image for _, image in self._samples], samples, allowed)
+        masks: list[Image | None] = []
+        if self._ignored is not None and self._ignored.regions:
+            whole = [self._ignored.mask(index) for index, _ in self._samples]
+            masks = [None if mask is None else learning_image(mask) for mask in whole]
+        self._learned = learn_colors([image for _, image in self._samples], samples, allowed, masks)
         self._most_found = np.maximum(self._most_found, self._learned.found)
         model = self._learned.model
         model_digest = digest(model.label, model.probability, self._learned.found)

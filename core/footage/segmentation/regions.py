@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, BoolArray, Image, IntArray, SingleArray
-from ..colors.color_model import ColorModel
-from .matting import coverage
+from ..colors.color_model import BACKGROUND, ColorModel
+from ..ignored_regions import without
+from .matting import Coverage, coverage
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 from .search_windows import MARGIN, Box, boxes_to_measure, colored_boxes
 from .window_atlas import Atlas, Window, pack_windows
@@ -56,7 +57,11 @@ NO_REGIONS = Regions(
 
 
 def find_regions(
-    images: Sequence[Image], times: int, model: ColorModel, before: Regions = NO_REGIONS
+    images: Sequence[Image],
+    times: int,
+    model: ColorModel,
+    before: Regions = NO_REGIONS,
+    ignored: Sequence[Image | None] = (),
 ) -> list[Regions]:
     """Detect the regions of the markers' colors in each of some successive images.
 
@@ -68,6 +73,7 @@ def find_regions(
         times: Number of halvings.
         model: The markers' colors.
         before: The regions of the frame before.
+        ignored: Of each image, the mask of its ignored pixels on the measuring grid, or None; empty for none.
     """
     grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
     factor = searching_factor(grid)
@@ -76,7 +82,11 @@ def find_regions(
     for color, (left, top, right, bottom) in zip(before.color.tolist(), before.box.tolist(), strict=True):
         followed[color].append((left, top, right, bottom))
     windows: list[Window] = []
-    for number, part in enumerate(np.split(label, len(images))):
+    parts = np.split(label, len(images))
+    for number, mask in enumerate(ignored):
+        if mask is not None:
+            parts[number] = without(parts[number], searching_image(mask, factor), BACKGROUND)
+    for number, part in enumerate(parts):
         for color, boxes in enumerate(followed):
             seen = colored_boxes(part, color, factor)
             for left, top, right, bottom in boxes_to_measure(seen, boxes):
@@ -84,10 +94,10 @@ def find_regions(
                 windows.append(Window(number, times, color, *box))
     if not windows:
         return [NO_REGIONS] * len(images)
-    return _measure(pack_windows(images, windows), images[0].shape, times, len(images), model)
+    return _measure(pack_windows(images, windows, ignored), images[0].shape, times, len(images), model)
 
 
-def color_masks(image: Image, model: ColorModel) -> SingleArray:
+def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -> SingleArray:
     """Coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
     For previews: as tracking measures it, clutter of the markers' colors included.
@@ -95,17 +105,20 @@ def color_masks(image: Image, model: ColorModel) -> SingleArray:
     Args:
         image: (rows, columns, 3) of the clip's size.
         model: The markers' colors, C of them.
+        ignored: Mask of the ignored pixels on the measuring grid; None for none.
     """
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
+    if ignored is not None:
+        label = without(label, ignored, BACKGROUND)
     masks = np.zeros((len(model.distributions), *grid.shape[:2]), dtype=np.float32)
     for color, mask in enumerate(masks):
         left, top, columns, rows = cv2.boundingRect(np.equal(label, color).view(np.uint8))
         if not columns:
             continue
         around = (left - MARGIN, top - MARGIN, left + columns + MARGIN, top + rows + MARGIN)
-        atlas = pack_windows([grid], [Window(0, 0, color, *around)])
-        covered = coverage(atlas.picture, np.minimum(_components(atlas, model).number, 1).astype(np.uint8))
+        atlas = pack_windows([grid], [Window(0, 0, color, *around)], [ignored])
+        covered = _coverage(atlas, _components(atlas, model))
         share = np.zeros(atlas.picture.shape[:2], dtype=np.float32)
         share.ravel()[covered.pixel] = covered.share
         a, b, c, d = np.clip(around, 0, (*grid.shape[1::-1], *grid.shape[1::-1])).tolist()
@@ -122,6 +135,8 @@ class _Components(NamedTuple):
     """(K, 4) left, top, right, bottom on the atlas."""
     certainty: Array
     """(K,) mean probability of the pixels' color in 0..1."""
+    cut: BoolArray
+    """(K,) whether ignored pixels of its color touch it: it is seen in part, as at the image's border."""
 
 
 def _components(atlas: Atlas, model: ColorModel) -> _Components:
@@ -133,6 +148,9 @@ def _components(atlas: Atlas, model: ColorModel) -> _Components:
     used = np.arange(len(label))[:, None] < atlas.height
     mask = ((label == atlas.color) & used).view(np.uint8)
     closed = cv2.morphologyEx(mask, cv2.MORPH_CLOSE, CROSS)
+    if atlas.ignored is not None:
+        hidden = np.flatnonzero(closed.view(np.bool_) & atlas.ignored)
+        closed = np.where(atlas.ignored, np.uint8(0), closed)
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
     region, sureness = number.take(pixel), probability.take(pixel)
@@ -145,7 +163,18 @@ def _components(atlas: Atlas, model: ColorModel) -> _Components:
     renumbered = np.zeros(count, dtype=np.uint16)
     renumbered[kept] = np.arange(1, len(kept) + 1)
     box = np.stack([left, top, left + width, top + height], axis=-1)
-    return _Components(renumbered.take(np.asarray(number)), box, certainty / area)
+    numbered, cut = renumbered.take(np.asarray(number)), np.zeros(len(kept) + 1, dtype=np.bool_)
+    if atlas.ignored is not None:
+        cut[np.asarray(cv2.dilate(numbered, CROSS)).take(hidden)] = True
+    return _Components(numbered, box, certainty / area, cut[1:])
+
+
+def _coverage(atlas: Atlas, found: _Components) -> Coverage:
+    """The share of each pixel that the components cover; none of the ignored ones."""
+    covered = coverage(atlas.picture, np.minimum(found.number, 1).astype(np.uint8))
+    if atlas.ignored is None:
+        return covered
+    return covered._replace(share=covered.share * ~atlas.ignored.take(covered.pixel))
 
 
 def _measure(
@@ -153,7 +182,7 @@ def _measure(
 ) -> list[Regions]:
     """Measure the regions on a atlas, in pixels of the grid that images of a shape halved `times` make."""
     found = _components(atlas, model)
-    covered = coverage(atlas.picture, np.minimum(found.number, 1).astype(np.uint8))
+    covered = _coverage(atlas, found)
     # Pixels in the band beyond the edges belong to the region beside it.
     owner = np.asarray(cv2.dilate(found.number, CROSS, iterations=2), dtype=np.uint16).take(covered.pixel)
     row = covered.pixel // len(atlas.color)
@@ -169,6 +198,7 @@ def _measure(
     limits = limits >> times
     box = np.clip((found.box + np.tile(atlas.shift[:, first].T, 2)) * scale[:, None], 0, limits)
     clipped = (box[:, :2] <= 0).any(axis=1) | (box[:, 2:] > limits[2:] - scale[:, None]).any(axis=1)
+    clipped |= found.cut
     image, color = atlas.image[first], atlas.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= FEWEST_PIXELS]

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from ...arrays import Image, IntArray
+from ...arrays import BoolArray, Image, IntArray
+from ..ignored_regions import is_ignored
 from .working_image import measuring_image
 
 NO_COLOR = 254
@@ -44,14 +45,19 @@ class Atlas(NamedTuple):
     """(2, columns) offset of a column, and of its rows, to the halved image."""
     scale: IntArray
     """(columns,) pixels of the image to one of the atlas."""
+    ignored: BoolArray | None = None
+    """(rows, columns) pixels that are no region's; None where there are none."""
 
 
-def pack_windows(images: Sequence[Image], windows: Sequence[Window]) -> Atlas:
+def pack_windows(
+    images: Sequence[Image], windows: Sequence[Window], masks: Sequence[Image | None] = ()
+) -> Atlas:
     """Cut windows out of images and lay them side by side.
 
     Args:
         images: (rows, columns, 3), all of one size.
         windows: What to cut out, at least one; each overlaps its image.
+        masks: Of each image, the ignored pixels of the image halved as its windows are; empty for none.
     """
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))
@@ -59,18 +65,23 @@ def pack_windows(images: Sequence[Image], windows: Sequence[Window]) -> Atlas:
     color = np.full(width, NO_COLOR, dtype=np.uint8)
     image, used = np.zeros((2, width), dtype=np.int64)
     shift, scale = np.zeros((2, width), dtype=np.int64), np.ones(width, dtype=np.int64)
+    ignored = np.zeros((height, width), dtype=np.uint8) if any(mask is not None for mask in masks) else None
     start = 0
     for window in windows:
         columns, rows = window.right - window.left, window.bottom - window.top
         end = start + columns
         picture[:, start : end + 1] = _cut(images[window.image], window, height)
+        mask = masks[window.image] if ignored is not None else None
+        if ignored is not None and mask is not None:
+            ignored[:, start : end + 1] = _cut(mask, window._replace(times=0), height)
         # Smoothing mixes the first column with the panel to its left.
         color[start + 1 : end] = window.color
         panel = slice(start, end + 1)
         image[panel], used[panel], scale[panel] = window.image, rows, 1 << window.times
         shift[0, panel], shift[1, panel] = window.left - start, window.top
         start = end + 1
-    return Atlas(picture, image, color, used, shift, scale)
+    hidden = None if ignored is None else is_ignored(ignored)
+    return Atlas(picture, image, color, used, shift, scale, hidden)
 
 
 def _cut(image: Image, window: Window, height: int) -> Image:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
+from ...library.several_libraries import COMPOSED
 from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 from ...take.used_evidence import UsedEvidence
@@ -88,11 +89,13 @@ def _footage(path: str, record: ConversionRecord) -> str:
 
 
 def _made_from(record: ConversionRecord) -> str:
-    matched = len(record.matched)
-    posed = len(record.keyframes) - matched
-    counts = [f"{count} {word}" for count, word in ((posed, "posed"), (matched, "matched")) if count]
+    found, doubtful = len(record.matched), len(record.doubtful)
+    posed = len(record.keyframes) - found
+    counts = [f"{count} {word}" for count, word in ((posed, "posed"), (found, "found")) if count]
     keyframes = "keyframe" if len(record.keyframes) == 1 else "keyframes"
+    keyframes += f" ({doubtful} doubtful)" if doubtful else ""
     library = "" if record.library is None else f", library {isolated(record.library)}"
+    library = ", all libraries" if record.library == COMPOSED else library
     evidence = "" if record.evidence is None else f"{_evidence(record.evidence)}; "
     return f"{evidence}{' and '.join(counts) or 'no'} {keyframes}{library}, method {escaped(record.method)}"
 

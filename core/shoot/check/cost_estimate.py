@@ -6,7 +6,7 @@ Measured on one processor of 2023 with clips of 320 x 240 to 1280 x 720; another
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from ...library.texts import EVERY_LIBRARY
+from ...library.several_libraries import EVERY_LIBRARY
 from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 
 SECONDS_A_TAKE = 0.9
@@ -21,8 +21,8 @@ SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
 SECONDS_TO_MATCH = 0.02
 """A frame, with one library."""
-SECONDS_TO_CHOOSE = 0.055
-"""A frame, with all libraries, to choose one."""
+SECONDS_TO_POSE = 0.1
+"""A frame, with all libraries."""
 BYTES_A_TAKE = 1_800_000
 BYTES_A_FRAME = 5_000
 
@@ -50,7 +50,7 @@ def estimate_cost(
         frames: Number of frames of its clip.
         size: Width and height of the clip [px].
         method: One of `METHODS`.
-        library: The library it is matched with, or None.
+        library: The library that keyframes are found with, `EVERY_LIBRARY` for all of them, or None.
         evidence: Kinds of evidence that it is held against.
     """
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
@@ -59,5 +59,5 @@ def estimate_cost(
     if method == "map" and CONTOURS in evidence:
         a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
     if library is not None:
-        a_frame += SECONDS_TO_CHOOSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
+        a_frame += SECONDS_TO_POSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)

@@ -1,5 +1,7 @@
 """The check of a take's clip from a few frames: frame count, light, and how well the markers are seen."""
 
+import json
+
 import numpy as np
 
 from ...footage.clips.clip import Clip
@@ -9,6 +11,8 @@ from ...footage.clips.image_sequence import ImageSequence
 from ...footage.clips.packets import read_packets
 from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.clips.video_file import VideoFile
+from ...footage.ignored_region_fields import IGNORED_REGIONS, ignored_region_fields
+from ...footage.ignored_regions import IgnoredRegion
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
 from ...take.clip_check import check_size
@@ -91,7 +95,22 @@ def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tu
     findings.problem(*(f"{take.clip}: marker {sentence}" for sentence in missing))
     for readout in check.readouts:
         findings.warn(*(warning for warning in readout.warnings if warning not in missing))
+    _propose_to_ignore(take, check, findings)
     return check.readouts
+
+
+def _propose_to_ignore(take: Take, check: MarkerCheck, findings: Findings) -> None:
+    """Say what take.json must hold for the still areas of the markers' colors to be left out."""
+    names = [readout.name for readout in check.readouts if readout.still_boxes]
+    if not names:
+        return
+    boxes = dict.fromkeys(box for readout in check.readouts for box in readout.still_boxes)
+    every = [*take.ignored_regions, *(IgnoredRegion(box=box) for box in boxes)]
+    field = json.dumps(ignored_region_fields(every, take.frame_start))
+    findings.warn(
+        f"still areas have the color of {' and '.join(names)}; they are left out where {take.file.name} says "
+        f'"{IGNORED_REGIONS}": {field}'
+    )
 
 
 def _check_light(samples: ClipSamples, findings: Findings) -> bool:
@@ -120,11 +139,11 @@ def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findi
     Markers found elsewhere only are a warning: camera, keyframes or clip do not fit each other.
     """
     if findings.problems or len(take.keyframes) < 2 or frames > MOST_EXPECTED:
-        return run(check_markers(samples, take.markers))
-    nearby = run(check_markers(samples, take.markers, expected_regions(take, frames)))
+        return run(check_markers(samples, take.markers, ignored=take.ignored_regions))
+    nearby = run(check_markers(samples, take.markers, expected_regions(take, frames), take.ignored_regions))
     if all(readout.found >= ASTRAY * readout.sampled for readout in nearby.readouts):
         return nearby
-    anywhere = run(check_markers(samples, take.markers))
+    anywhere = run(check_markers(samples, take.markers, ignored=take.ignored_regions))
     astray = [
         f"{near.name} in {free.found - near.found} of {free.found} frames"
         for free, near in zip(anywhere.readouts, nearby.readouts, strict=True)

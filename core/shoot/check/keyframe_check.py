@@ -9,19 +9,19 @@ from ...take.take import Take
 from .findings import Findings
 
 LONGEST_GAP_S = 1.0
-"""Longest gap between keyframes without a warning where no library fills it: ten in 100 frames are usual."""
+"""Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
 FEWEST_IN_PICTURE = 0.5
 """Share of a keyframe's points that must lie in the picture."""
 MOST_NAMED = 3
 
 
-def check_keyframes(take: Take, frames: int, with_library: bool, findings: Findings) -> None:
+def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findings) -> None:
     """Check keyframes that could be read.
 
     Args:
         take: A take.
         frames: Number of frames of its clip.
-        with_library: Whether the take is matched with a library, which fills gaps.
+        others_found: Whether keyframes are found beside them, which fills gaps.
         findings: Receives the sentences.
     """
     _check_fit(take, findings)
@@ -30,7 +30,7 @@ def check_keyframes(take: Take, frames: int, with_library: bool, findings: Findi
         check_in_front(take)
     if findings.problems or not take.keyframes:
         return
-    if not with_library:
+    if not others_found:
         _check_gaps(take, frames, findings)
     _check_picture(take, findings)
 
@@ -56,7 +56,7 @@ def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
         first, last = ends[longest] + take.frame_start, ends[longest + 1] + take.frame_start
         findings.warn(
             f"{len(take.keyframes)} keyframes for {frames} frames are few: from frame {first} to {last}, "
-            f"{seconds:.1f} s, there is none; pose more, or name a library to match"
+            f"{seconds:.1f} s, there is none; pose more, or let --keyframes auto find the others"
         )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...matching.match_take import take_to_match
+from ...matching.match_input import check_followed
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -16,6 +16,7 @@ from ...take.evidence_kinds import CONTOURS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
+from ...take.take_to_pose import take_to_pose
 from ..shoot import ShootTake
 from .cost_estimate import CostEstimate, estimate_cost
 from .findings import Findings
@@ -51,6 +52,7 @@ class TakeCheck:
     keyframes: int = 0
     """Keyframes that a person posed."""
     library: str | None = None
+    """Setting by which the others are found; None where all are posed."""
     cost: CostEstimate | None = None
     """Cost of its conversion; None where it would not convert."""
 
@@ -100,6 +102,9 @@ def check_take(
     if take is not None and clip is not None and frames is not None:
         with findings.catching():
             check_method(take, settings.method or METHODS[0])
+        if settings.library is not None:
+            with findings.catching():
+                check_followed(take)
         check_keyframes(take, frames, settings.library is not None, findings)
         keypoints = check_keypoints(take, frames, findings)
         markers = check_footage(take, clip, frames, findings)
@@ -114,7 +119,7 @@ def _read(description: Description, settings: ConversionSettings, findings: Find
     with findings.catching():
         if settings.library is None:
             return read_described(description, settings.keyframes, settings=settings)
-        return take_to_match(description, settings.keyframes, settings)
+        return take_to_pose(description, settings.keyframes, settings)
     with findings.catching():
         without = replace(settings, keypoints=())
         return read_described(

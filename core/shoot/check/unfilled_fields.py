@@ -4,13 +4,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...files.fields import Fields
-from ...files.inherited_fields import child_location
+from ...files.inherited_fields import PLACED, child_location
 
 _CAMERA = {
     "lens_mm": "the focal length in millimeters",
     "sensor_width_mm": "the sensor's width in millimeters, 36 where lens_mm is that of full frame",
-    "matrix_world": "where the camera stood, four rows of four numbers",
+    "height_m": "the camera's height above the floor in meters",
+    "tilt_deg": "by how many degrees the camera looked up, negative where it looked down, 0 where level",
+    "matrix_world": "where the camera stood, four rows of four numbers; height_m and tilt_deg do as well",
 }
+_POSES = ("matrix_world", "matrix_world_frames")
+_PLACE = (*PLACED, *_POSES)
 _COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
 _HEIGHT = "the performer's height in meters"
 
@@ -23,8 +27,10 @@ def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
     """
     sentences = []
     camera = _child(fields, "camera")
+    posed = any(camera.has(name) for name in _POSES)
     for name, valid in _CAMERA.items():
-        if name in camera.values and not camera.has(name) and not camera.has(f"{name}_frames"):
+        said_otherwise = (name in _PLACE and posed) or (name in _POSES and camera.has("height_m"))
+        if name in camera.values and not camera.has(name) and not said_otherwise:
             sentences.append(_sentence(camera, name, valid))
     markers = _child(fields, "markers")
     for name in markers.values:

@@ -4,6 +4,7 @@ from typing import Any
 
 from ...files.fields import listed
 from ...footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
+from ...library.several_libraries import EVERY_LIBRARY
 from ...take.evidence_kinds import MARKERS
 from ...take.shoot_file import SCHEMA_VERSION
 from ...text import pluralize
@@ -12,7 +13,6 @@ from .clip_survey import ClipSurvey
 USUAL_MARKERS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 """The paper's five markers."""
 MOST_NAMED = 5
-AUTO = "auto"
 NO_MARKERS = [
     "left out, for no garments in strong colors were found; where some are worn, it must say which:",
     '"trunk": {"color_srgb": [red, green, blue]}, "forearm.L": ... inside braces',
@@ -46,7 +46,7 @@ def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
         "//height_m": "the performer's height in meters; lengths measured one by one (segments_m) are better",
         "height_m": None,
     }
-    return fields | _library(survey)
+    return fields | _keyframes(survey)
 
 
 def clip_lines(survey: ClipSurvey) -> list[str]:
@@ -102,14 +102,22 @@ def _camera(survey: ClipSurvey) -> dict[str, Any]:
             "left out, for the clips differ: each tells its own; say so nearer to those that were filmed",
             "with another lens or from elsewhere",
         ]
-    camera["//matrix_world"] = [
-        "where the camera stood, in meters, as four rows. Blender's Python console tells that of a camera:",
-        "[list(row) for row in bpy.context.scene.camera.matrix_world]",
-        "Of one that stood level, H above the floor and D before the performer, who is at the origin:",
-        "[[1, 0, 0, 0], [0, 0, -1, -D], [0, 1, 0, H], [0, 0, 0, 1]]",
-        f"With this lens a whole person fits the picture from D = {distance:.1f} on at H = {EYE_HEIGHT_M:g}.",
+    camera["//height_m"] = [
+        "height of the camera above the floor in meters; a phone in standing hands is at about",
+        f"{EYE_HEIGHT_M:g}. Blender finds it with any of the clips: Load Footage, then From Lines or",
+        "From the Performer in the step Footage.",
     ]
-    camera["matrix_world"] = None
+    camera["height_m"] = None
+    camera["//tilt_deg"] = [
+        "degrees by which it looked up, negative where it looked down, 0 where it was level; also roll_deg,",
+        "where it was turned about its view, counterclockwise for its operator.",
+    ]
+    camera["tilt_deg"] = None
+    camera["//distance_m"] = [
+        "from the camera to the world's origin, about where the performer is to stand in the result; with",
+        f"this lens a whole person fits the picture from {distance:.1f} on. It changes nothing else.",
+    ]
+    camera["distance_m"] = round(distance, 1)
     return camera
 
 
@@ -159,18 +167,19 @@ def _markers(survey: ClipSurvey) -> dict[str, Any]:
     return markers | {name: {"color_srgb": None} for name in USUAL_MARKERS}
 
 
-def _library(survey: ClipSurvey) -> dict[str, Any]:
+def _keyframes(survey: ClipSurvey) -> dict[str, Any]:
     if not survey.unposed:
         return {}
     missing = "no clip has" if survey.unposed == len(survey.clips) else f"{survey.unposed} clips have no"
     return {
-        "//library": [
-            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): these are matched with a",
-            "keyframe library, auto for the likeliest or a name out of keymark library list. Posed keyframes",
-            "are more exact; with a library some are enough.",
+        "//keyframes": [
+            f"{missing} keyframes (NAME.keyframes.json beside the clip NAME): auto finds them in the",
+            "footage with all libraries. Where all clips show one kind of motion, library with a name out of",
+            "keymark library list, in place of this, matches that alone. Posed keyframes are more exact;",
+            "beside found ones a few are enough.",
         ],
-        "library": AUTO,
-        "//floor_m": "height of the floor where the matrix above says how high the camera stood",
+        "keyframes": EVERY_LIBRARY,
+        "//floor_m": "height of the floor in the world; 0 where height_m above is the height over it",
         "floor_m": 0.0,
     }
 

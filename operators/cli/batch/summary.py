@@ -51,7 +51,7 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
     record = current_record(outcome)
     for name in ("notes", "confidence", "weakest", "weak_frames", "frames", "frame_start", "fps"):
         fields[name] = None if record is None else getattr(record, name)
-    for name in ("method", "library", "keyframes", "matched"):
+    for name in ("method", "library", "keyframes", "matched", "doubtful"):
         fields[name] = None if record is None else getattr(record, name)
     evidence = None if record is None else record.evidence
     fields["evidence"] = None if evidence is None else evidence.to_json()

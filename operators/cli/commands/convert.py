@@ -16,24 +16,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--keyframes",
-        metavar="FILE",
-        type=Path,
-        help="keyframe file; by default TAKE/keyframes.json, with --library none",
+        metavar="FILE|auto",
+        help="keyframe file, by default TAKE/keyframes.json; or auto: nothing needs to be posed, keyframes "
+        "are found in the footage with all libraries there are",
     )
     add_keypoint_files(parser)
     add_evidence(parser)
     parser.add_argument(
         "--library",
         metavar="NAME|FILE|auto",
-        help="match the footage with this keyframe library; auto chooses among all there are and says how "
-        "sure it is, or that none fits",
+        help="find keyframes by matching the footage with this keyframe library alone; auto is --keyframes "
+        "auto. --keyframes FILE beside it has posed keyframes, which stay",
     )
     parser.add_argument(
         "--floor",
         metavar="HEIGHT",
         type=float,
         help="height of the floor in meters where it is known, which says best how far away the performer "
-        "is; with --library",
+        "is; where keyframes are found",
     )
     parser.add_argument(
         "--method",
@@ -56,8 +56,9 @@ CONVERT = Command(
     summary="convert a take to motion.json, motion.blend, motion.bvh and pictures",
     description=(
         "Reconstructs a take's motion. OUT then holds motion.json, motion.blend, motion.bvh and, in report/, "
-        "pictures of the result; it changes only once all of them are complete. With --library nothing needs "
-        "to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes that were matched."
+        "pictures of the result; it changes only once all of them are complete. With --keyframes auto or "
+        "--library nothing needs to be posed: TAKE/keyframes.json is left aside, and OUT gets the keyframes "
+        "that were found."
     ),
     add_arguments=add_arguments,
     run=run,

@@ -12,7 +12,6 @@ from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
-from ....core.matching.match_take import take_to_match
 from ....core.progress import run
 from ....core.report.body_outlines import performer_contours
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
@@ -31,6 +30,7 @@ from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
+from ....core.take.take_to_pose import take_to_pose
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..require_blender import require_blender
@@ -38,7 +38,7 @@ from ..version import version
 from .blender_files import BLEND, BVH, write_blender_files
 from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
 from .character_result import CHARACTER_BLEND, CHARACTER_PICTURE, opened_character, write_character_result
-from .matched_keyframes import reconstruct_or_match
+from .found_keyframes import find_and_reconstruct
 from .result import Conversion, conversion_record
 from .unsupported_paths import refuse_unsupported_paths
 
@@ -91,13 +91,12 @@ def convert_take(
         description: The take's description.
         output: Folder for the results; it changes only when all of them are complete.
         console: Shows the progress.
-        settings: How; with a library only the keyframes that are named here count, else the take's own.
+        settings: How; where keyframes are found, only posed ones that are named here count beside them.
         debug: Whether to let Blender's messages through.
 
     Raises:
         InputError: The take or the output folder is unusable.
-        ConversionError: No motion could be computed or written, no library fits a take without posed
-            keyframes, or there is no Blender to write with.
+        ConversionError: No motion could be computed or written, or there is no Blender to write with.
     """
     with prepared_conversion(description, output, console, settings) as prepared:
         return convert_prepared(prepared, console, debug)
@@ -130,12 +129,12 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
         console.stage("Opening the character")
         with opened_character(settings.character.file, settings.character.map, debug):
             pass  # what is wrong with it is better known before the work
-    job = reconstruct_or_match(take, prepared.libraries, method, settings.floor_m)
-    matched = run(job, console.progress)
-    take, result = matched.take, matched.reconstruction
+    job = find_and_reconstruct(take, settings.library, prepared.libraries, method, settings.floor_m)
+    reconstructed = run(job, console.progress)
+    take, result = reconstructed.take, reconstructed.reconstruction
     console.stage("Writing the motion")
     write_motion(result.motion, staging_folder / MOTION)
-    if matched.choice is not None:
+    if reconstructed.found is not None:
         write_keyframes(staging_folder / KEYFRAMES, take.keyframes, take.body, take.frame_start)
     console.stage("Writing Blender's files")
     curves = {BLEND: write_blender_files(take, result.motion, staging_folder, real_path(output), debug)}
@@ -163,10 +162,10 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
         take,
         result,
         files=tuple(output / name for name in (*made, RECORD)),
-        choice=matched.choice,
+        found=reconstructed.found,
+        libraries=prepared.libraries,
         conversion_notes=(
             *_unused_keyframes_note(prepared.description, settings),
-            *matched.mismatch_notes,
             *(() if character is None else (*character.doubts, *character.notes)),
             *(kept_note(*names) for names in prepared.kept_names.items()),
         ),
@@ -208,15 +207,15 @@ def _read_take(description: Description, settings: ConversionSettings, output: P
         return read_described(description, settings.keyframes, settings=settings)
     if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
-            f"{output}: is the take's own folder, whose {KEYFRAMES} the matched keyframes would replace; "
+            f"{output}: is the take's own folder, whose {KEYFRAMES} the found keyframes would replace; "
             "name another folder"
         )
-    return take_to_match(description, settings.keyframes, settings)
+    return take_to_pose(description, settings.keyframes, settings)
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:
-    """A sentence where a take has keyframes that a conversion with a library does not use."""
+    """A sentence where a take has keyframes that a conversion which finds its own does not use."""
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
-    return (f"{own} is left aside; --keyframes {own} would use it beside the library",)
+    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)

@@ -8,7 +8,10 @@ import numpy as np
 
 from ....core.estimate.reconstruct import Reconstruction
 from ....core.files.digest import content_digest
-from ....core.matching.match_take import LibraryChoice
+from ....core.library.library import Library
+from ....core.library.library_file import library_digest
+from ....core.posing.contradiction_notes import contradiction_notes
+from ....core.posing.found_poses import FoundPoses
 from ....core.progress import run
 from ....core.review.review import review
 from ....core.review.used_evidence import used_evidence
@@ -28,16 +31,20 @@ class Conversion:
     reconstruction: Reconstruction
     files: tuple[Path, ...]
     """In the order of `RESULT_FILES`, then keyframes and record."""
-    choice: LibraryChoice | None = None
-    """The library that was matched, if any, and how well it fits."""
+    found: FoundPoses | None = None
+    """What was found of keyframes, if that was asked for, and how well it fits."""
+    libraries: tuple[Library, ...] = ()
+    """Those that took part."""
     conversion_notes: tuple[str, ...] = ()
-    """Sentences on unused keyframes, on libraries that do not fit and on files that are kept."""
+    """Sentences on unused keyframes and on files that are kept."""
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Everything a person should know of the result, one sentence each."""
-        reason = () if self.choice is None else (self.choice.reason.rstrip("."),)
-        return (*self.conversion_notes, *reason, *self.reconstruction.notes)
+        about: tuple[str, ...] = ()
+        if self.found is not None:
+            about = (self.found.reason.rstrip("."), *contradiction_notes(self.take, self.found))
+        return (*self.conversion_notes, *about, *self.reconstruction.notes)
 
 
 def conversion_record(
@@ -56,23 +63,26 @@ def conversion_record(
     frames = np.arange(len(motion.time_s), dtype=np.float64) + motion.frame_start
     reviewed = run(review(take, conversion.reconstruction, frames))
     confidence = reviewed.confidence[np.isfinite(reviewed.confidence)]
-    match = None if conversion.choice is None else conversion.choice.match
-    matched = {keyframe.index for keyframe in take.keyframes if keyframe.matched is not None}
+    found = {keyframe.index: keyframe.matched for keyframe in take.keyframes if keyframe.matched is not None}
     return ConversionRecord(
         digest=digest,
         keymark=version(),
         take=take.name,
         method=motion.method,
-        library=None if match is None else match.library.identifier,
+        library=None if conversion.found is None else conversion.found.library,
         frames=len(motion.time_s),
         frame_start=motion.frame_start,
         fps=motion.fps,
         keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
-        matched=tuple(i + motion.frame_start for i in motion.keyframe_indices if i in matched),
+        matched=tuple(i + motion.frame_start for i in motion.keyframe_indices if i in found),
         confidence=round(float(confidence.mean()), 4) if len(confidence) else None,
         weakest=round(float(np.percentile(confidence, WEAKEST_PERCENTILE)), 4) if len(confidence) else None,
         weak_frames=tuple(frame.index + motion.frame_start for frame in reviewed.weak_frames),
         notes=conversion.notes,
         files={name: stable_digests.get(name) or content_digest(folder / name) for name in names},
         evidence=used_evidence(conversion.reconstruction),
+        libraries={library.identifier: library_digest(library) for library in conversion.libraries},
+        doubtful=tuple(
+            index + motion.frame_start for index, said in sorted(found.items()) if said.is_doubtful
+        ),
     )

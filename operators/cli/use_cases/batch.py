@@ -28,6 +28,7 @@ from ..console import Console, arguments_console
 from ..library_search_path import requested_libraries
 from ..require_blender import require_blender
 from ..usage import UsageError
+from ..wanted_keyframes import wanted_keyframes
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""
@@ -100,13 +101,14 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")
     if arguments.floor is not None and not abs(arguments.floor) <= HIGHEST_FLOOR_M:
         raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
-    if arguments.library is not None:
-        requested_libraries(arguments.library)
+    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
+    if library is not None:
+        requested_libraries(library)
     shoot = open_shoot(arguments.shoot, excluded=arguments.output)
     check_output(shoot, arguments.output)
     takes = _named_takes(shoot, arguments.take) if arguments.take else shoot.takes
     defaults = ConversionSettings(
-        library=arguments.library,
+        library=library,
         floor_m=arguments.floor,
         method=arguments.method,
         pictures=False if arguments.no_report else None,

@@ -18,6 +18,7 @@ from ..conversion.character_checks import CharacterChecks
 from ..library_search_path import requested_libraries
 from ..line_wrapping import terminal_columns
 from ..usage import UsageError
+from ..wanted_keyframes import wanted_keyframes
 from .check_text import check_summary, check_text
 
 MOST_JOBS = 64
@@ -29,14 +30,15 @@ def check_command(arguments: argparse.Namespace) -> None:
 
     Raises:
         InputError: The shoot is unusable.
-        UsageError: `--jobs` is out of range.
+        UsageError: `--jobs` is out of range, or options contradict each other.
         ConversionError: A take would not convert.
     """
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
+    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
     defaults = ConversionSettings(
-        library=arguments.library,
+        library=library,
         method=arguments.method,
         keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
         evidence=arguments.evidence,

@@ -12,9 +12,10 @@ from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..conversion.matched_keyframes import match_summary
+from ..conversion.found_keyframes import found_summary
 from ..conversion.result import Conversion
 from ..usage import UsageError
+from ..wanted_keyframes import wanted_keyframes
 
 
 def convert_command(arguments: argparse.Namespace) -> None:
@@ -38,19 +39,22 @@ def conversion_summary(conversion: Conversion) -> dict[str, Any]:
         "fps": motion.fps,
         "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
         "notes": list(conversion.notes),
-        **({} if conversion.choice is None else match_summary(conversion.take, conversion.choice)),
+        **({} if conversion.found is None else found_summary(conversion.take, conversion.found)),
     }
 
 
 def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
-    """The settings of the command line, and else of the take; a library given here is matched alone.
+    """The settings of the command line, and else of the take.
+
+    Where keyframes are to be found by the command line's word, only posed ones that it names count beside.
 
     Raises:
         UsageError: The options contradict each other.
     """
+    keyframes, library = wanted_keyframes(arguments.keyframes, arguments.library)
     given = ConversionSettings(
-        keyframes=arguments.keyframes,
-        library=arguments.library,
+        keyframes=keyframes,
+        library=library,
         floor_m=arguments.floor,
         method=arguments.method,
         pictures=False if arguments.no_report else None,
@@ -60,14 +64,17 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     settings = given.with_defaults(effective_settings(description))
     _check_floor(arguments.floor, settings)
     _check_keypoints(arguments.keypoints, settings)
-    return settings if arguments.library is None else replace(settings, keyframes=arguments.keyframes)
+    return settings if library is None else replace(settings, keyframes=keyframes)
 
 
 def _check_floor(floor_m: float | None, settings: ConversionSettings) -> None:
     if floor_m is None:
         return
     if settings.library is None:
-        raise UsageError("--floor is given without --library; only matching asks for the floor")
+        raise UsageError(
+            "--floor is given without --keyframes auto or --library; the floor is asked for only where "
+            "keyframes are found"
+        )
     if not abs(floor_m) <= HIGHEST_FLOOR_M:
         raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
 
@@ -84,8 +91,8 @@ def _text(conversion: Conversion) -> str:
     motion = conversion.reconstruction.motion
     notes = [f"Note: {note}." for note in conversion.notes]
     count = f"{len(motion.keyframe_indices)} keyframes"
-    if conversion.choice is not None:
+    if conversion.found is not None:
         posed = sum(keyframe.matched is None for keyframe in conversion.take.keyframes)
-        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} matched keyframes"
+        count = f"{posed} posed and {len(motion.keyframe_indices) - posed} found keyframes"
     lines = [f"{len(motion.time_s)} frames from {count} ({motion.method}):"]
     return "\n".join([*notes, *lines, *(f"  {file}" for file in conversion.files)])

@@ -20,6 +20,7 @@ from ....core.take.take import Take
 from ....core.take.take_file import read_described
 from ..console import arguments_console
 
+UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9
 """Share of the work that reading the clip is."""
 
@@ -35,6 +36,8 @@ def propose_command(arguments: argparse.Namespace) -> None:
         if arguments.picture is not None:
             _write_picture(arguments.picture, speed, indices, take.frame_start)
         notes = [moved.note] if moved.note else []
+        if not take.keyframes and (take.markers or take.keypoints):
+            notes.append(UNPOSED)
         rounded = [round(float(value), 3) for value in speed]
         lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
         result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}

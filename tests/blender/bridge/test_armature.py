@@ -9,6 +9,8 @@ from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.bone_colors import recolor_earlier
+from keymark.operators.overlays.style import SIDES
 from mathutils import Matrix
 
 
@@ -94,7 +96,21 @@ def test_sides_have_collections_and_colors(actor: bpy.types.Object) -> None:
     members = {c.name: {bone.name for bone in c.bones} for c in actor.data.collections}
     assert members["Left"] == {bone.name for bone in actor.data.bones if bone.name.endswith(".L")}
     assert members["Middle"] == {"pelvis", "chest", "head"}
-    assert actor.data.bones["hand.L"].color.palette != actor.data.bones["hand.R"].color.palette
+    for side, name in (("L", "hand.L"), ("R", "shin.R"), ("", "chest")):
+        color = actor.data.bones[name].color
+        assert color.palette == "CUSTOM"
+        assert tuple(color.custom.select) == pytest.approx(SIDES[side][:3], abs=0.01)
+
+
+def test_actors_of_earlier_versions_get_the_colors_of_today(actor: bpy.types.Object) -> None:
+    """Red on the left and blue on the right meant the opposite of the overlays; colors of the user's stay."""
+    bones = actor.data.bones
+    bones["hand.L"].color.palette, bones["hand.R"].color.palette = "THEME01", "THEME04"
+    bones["foot.L"].color.palette = "THEME06"
+    recolor_earlier(actor.data)
+    assert tuple(bones["hand.L"].color.custom.select) == pytest.approx(SIDES["L"][:3], abs=0.01)
+    assert tuple(bones["hand.R"].color.custom.select) == pytest.approx(SIDES["R"][:3], abs=0.01)
+    assert bones["foot.L"].color.palette == "THEME06"
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.4, 2.5])

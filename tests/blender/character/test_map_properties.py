@@ -163,7 +163,7 @@ def test_a_map_for_other_bones_is_refused_and_changes_nothing(
         bone.name = f"{bone.name}_of_another"
     with pytest.raises(RuntimeError, match=r"plain\.json is for another character: 'Character' has no bone"):
         bpy.ops.keymark.load_map(filepath=str(tmp_path / "plain.json"))
-    with pytest.raises(RuntimeError, match="no map is named to load"):
+    with pytest.raises(RuntimeError, match="no file is chosen"):
         bpy.ops.keymark.load_map()
     (tmp_path / "broken.json").write_text("{")
     with pytest.raises(RuntimeError, match=r"broken\.json"):

@@ -12,9 +12,13 @@ from typing import Any
 
 import bpy
 import pytest
+from _libraries import small_library
 from _shoot import write_shoot
 from _synthetic_take import true_postures, write_json, write_keypoints
+from keymark.core.files.json_file import read_json
+from keymark.core.library.library_file import write_library
 from keymark.core.take.conversion_record import read_record
+from keymark.operators.cli.library_search_path import VARIABLE
 from keymark.operators.cli.main import main
 from keymark.operators.cli.use_cases import batch as command
 
@@ -148,6 +152,32 @@ def test_what_is_converted_is_skipped_until_its_input_changes(
     assert statuses(said) == dict(zip(GOOD, ("unchanged", "converted", "converted"), strict=True))
     status, said = batch(own, out, capsys, "--jobs", "1", "--again", "--take", GOOD[0])
     assert statuses(said) == {GOOD[0]: "converted"}
+
+
+def test_keyframes_are_found_and_found_again_where_a_library_changes(
+    shoot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the option and by the field, which are the same input; beside keyframes that are posed."""
+    own = Path(shutil.copytree(shoot / "day1", tmp_path / "shoot" / "day1")).parent
+    shutil.copyfile(shoot / "shoot.json", own / "shoot.json")
+    (own / "day1" / "text.mp4").unlink()
+    (own / "day1" / "take02.keyframes.json").unlink()
+    (tmp_path / "libraries").mkdir()
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "libraries"))
+    words = ["--jobs", "1", "--take", GOOD[0], "--take", GOOD[1]]
+    status, said = batch(own, tmp_path / "out", capsys, *words, "--keyframes", "auto")
+    assert status == 0 and statuses(said)[GOOD[1]] == "converted"
+    first, second = (read_record(tmp_path / "out" / name) for name in GOOD[:2])
+    assert first.library == second.library == "composed" and len(first.libraries) > 1
+    assert first.keyframes == (1, 5, 8) and first.matched == ()  # no room is left between posed ones
+    assert len(second.keyframes) >= 2 and second.matched == second.keyframes
+    write_json(own / "shoot.json", {**read_json(own / "shoot.json"), "keyframes": "auto"})
+    status, said = batch(own, tmp_path / "out", capsys, *words)
+    assert status == 0 and {statuses(said)[name] for name in GOOD[:2]} == {"unchanged"}
+    write_library(tmp_path / "libraries" / "small_steps.json", small_library())
+    status, said = batch(own, tmp_path / "out", capsys, *words)
+    assert status == 0 and {statuses(said)[name] for name in GOOD[:2]} == {"converted"}
+    assert "small_steps" in read_record(tmp_path / "out" / GOOD[0]).libraries
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signal")

@@ -30,7 +30,7 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
     )
 
 
-@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "STANDING"])
+@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "ANEW"])
 def test_fitting_brings_the_pose_to_the_markers(
     opened: bpy.types.Scene, wave_motion: Motion, start: str
 ) -> None:
@@ -43,7 +43,7 @@ def test_fitting_brings_the_pose_to_the_markers(
     keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
     assert bpy.ops.keymark.fit_pose(start=start) == {"FINISHED"}
     fitted = posture_of(opened)
-    assert off_m(opened, wave_motion, 4) < (0.25 if start == "STANDING" else 0.8 * before)
+    assert off_m(opened, wave_motion, 4) < (0.25 if start == "ANEW" else 0.8 * before)
     bpy.context.view_layer.update()
     bpy.context.evaluated_depsgraph_get().update()
     np.testing.assert_allclose(posture_of(opened).minus(fitted), 0.0, atol=1e-5)
@@ -105,7 +105,7 @@ def test_fitting_while_the_motion_is_shown_shows_the_keyframes(opened: bpy.types
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
     opened.frame_set(4)
-    bpy.ops.keymark.fit_pose(start="STANDING")
+    bpy.ops.keymark.fit_pose(start="ANEW")
     fitted = posture_of(opened)
     assert take.armature.animation_data.action == take.keyframe_action
     bpy.context.view_layer.update()

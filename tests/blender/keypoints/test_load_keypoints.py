@@ -233,12 +233,14 @@ def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: 
     """Keypoints are one way; whoever builds the actor at once follows contours alone."""
     bpy.ops.keymark.load_footage(filepath=str(plain_take.clip))
     scene = bpy.context.scene
+    assert next_step(active_take(scene)) == "Next: say where the camera stood"
+    bpy.ops.keymark.keep_camera()
     assert next_step(active_take(scene)) == "Next: choose what to follow"
     take = load(keypoint_file)
     assert next_step(take) == "Next: build the actor"
     bpy.ops.keymark.remove_keypoints()
     bpy.ops.keymark.build_actor()
-    assert next_step(active_take(scene)) == "Next: match a library, or pose"
+    assert next_step(active_take(scene)) == "Next: propose keyframes"
     active_take(scene).follow.use_contours = False
     assert next_step(active_take(scene)) == "Next: choose what to follow"
 

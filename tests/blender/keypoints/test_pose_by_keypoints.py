@@ -27,7 +27,7 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
     return float(np.linalg.norm(points - motion.points[frame - 1], axis=-1).mean())
 
 
-@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "STANDING"])
+@pytest.mark.parametrize("start", ["KEYFRAMES", "POSE", "ANEW"])
 def test_fitting_brings_the_pose_to_the_keypoints(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion, start: str
 ) -> None:
@@ -37,7 +37,7 @@ def test_fitting_brings_the_pose_to_the_keypoints(
     write_posture(take.armature, wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25)))
     before = off_m(plain, wave_motion, 4)
     assert bpy.ops.keymark.fit_pose(start=start) == {"FINISHED"}
-    assert off_m(plain, wave_motion, 4) < (0.25 if start == "STANDING" else 0.6 * before)
+    assert off_m(plain, wave_motion, 4) < (0.25 if start == "ANEW" else 0.6 * before)
 
 
 def test_a_take_with_contours_alone_cannot_be_fitted(plain: bpy.types.Scene) -> None:

@@ -73,7 +73,7 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
     assert [(item.name, item.is_own, [p.name for p in item.postures]) for item in listed] == [
         ("small", True, ["A", "B"])
     ]
-    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["auto", "small"]
+    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["small"]
     before = (own / "small.json").stat().st_mtime_ns
     assert imported(library, tmp_path) == {"FINISHED"}
     assert (own / "small.json").stat().st_mtime_ns == before
@@ -213,7 +213,7 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
     imported(library, tmp_path)
     take.matching.library = "small"
     imported(replace(library, identifier="another", title="Another"), tmp_path)
-    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["auto", "another", "small"]
+    assert [item[0] for item in registry.library_items(None, bpy.context)] == ["another", "small"]
     assert take.matching.library == "small"
 
 
@@ -223,7 +223,7 @@ def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
     bpy.ops.keymark.refresh_shelf()
     item = bpy.context.window_manager.keymark_shelf.libraries[0]
     assert "no valid JSON" in item.problem
-    assert [entry[0] for entry in registry.library_items(None, bpy.context)] == ["auto"]
+    assert [entry[0] for entry in registry.library_items(None, bpy.context)] == []
     bpy.ops.keymark.discard_library()
     assert list(own.iterdir()) == []
 
@@ -305,3 +305,14 @@ def test_a_damaged_file_of_catalogs_is_named_where_it_is(own: Path, assets: Path
         bpy.ops.keymark.install_library(library="small")
     assert str(assets / "blender_assets.cats.txt") in str(caught.value)
     assert [file.name for file in assets.iterdir()] == ["blender_assets.cats.txt"]
+
+
+def test_libraries_are_the_same_objects_until_a_file_changes(
+    own: Path, library: Library, tmp_path: Path
+) -> None:
+    """What was made of them is kept by the objects."""
+    imported(library, tmp_path)
+    first = registry_files.all_libraries()
+    assert registry_files.all_libraries() is first
+    imported(replace(library, identifier="another", title="Another"), tmp_path)
+    assert [each.identifier for each in registry_files.all_libraries()] == ["another", "small"]

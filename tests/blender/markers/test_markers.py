@@ -60,20 +60,6 @@ def test_a_name_follows_its_segment_until_it_is_changed() -> None:
     assert marker.name == "sock"
 
 
-def test_a_pick_adds_colors_and_reads_out_in_one_go(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Two picks make the first two usual markers, with their colors and where they are found."""
-    middle = np.mean([pixel_of(tiny_take, "thigh.L"), pixel_of(tiny_take, "upper_arm.R")], axis=0)
-    for pixel in (middle, pixel_of(tiny_take, "forearm.L")):
-        assert bpy.ops.keymark.pick_marker_color(pixel=pixel, add=True) == {"FINISHED"}
-    take = active_take(loaded)
-    assert [marker.name for marker in take.markers] == USUAL[:2] and take.active_marker == 1
-    for marker, style in zip(take.markers, tiny_take.markers, strict=False):
-        assert np.abs(255.0 * np.array(marker.color) - style.color_srgb).max() < 30.0
-        assert (marker.found, marker.sampled) == (13, 13) and marker.distinctness > 0.8
-        assert marker.has_readout(take)
-    assert take.markers[0].area > 3.0 * take.markers[1].area > 0.0
-
-
 def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
     opened: bpy.types.Scene, tiny_take: Take
 ) -> None:
@@ -91,12 +77,28 @@ def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
     assert all(marker.has_readout(take) for marker in take.markers)
 
 
+def test_the_eyedropper_beside_a_row_picks_that_marker_alone(
+    opened: bpy.types.Scene, tiny_take: Take
+) -> None:
+    """Whatever row is active, and it never adds a marker: without a list there is nothing to pick."""
+    take = active_take(opened)
+    before = [tuple(marker.color) for marker in take.markers]
+    take.markers[1].color, take.active_marker = (0.0, 0.0, 0.0), 4
+    bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "forearm.L"), row=1)
+    assert np.abs(np.array(take.markers[1].color) - before[1]).max() < 0.15
+    assert tuple(take.markers[4].color) == before[4] and len(take.markers) == 5
+    take.markers.clear()
+    with pytest.raises(RuntimeError, match="Add the markers"):
+        bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "shin.L"))
+    assert not len(take.markers)
+
+
 def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
     """Neither the color nor the list."""
     take = active_take(opened)
     before = [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers]
     with pytest.raises(RuntimeError, match="lies outside the footage"):
-        bpy.ops.keymark.pick_marker_color(pixel=(-4.0, 3.0), add=True)
+        bpy.ops.keymark.pick_marker_color(pixel=(-4.0, 3.0))
     assert [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers] == before
 
 

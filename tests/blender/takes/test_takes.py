@@ -188,22 +188,33 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
         said.append(next_step(take))
         return words in said[-1]
 
+    assert says("where the camera stood")
+    bpy.ops.keymark.keep_camera()
     assert says("choose what to follow")
     bpy.ops.keymark.add_marker()
     assert says("pick the markers' colors")
     take.markers[0].color = (0.1, 0.5, 0.2)
     assert says("build the actor")
     bpy.ops.keymark.build_actor()
-    assert says("match a library")
+    assert says("pose all keyframes")
     for frame in (1, 5):
         take.proposals.add().frame = frame
     for frame in (1, 5):
-        assert says("pose the proposed frames")
+        assert says("pose all keyframes")
         scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()
     assert says("reconstruct")
-    take.motion_action = take.keyframe_action
-    assert says("review")
+    take.motion_action = bpy.data.actions.new("Motion")
+    assert says("review, then finish")
+    take.review.confidence = 0.28
+    assert says("pose more keyframes")
+    take.review.weak_frames.add().frame = 3
+    assert says("pose the weak frames")
+    scene.frame_set(3)
+    bpy.ops.keymark.store_keyframe()
+    assert says("reconstruct again")
+    take.review.confidence = 0.8
+    assert says("review, then finish")
     take.finish.action = take.keyframe_action
     assert says("export")
     take.clip_state.missing = True

@@ -12,19 +12,19 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import matching as bench  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
 from keymark.core.library.registry import SHIPPED  # noqa: E402
-from trials import Trial  # noqa: E402
+from trials import Trial, read_unposed  # noqa: E402
 
 
 @pytest.fixture(scope="module")
 def trial(tmp_path_factory: pytest.TempPathFactory) -> Trial:
     """A small synthetic take, read without its keyframes."""
-    return bench.read_unposed(write_synthetic_take(tmp_path_factory.mktemp("libraries") / "take", 24))
+    return read_unposed(write_synthetic_take(tmp_path_factory.mktemp("libraries") / "take", 24))
 
 
 def test_every_library_that_fits_a_take_is_shipped() -> None:
     """Otherwise a wrong name would surface only when its take is measured."""
     shipped = {path.stem for path in SHIPPED.glob("*.json")}
-    assert {name for names in bench.FITTING.values() for name in names} <= shipped
+    assert set(bench.FITTING.values()) <= shipped
 
 
 def test_posed_keyframes_are_not_used(trial: Trial) -> None:
@@ -39,14 +39,3 @@ def test_a_take_is_measured_without_and_with_two_keyframes(trial: Trial) -> None
     assert found.unposed.coverage95 is not None and found.matching_ms > 0.0
     better = replace(found, both=replace(found.both, mpjpe=0.4 * found.two.mpjpe))
     assert "| 0.40 |" in bench.accuracy_table({"waves": better})
-
-
-def test_a_choice_is_right_wrong_or_neither(trial: Trial) -> None:
-    """A take with a fitting library must be recognized; others may have none chosen."""
-    found = bench.choose("walk", trial, [read_library(SHIPPED / "walking.json")])
-    assert found.right is True and found.chosen == "walking"
-    assert [bench.is_right(name, "walking") for name in ("reach", "dance")] == [False, False]
-    assert bench.is_right("dance", bench.NONE) is None
-    assert "(wrong)" in bench.choice_table(
-        {"reach": replace(found, right=bench.is_right("reach", "walking"))}
-    )

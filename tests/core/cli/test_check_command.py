@@ -169,6 +169,7 @@ def half_dark(shoot: Path) -> None:
         (swapped, "seen far from where keyframes and camera put it: forearm.L in "),
         (elsewhere, "seen outside the picture for the most part"),
         (few, "2 keyframes for 10 frames are few: from frame 1 to 10, 1.8 s"),
+        (few, "let --keyframes auto find the others"),
         (few, "take01.take.json says 5 frames per second"),
         (half_dark, "4 of 10 sampled frames are black"),
         (said_of_take(actor={"height_m": 1.2}), "the points of 4 of 4 keyframes are up to"),
@@ -202,11 +203,38 @@ def test_a_mistake_of_all_is_said_once(
 
 
 def test_defaults_count_where_a_shoot_says_nothing(shoot: Path, check: Callable[..., Any]) -> None:
-    """With a library no keyframes are required."""
+    """Where keyframes are found, none are required."""
     no_keyframes(shoot)
     assert check(shoot)[0] == 1
-    status, said = check(shoot, "--library", "waving")
-    assert status == 0 and {take["library"] for take in said["takes"]} == {"waving"}
+    for words, library in ((["--library", "waving"], "waving"), (["--keyframes", "auto"], "auto")):
+        status, said = check(shoot, *words)
+        assert status == 0 and {take["library"] for take in said["takes"]} == {library}
+        assert said["takes"][0]["status"] == "ready"
+
+
+def test_a_take_without_keyframes_is_told_how_to_get_some(shoot: Path, check: Callable[..., Any]) -> None:
+    """By option and by field; few keyframes as well."""
+    no_keyframes(shoot)
+    (problem,) = check(shoot)[1]["takes"][0]["problems"]
+    assert "--keyframes auto" in problem and '"keyframes": "auto"' in problem
+    edit(shoot, "shoot.json", lambda value: value.update(keyframes="auto"))
+    assert check(shoot)[0] == 0
+
+
+def test_options_that_contradict_each_other_are_one_line(
+    shoot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 2; a keyframe file is no option for a whole shoot."""
+    for words, sentence in (
+        (
+            ["--keyframes", "auto", "--library", "waving"],
+            "--keyframes auto finds keyframes with all libraries",
+        ),
+        (["--keyframes", "posed.json"], "keyframes is posed.json; auto is valid"),
+    ):
+        assert main(["check", str(shoot), *words]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert sentence in line
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])

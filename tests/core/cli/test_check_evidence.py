@@ -88,6 +88,8 @@ def test_a_take_without_markers_is_ready(shoot: Path, check: Callable[..., Any])
     status, take = check(shoot, "--evidence", "contours")
     assert status == 0 and take["status"] == "look" and take["keypoints"] == []
     assert "held against contours alone" in take["warnings"][0]
+    status, take = check(shoot, "--evidence", "contours", "--keyframes", "auto")
+    assert status == 1 and "neither markers nor keypoints, without which no posture" in take["problems"][0]
     status, take = check(shoot, "--evidence", "markers")
     assert status == 1 and "names markers, which this take has not got" in take["problems"][0]
     edit(shoot / f"{TAKE}.take.json", markers=None, method="ekf")

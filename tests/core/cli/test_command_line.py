@@ -322,6 +322,8 @@ def test_proposed_frames_lie_in_the_clip(
     said = json.loads(capsys.readouterr().out)
     assert len(said["frames"]) == 4 and said["frames"][0] == 1 and said["frames"][-1] == FRAMES
     assert len(said["speed_px_per_frame"]) == FRAMES
+    (note,) = said["notes"]
+    assert "no keyframe is posed yet" in note and "--keyframes auto" in note
     assert cv2.imread(str(tmp_path / "speed.png")) is not None
     assert main(["propose", str(take), "--count", "1"]) == 2
     assert "keyframe count is 1" in one_line(capsys.readouterr().err)

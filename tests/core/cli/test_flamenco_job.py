@@ -89,10 +89,15 @@ def test_choices_reach_the_command_line(script: Path) -> None:
     share = options(task)
     assert (share["method"], share["library"], share["failed_takes"]) == ("ekf", "walking", "fail")
     assert task["name"] == "convert-1" and task["commands"][0]["parameters"]["exe"] == "/opt/keymark"
-    own = {**SETTINGS, "library": "auto", "own_library_path": "/mnt/anna.json"}
+    assert share["keyframes"] is None
+    every = options(compiled(script, {**SETTINGS, "keyframes": "auto"})["tasks"][0])
+    assert (every["keyframes"], every["library"]) == ("auto", None)
+    own = {**SETTINGS, "library": "walking", "own_library_path": "/mnt/anna.json"}
     assert options(compiled(script, own)["tasks"][0])["library"] == "/mnt/anna.json"
     said = {**SETTINGS, "library": "as the takes say", "own_library": "", "own_library_path": ""}
-    assert options(compiled(script, said)["tasks"][0])["library"] is None
+    said["keyframes"] = "as the takes say"
+    share = options(compiled(script, said)["tasks"][0])
+    assert (share["keyframes"], share["library"]) == (None, None)
     plain = {**SETTINGS, "keypoints": "pose.json", "evidence": "keypoints,contours"}
     share = options(compiled(script, plain)["tasks"][0])
     assert share["keypoints"] == [Path("pose.json")] and share["evidence"] == ("keypoints", "contours")
@@ -123,6 +128,10 @@ def test_the_library_has_a_name_that_every_system_allows(script: Path, name: str
         ({"tasks": -3}, "Tasks is -3; it must be 1 or more"),
         ({"shoot": ""}, "shoot is ''; it must be the folder of the takes"),
         ({"shoot": "//clips"}, "shoot is '//clips'; it must be"),
+        (
+            {"keyframes": "auto", "library": "walking"},
+            "Keyframes is auto and the library is walking; it must be one of them",
+        ),
         ({"output": "//out"}, "output is '//out'; it must be the folder for the results"),
     ],
 )
@@ -177,7 +186,7 @@ def test_the_libraries_to_choose_from_are_those_that_come_with_keymark(
         json.loads(file.read_text(encoding="utf-8"))["identifier"]
         for file in (repository / "presets" / "keyframes").glob("*.json")
     )
-    assert settings["library"]["choices"] == ["as the takes say", "auto", *shipped]
+    assert settings["library"]["choices"] == ["as the takes say", *shipped]
 
 
 @pytest.mark.parametrize(

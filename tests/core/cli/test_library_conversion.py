@@ -1,4 +1,4 @@
-"""`keymark convert --library`: takes without posed keyframes, their results, and refusals."""
+"""`keymark convert --keyframes auto` and `--library`: takes without posed keyframes, and refusals."""
 
 import json
 import re
@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.library.learning import LibraryMetadata, learn_library
-from keymark.core.library.library_file import write_library
+from keymark.core.library.library_file import library_digest, read_library, write_library
+from keymark.core.matching.candidates import Candidate, MatchedFrame
+from keymark.core.posing.found_poses import FoundPoses
+from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion_file import read_motion
 from keymark.operators.cli import library_search_path
+from keymark.operators.cli.conversion import found_keyframes
 from keymark.operators.cli.main import main
 
 FRAMES = 24
@@ -61,8 +65,7 @@ def test_a_take_without_keyframes_is_matched(
     out = tmp_path / "out"
     assert convert(take, out, "--library", library, "--json") == 0
     said = said_as_json(capsys)
-    assert said["library"] == "swaying" and said["probability"] == 1.0 and 0.0 <= said["fit"] <= 1.0
-    assert said["ranking"] == [{"library": "swaying", "title": "Swaying", "probability": 1.0}]
+    assert said["library"] == "swaying" and 0.0 <= said["fit"] <= 1.0
     rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
     assert (
         [row["frame"] for row in rows] == [match["frame"] for match in said["matches"]] == said["keyframes"]
@@ -116,28 +119,95 @@ def test_matched_keyframes_can_be_given_back(
     assert (out / "keyframes.json").read_bytes() == kept
 
 
-def test_a_clip_that_no_library_fits_is_said_to_be_one(
-    take: Path, library: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+@pytest.fixture
+def few_libraries(library: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The one library as if it came with Keymark, and no other."""
+    monkeypatch.setattr(library_search_path, "SHIPPED", library.parent)
+    return library
+
+
+def test_keyframes_are_found_with_all_libraries(
+    take: Path, few_libraries: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Status 1, one line, and the output folder as it was; a posed take converts nevertheless."""
-    from keymark.core.matching.match_take import LibraryChoice
-    from keymark.operators.cli.conversion import matched_keyframes
+    """By either spelling: motion, found keyframes and their picture, and a record of the libraries."""
+    made = []
+    for name, words in (("one", ["--keyframes", "auto"]), ("other", ["--library", "auto"])):
+        out = tmp_path / name
+        assert convert(take, out, *words, "--json") == 0
+        said = said_as_json(capsys)
+        assert said["library"] == "composed" and said["reason"] in said["notes"]
+        rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
+        assert [row["frame"] for row in rows] == [one["frame"] for one in said["matches"]] != []
+        assert {row["matched"]["library"] for row in rows} == {"composed"}
+        assert cv2.imread(str(out / "report" / "matches.png")) is not None
+        record = read_record(out)
+        assert record.library == "composed" and record.matched == record.keyframes
+        assert record.libraries == {"swaying": library_digest(read_library(few_libraries))}
+        assert list(record.doubtful) == [one["frame"] for one in said["matches"] if one["doubtful"]]
+        made.append((said["matches"], record.digest))
+    assert made[0] == made[1]
 
-    def nothing_fits(_take: object, _reading: object, given: Any, _floor_m: object) -> Any:
+
+def test_posed_keyframes_stay_and_the_others_are_found(
+    take: Path, few_libraries: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Those in the take are left aside, which a note says, unless their file is named."""
+    posed = Path(shutil.copy(tmp_path / "posed.json", take / "keyframes.json"))
+    assert convert(take, tmp_path / "found", "--keyframes", "auto", "--json", "--no-report") == 0
+    (note, *_) = said_as_json(capsys)["notes"]
+    assert note == f"{posed} is left aside; --keyframes {posed} --library auto would use it too"
+    rows = json.loads(posed.read_text(encoding="utf-8"))["keyframes"]
+    write_json(tmp_path / "one.json", {"keyframes": [rows[1]]})
+    more = ("--keyframes", tmp_path / "one.json", "--library", "auto", "--json", "--no-report")
+    assert convert(take, tmp_path / "both", *more) == 0
+    assert not any("left aside" in note for note in said_as_json(capsys)["notes"])
+    found = json.loads((tmp_path / "both" / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
+    assert [row["frame"] for row in found if "matched" not in row] == [rows[1]["frame"]]
+    assert len(found) > 1
+
+
+def test_found_keyframes_are_said_to_be_doubtful_and_contradictions_are_named(
+    take: Path, few_libraries: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+) -> None:
+    """In notes of the summary and of the record, with the frames to pose."""
+
+    def pose(given: Any, _reading: object, _libraries: object, _floor_m: object = None) -> Any:
         yield from ()
-        return LibraryChoice(tuple((one, 0.5) for one in given), None, "none of them fits")
+        truth = true_postures(FRAMES)
+        sure = {0: 0.9, 12: 0.2, 23: 0.4}
+        frames = tuple(
+            MatchedFrame(index, (Candidate(truth[index], "Sway", False, confidence),))
+            for index, confidence in sure.items()
+        )
+        against = {12: (given.markers[0].name, "wrist.L"), 23: ("wrist.L",)}
+        return FoundPoses(frames, truth, 0.7, 0.0, "two frames are in doubt", against)
 
-    monkeypatch.setattr(matched_keyframes, "match_take", nothing_fits)
-    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path)
-    assert convert(take, tmp_path / "out", "--library", "auto", "--quiet") == 1
-    said = capsys.readouterr().err
-    assert "none of them fits; likeliest are Swaying 50%" in said and len(said.splitlines()) == 1
-    assert not (tmp_path / "out").exists()
-    posed = ["--keyframes", tmp_path / "posed.json"]
-    assert convert(take, tmp_path / "out", "--library", "auto", *posed, "--json") == 0
+    monkeypatch.setattr(found_keyframes, "pose_clip", pose)
+    assert convert(take, tmp_path / "out", "--keyframes", "auto", "--json", "--no-report") == 0
     said = said_as_json(capsys)
-    assert "none of them fits; only the posed keyframes count" in said["notes"] and "matches" not in said
-    assert not (tmp_path / "out" / "keyframes.json").exists()
+    first = json.loads((take / "take.json").read_text(encoding="utf-8"))["frame_start"]
+    marker = next(iter(json.loads((take / "take.json").read_text(encoding="utf-8"))["markers"]))
+    assert said["notes"] == list(read_record(tmp_path / "out").notes)
+    assert set(said["notes"]) >= {
+        "two frames are in doubt",
+        f"frames {first + 12}, {first + 23}: no plausible posture explains keypoint wrist.L",
+        f"frame {first + 12}: no plausible posture explains marker {marker}",
+        f"2 of 3 found keyframes are doubtful; pose frame {first + 12}, {first + 23} to set them right",
+    }
+    assert said["contradictions"][0] == {"frame": first + 12, "evidence": [marker, "wrist.L"]}
+    assert [one["doubtful"] for one in said["matches"]] == [False, True, True]
+
+
+def test_without_a_library_nothing_can_be_found(
+    take: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Status 2, one line, and no folder."""
+    (tmp_path / "none").mkdir()
+    monkeypatch.setattr(library_search_path, "SHIPPED", tmp_path / "none")
+    assert convert(take, tmp_path / "out", "--keyframes", "auto", "--quiet") == 2
+    said = capsys.readouterr().err
+    assert "there is no keyframe library" in said and len(said.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
@@ -147,7 +217,8 @@ def test_a_clip_that_no_library_fits_is_said_to_be_one(
         (["--library", "no/such.json"], "no/such.json: no such file"),
         (["--library", "swaying", "--floor", "nan"], "--floor is nan"),
         (["--library", "swaying", "--floor", "high"], "--floor.*high"),
-        (["--floor", "0"], "--floor is given without --library"),
+        (["--floor", "0"], "--floor is given without --keyframes auto or --library"),
+        (["--keyframes", "auto", "--library", "swaying"], "--keyframes auto finds .*swaying.*one of them"),
     ],
 )
 def test_what_cannot_be_matched_with_is_one_line(

@@ -16,7 +16,7 @@ def outcomes(output: Path) -> list[Outcome]:
     """One outcome of each kind, unordered."""
     return [
         waiting(output, "day2/jump"),
-        converted(output, "day1/walk", library="walking", matched=(60,)),
+        converted(output, "day1/walk", library="walking", matched=(60,), doubtful=(60,)),
         failed(output, "day1/fall", "day1/fall/clip.mp4: no such file", RECORD),
         Outcome("day1/rún\u2028", output / "day1/rún\u2028", Status.UNCHANGED, RECORD),
     ]
@@ -36,6 +36,7 @@ def test_a_line_says_of_each_take_what_programs_want(tmp_path: Path) -> None:
     assert fall["error"].endswith("no such file") and fall["confidence"] is None and fall["files"] == []
     assert walk["files"] == [f"day1/walk/{name}" for name in (*FILES, "conversion.json")]
     assert (walk["library"], walk["matched"], walk["weak_frames"]) == ("walking", [60], [87, 31])
+    assert (walk["doubtful"], run["doubtful"], jump["doubtful"]) == ([60], [], None)
     assert walk["evidence"]["markers"] == ["trunk", "shin.L"] and not walk["evidence"]["contours"]
     assert (walk["seconds"], run["seconds"], run["frames"], jump["error"]) == (12.0, None, 120, None)
     assert ">autumn</bdi></h1>" in (output / PAGE).read_text(encoding="utf-8")

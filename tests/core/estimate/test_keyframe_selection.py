@@ -9,6 +9,7 @@ from keymark.core.estimate.keyframe_selection import select_keyframes
 from keymark.core.footage.keypoints.body_points import mirrored_point
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.library.several_libraries import COMPOSED
 from keymark.core.observation.regions import RegionModel
 from keymark.core.prior.keyframes import Keyframe, Matched
 
@@ -100,3 +101,15 @@ def test_keypoints_alone_judge_as_markers_do() -> None:
     assert matched([0, 90], alike()) == list(range(5, FRAMES, 10))
     assert matched([20, 45, 70], unlike()) == [5, 15, 75, 85]
     assert not set(matched([*range(0, 43, 3), 90], alike())) & set(range(43))
+
+
+def test_postures_composed_for_the_footage_are_not_judged_by_those_that_were_corrected() -> None:
+    """Where a person posed another, it was wrong; that tells nothing of the rest."""
+    said = Matched(COMPOSED, "step", False, 0.9)
+    found = [Keyframe(i, unlike()[i], matched=said) for i in (5, 30, 60, 85)]
+    posed = [Keyframe(i, TRUTH[i]) for i in (20, 45, 70)]
+    given = tuple(sorted([*found, *posed], key=lambda key: key.index))
+    assert select_keyframes(given, MODEL, TRACKS, FPS) == given
+    matched = Keyframe(33, unlike()[33], matched=SAID)
+    more = tuple(sorted([*given, matched], key=lambda key: key.index))
+    assert select_keyframes(more, MODEL, TRACKS, FPS) == given

@@ -13,7 +13,8 @@ from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.match_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
-    UNDETERMINED_DEPTH_M,
+    SURE_STD_M,
+    UNSURE_STD_M,
     depth_std_m,
     joint_std_rad,
     match_covariance,
@@ -115,14 +116,31 @@ def test_depths_count_near_posed_keyframes_only() -> None:
 
 
 def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_keyframes() -> None:
-    """A posed keyframe decides, a matched one leaves depth open."""
+    """A posed keyframe decides, a found one leaves depth open, the more the less sure it is."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
-    spread = undetermined_covariance(points, CAMERA, np.array([0, 10]), np.array([0.0, 1.0]))
-    assert np.abs(spread[0]).max() == 0.0
-    assert np.trace(spread[10, 4]) == pytest.approx(UNDETERMINED_DEPTH_M**2)
     sight = points[10, 4] - CAMERA.pose()[1]
-    along = sight @ spread[10, 4] @ sight / (sight @ sight)
-    assert along == pytest.approx(UNDETERMINED_DEPTH_M**2)
+    sight /= np.linalg.norm(sight)
+    found = []
+    for confidence in (0.0, 0.5, 1.0):
+        sure = np.array([1.0, confidence])
+        spread = undetermined_covariance(points, CAMERA, np.array([0, 10]), np.array([0.0, 1.0]), sure)
+        assert np.abs(spread[0]).max() == 0.0
+        along = sight @ spread[10, 4] @ sight
+        across = 0.5 * (np.trace(spread[10, 4]) - along)
+        found.append(np.sqrt([across, along]))
+        assert spread[10, 4] @ sight == pytest.approx(along * sight)
+    np.testing.assert_allclose(found[0], UNSURE_STD_M)
+    np.testing.assert_allclose(found[2], SURE_STD_M)
+    assert (found[0] > found[1]).all() and (found[1] > found[2]).all()
+
+
+def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() -> None:
+    """All points share that error."""
+    points = BODY.points(BODY.pose(TRUTH[:11]))
+    index, scale, sure = np.array([0, 10]), np.ones(2), np.ones(2)
+    near, far = (undetermined_covariance(points, CAMERA, index, scale, sure, each) for each in (0.0, 0.3))
+    added = np.trace(far - near, axis1=-2, axis2=-1)
+    np.testing.assert_allclose(added, 0.09)
 
 
 def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:

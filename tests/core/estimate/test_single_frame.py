@@ -22,7 +22,6 @@ from keymark.core.prior.frame_prior import (
     FramePrior,
     prior_from_keyframes,
     prior_from_pose,
-    prior_from_standing,
 )
 from keymark.core.prior.keyframes import Keyframe
 
@@ -117,7 +116,7 @@ def test_the_ground_tells_how_far_away_someone_stands() -> None:
     for place in (-0.4, 0.3, 0.5):
         true = Posture.stack([standing_posture(BODY, np.array([0.0, place, 0.0]))])
         observed = ObservedRegions.from_tracks(film(true, noise_px=0.3, seed=6, model=model))
-        belief = prior_from_standing(believed)
+        belief = prior_from_keyframes((Keyframe(0, believed),), 60, 30.0)
         fits = [
             fit_frame(uncalibrated(model), observed, known, 0)
             for known in (belief, replace(belief, grounded=None))
@@ -146,19 +145,6 @@ def test_a_rough_pose_is_corrected() -> None:
     found = fit(belief, tracks, 20)
     assert error_mm(found.posture, 20) < 0.8 * error_mm(belief.posture, 20)
     assert np.nanmean(found.residual_px) < 0.3 * np.nanmean(found.before_px)
-
-
-def test_someone_who_merely_stands_there_is_fitted_too() -> None:
-    """No keyframe yet: from standing at the place that the regions tell, facing the camera."""
-    tracks = film(TRUTH, noise_px=0.3, seed=3)
-    frame = 8
-    one = tracks.frame(frame)
-    segments = tuple(placement.segment for placement in MODEL.placements)
-    belief = prior_from_standing(place_standing(BODY, CAMERA, 0, one, segments))
-    found = fit(belief, tracks, frame)
-    assert np.nanmax(found.residual_px) < 3.0
-    assert error_mm(found.posture, frame) < 150.0
-    assert error_mm(found.posture, frame) < error_mm(standing_posture(BODY), frame)
 
 
 NAMES = (
@@ -220,7 +206,8 @@ def test_hints_of_depth_help_from_a_standing_body() -> None:
     for frame in (5, 20, 35):
         keypoints = detected(1.0, hint_std_m=0.02)
         here = keypoints.frame(frame)
-        belief = prior_from_standing(place_standing(BODY, CAMERA, frame, keypoints=here))
+        placed = place_standing(BODY, CAMERA, frame, keypoints=here)
+        belief = prior_from_keyframes((Keyframe(0, placed),), 60, 30.0)
         with_hints.append(shape_error_mm(fit_points(belief, keypoints, frame).posture, frame))
         without.append(shape_error_mm(fit_points(belief, keypoints.without_hints(), frame).posture, frame))
     assert np.mean(with_hints) < 0.9 * np.mean(without)

@@ -6,13 +6,21 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
+from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.belief import BeliefTerm
 from keymark.core.estimate.terms.depths import DepthTerm
 from keymark.core.estimate.terms.ground import GroundTerm
 from keymark.core.estimate.terms.joint_limits import LimitTerm
 from keymark.core.estimate.terms.quadratic import QuadraticBuilder
-from keymark.core.estimate.terms.regions import FEATURES, ObservedRegions, feature_rows, missing_variance
+from keymark.core.estimate.terms.regions import (
+    FEATURES,
+    ObservedRegions,
+    RegionNoise,
+    RegionTerm,
+    feature_rows,
+    missing_variance,
+)
 from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
 from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight, total_cost
@@ -241,3 +249,20 @@ def test_what_is_missing_of_a_region_widens_its_features() -> None:
     along = np.sqrt(predicted.second_moment[..., 0, 0])
     assert np.all(np.sqrt(variance[1][..., 0]) > 0.4 * along)
     assert np.all(variance[2] > variance[1])
+
+
+def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
+    """Its prediction is no number; what is added, and what it costs, is one."""
+    tracks = film(exercise(FRAMES))
+    behind = Posture.stack([exercise(FRAMES)[index] for index in range(FRAMES)])
+    location = CAMERA.pose()[1]
+    away = behind.translation + 2.0 * (location - behind.translation)
+    at = replace(state(size=0.0), prior=Posture(HUMAN, away, behind.rotations, behind.angles))
+    observed, count = ObservedRegions.from_tracks(tracks), len(MODEL.placements)
+    widths = np.full((FRAMES, count), 20.0)
+    term = RegionTerm(MODEL, observed, RegionNoise(), widths, np.ones(count), np.ones(count))
+    at = replace(at, bias=np.zeros((FRAMES, count * FEATURES)))
+    equations = NormalEquations(FRAMES, DOFS + count * FEATURES)
+    term.add_to(equations, at, 1.0)
+    assert np.isfinite(equations.gradient).all() and np.isfinite(term.cost(at)).all()
+    assert not equations.gradient.any()

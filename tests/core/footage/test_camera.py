@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
+from keymark.core.footage.camera_placement import CameraPlacement
 
 DISTORTIONS = [(0.0, 0.0, 0.0), (-0.12, 0.03, -0.004), (0.2, 0.05, 0.01)]
 
@@ -178,3 +179,39 @@ def test_the_pose_cannot_be_changed_from_outside() -> None:
     assert camera.matrix_world[0, 3] == 0.0
     with pytest.raises(ValueError, match="read-only"):
         camera.matrix_world[0, 3] = 1.0
+
+
+PLACED = {"lens_mm": 35.0, "sensor_width_mm": 36.0, "resolution": [200, 100], "height_m": 1.5}
+
+
+def test_height_tilt_and_roll_do_instead_of_a_matrix() -> None:
+    """The camera faces the world's origin along +Y, or stands above it; it is written as a matrix."""
+    above = Camera.from_dict(PLACED)
+    assert above.matrix_world[:3, 3] == pytest.approx((0.0, 0.0, 1.5))
+    tilted = Camera.from_dict({**PLACED, "tilt_deg": -10.0, "roll_deg": 5.0, "distance_m": 4.0})
+    placement = CameraPlacement.of(tilted.matrix_world)
+    assert np.degrees(placement.tilt_rad) == pytest.approx(-10.0)
+    assert np.degrees(placement.roll_rad) == pytest.approx(5.0)
+    assert tilted.matrix_world[:3, 3] == pytest.approx((0.0, -4.0, 1.5))
+    assert np.allclose(Camera.from_dict(tilted.to_dict()).matrix_world, tilted.matrix_world)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"height_m": 0}, r"camera: height_m is 0; it must be a number from 0\.01 to 1000 m"),
+        ({"tilt_deg": 91}, "camera: tilt_deg is 91; it must be a number from -90 to 90 degrees"),
+        ({"roll_deg": "5"}, "camera: roll_deg is '5'"),
+        ({"distance_m": -1}, "camera: distance_m is -1"),
+        ({"height_m": None, "tilt_deg": 3}, "camera: height_m is null; it must be a number"),
+        ({"height_m": None}, "camera: matrix_world is missing; .* height_m and tilt_deg do as well"),
+        (
+            {"matrix_world": np.eye(4).tolist()},
+            "camera: there are both height_m and matrix_world; give height_m",
+        ),
+    ],
+)
+def test_a_wrong_placement_is_refused_in_a_sentence(change: dict[str, object], said: str) -> None:
+    """It names the field, its value and what would be valid."""
+    with pytest.raises(InputError, match=said):
+        Camera.from_dict({**PLACED, **change})

@@ -8,7 +8,7 @@ import pytest
 from keymark.core import MOST_PIXELS
 from keymark.core.body import posture_fields
 from keymark.core.files import json_file, safe_path
-from keymark.core.footage import camera_fields
+from keymark.core.footage import camera_fields, ignored_region_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.footage.keypoints import frame_folder, keypoint_file
 from keymark.core.library import library_file
@@ -45,6 +45,8 @@ LIMITS = {
     f"{keyframe_file.MOST_KEYFRAMES}": "keyframes of a take",
     f"{take_file.MOST_MARKERS}; "
     f"{take_file.LONGEST_MARKER_NAME} characters": "markers of a take; a marker's name",
+    f"{ignored_region_fields.MOST_REGIONS}; "
+    f"{ignored_region_fields.MOST_POINTS}": "ignored regions of a take; points of a stroke",
     f"{conversion_settings.MOST_KEYPOINT_FILES} ": "files of keypoints of a take",
     f"{camera_fields.LARGEST_SIDE_PX}; {MOST_PIXELS}": "width, height of a clip's pictures; pixels of one",
     f"{image_sequence.MOST_IMAGES} ": "images of a sequence",

@@ -3,6 +3,7 @@
 import numpy as np
 from _scene import exercise
 from keymark.core.body.posture import Posture
+from keymark.core.library.several_libraries import COMPOSED
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.prior.performer_offset import with_offset
 
@@ -73,3 +74,16 @@ def test_the_nearer_of_two_posed_keyframes_counts_more() -> None:
     changed, _ = with_offset(given, FPS)
     steps = [-k.posture.minus(library[k.index])[0] for k in changed if k.matched is not None]
     assert 0.0 < steps[0] < steps[-1] < 1.05 * drift[88, 0]
+
+
+def test_postures_composed_for_the_footage_stay_and_are_doubted_less_near_posed_ones() -> None:
+    """What a person corrects in one of them is no difference between performers."""
+    said = Matched(COMPOSED, "step", False, 0.9)
+    library = TRUTH.plus(np.tile(STYLE, (91, 1)))
+    found = [Keyframe(frame, library[frame], matched=said) for frame in (0, 30, 60, 90)]
+    changed, doubt = with_offset(in_order(*found, Keyframe(35, TRUTH[35])), FPS)
+    assert all(np.abs(new.posture.minus(library[new.index])).max() < 1e-9 for new in changed if new.matched)
+    assert doubt[1] < doubt[0] < 1.0 and doubt[1] < doubt[3] and doubt[2] == 0.0
+    both = in_order(*found, *matched([15, 75], library), Keyframe(35, TRUTH[35]))
+    moved = [np.abs(new.posture.minus(library[new.index])).max() > 0.05 for new in with_offset(both, FPS)[0]]
+    assert moved == [False, True, False, True, False, True, False]

@@ -256,9 +256,12 @@ def test_the_head_counts_what_was_converted_now_or_before() -> None:
 
 
 def test_what_a_take_was_made_from_is_said() -> None:
-    """Posed and matched keyframes are pluralize apart; frames to pose are listed the best first."""
+    """Posed and found keyframes are told apart; frames to pose are listed the best first."""
     (row,) = page(converted(OUTPUT, "walk", matched=(60,), library="walking")).rows()
-    assert "2 posed and 1 matched keyframes, library walking, method map" in row.text
+    assert "2 posed and 1 found keyframes, library walking, method map" in row.text
+    doubted = {"matched": (1, 60, 120), "library": "composed", "doubtful": (60,)}
+    (row,) = page(converted(OUTPUT, "walk", **doubted)).rows()
+    assert "3 found keyframes (1 doubtful), all libraries, method map" in row.text
     assert "frame 87, then 31" in row.text and "120 frames, 4.0 s at 30 frames a second" in row.text
     (row,) = page(converted(OUTPUT, "walk", keyframes=(), weak_frames=(), notes=())).rows()
     assert "no keyframes, method map" in row.text and "Worth" not in row.text

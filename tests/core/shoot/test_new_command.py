@@ -16,6 +16,8 @@ from keymark.core.take.motion_file import read_motion
 from keymark.operators.cli.main import main
 
 FRAMES = 8
+PLACED = {"height_m": 1.0, "tilt_deg": 0.0, "distance_m": 4.0}
+"""The camera of the synthetic takes, without a matrix."""
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +48,7 @@ def written(folder: Path) -> dict[str, Any]:
 def fill_in(folder: Path) -> None:
     """Fill in the fields that only a person knows."""
     fields, known = written(folder), shoot_fields()
-    fields["camera"] |= {"matrix_world": known["camera"]["matrix_world"], "lens_mm": 40.0}
+    fields["camera"] |= PLACED | {"lens_mm": 40.0}
     for name, marker in fields["markers"].items():
         if marker == {"color_srgb": None}:
             marker |= known["markers"][name]
@@ -61,11 +63,11 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert new(folder) == 0
     said = capsys.readouterr().out
     open_fields = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
-    assert len(open_fields) == 7 and open_fields[0] == "camera.matrix_world"
+    assert len(open_fields) == 8 and open_fields[:2] == ["camera.height_m", "camera.tilt_deg"]
     assert "the lens, which is a guess" in said
     assert main(["check", str(folder)]) == 1
     said = capsys.readouterr().out
-    assert said.count("still to be filled in") == 7 and said.count("\nfails") == 3
+    assert said.count("still to be filled in") == 8 and said.count("\nfails") == 3
     for field in open_fields:
         assert said.count(f"{field.rpartition('.')[2]} is still to be filled in") >= 1
     fill_in(folder)
@@ -77,15 +79,15 @@ def test_from_clips_to_motions(folder: Path, tmp_path: Path, capsys: pytest.Capt
 
 
 def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Rate and size; a take with its own file is named; where all are posed, no library is asked for."""
+    """Rate and size; a take with its own file is named; where all are posed, nothing is to be found."""
     own = (folder / "day1" / "take03" / "take.json").read_bytes()
     assert new(folder, "--json") == 0
     said = json.loads(capsys.readouterr().out)
     assert said["clips"] == 2 and said["described"] == ["day1/take03"] and said["unreadable"] == []
-    assert said["file"] == str(folder / "shoot.json") and len(said["fill_in"]) == 7
+    assert said["file"] == str(folder / "shoot.json") and len(said["fill_in"]) == 8
     fields = written(folder)
     assert fields["fps"] == 30 and fields["camera"]["resolution"] == [160, 120] and fields["root"] is True
-    assert "library" not in fields and any("day1/take03" in line for line in fields["//clips"])
+    assert "keyframes" not in fields and any("day1/take03" in line for line in fields["//clips"])
     assert (folder / "day1" / "take03" / "take.json").read_bytes() == own
     assert any(line.startswith("red [2") for line in fields["markers"]["//seen"])
     layout = (folder / "shoot.json").read_text(encoding="utf-8").splitlines()
@@ -95,7 +97,7 @@ def test_what_clips_share_is_filled_in(folder: Path, capsys: pytest.CaptureFixtu
 def test_where_clips_differ_they_tell_themselves(
     folder: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    """The outlier and the unreadable clip are named; without keyframes a library is to be chosen."""
+    """The outlier and the unreadable clip are named; without keyframes these are to be found."""
     larger = [image.repeat(2, axis=0).repeat(2, axis=1) for image in drawn_frames(true_postures(3))]
     write_frames(folder / "larger.mp4", larger)
     (folder / "text.mp4").write_text("no video", encoding="utf-8")
@@ -107,7 +109,7 @@ def test_where_clips_differ_they_tell_themselves(
     lines = fields["//clips"]
     assert any("320 x 240 pixels: larger" in line for line in lines)
     assert any("text.mp4" in line and line.startswith("cannot be read") for line in lines)
-    assert fields["library"] == "auto" and fields["floor_m"] == 0.0
+    assert fields["keyframes"] == "auto" and fields["floor_m"] == 0.0
 
 
 def gray(images: Iterable[np.ndarray]) -> list[np.ndarray]:
@@ -145,10 +147,11 @@ def test_a_shoot_of_plain_clothes_is_asked_for_no_marker(
     write_keypoints(folder / "one.keypoints.json", posture)
     assert new(folder) == 0
     said = capsys.readouterr().out
-    assert re.findall(r"^  (\S+)$", said, flags=re.MULTILINE) == ["camera.matrix_world", "actor.height_m"]
+    left_open = re.findall(r"^  (\S+)$", said, flags=re.MULTILINE)
+    assert left_open == ["camera.height_m", "camera.tilt_deg", "actor.height_m"]
     fields, known = written(folder), shoot_fields()
     assert "markers" not in fields and "strong colors" in fields["//markers"][0]
-    fields["camera"] |= {"matrix_world": known["camera"]["matrix_world"], "lens_mm": 40.0}
+    fields["camera"] |= {"lens_mm": 40.0, "matrix_world": known["camera"]["matrix_world"]}
     fields["actor"] |= known["actor"]
     (folder / "shoot.json").write_text(json.dumps(fields), encoding="utf-8")
     assert main(["check", str(folder)]) == 0

@@ -73,6 +73,7 @@ def _turned_round(shoot: Path) -> dict[str, Any]:
         lambda shoot: edit("shoot.json", markers=_turned_round(shoot))(shoot),
         edit("day1/shoot.json", fps=25),
         edit("day1/take01.take.json", frame_start=7),
+        edit("day1/take01.take.json", ignored_regions=[{"box": [1, 2, 3, 4]}]),
         lengthen,
     ],
 )
@@ -91,6 +92,8 @@ def test_settings_libraries_and_version_change_the_digest(shoot: Path) -> None:
         digest(shoot, libraries=("a",)),
         digest(shoot, libraries=("a", "b")),
         digest(shoot, libraries=("a",), floor_m=0.1),
+        digest(shoot, library="auto", libraries=("a", "b")),
+        digest(shoot, library="auto", libraries=("a",)),
     ]
     assert len(set(digests)) == len(digests)
 

@@ -36,6 +36,8 @@ RECORD = ConversionRecord(
     evidence=UsedEvidence(
         ("trunk",), (UsedKeypoints("a detector", ("nose", "wrist.L"), 0.97, 0.1),), False, True
     ),
+    libraries={"walking": "ef" * 16},
+    doubtful=(5,),
 )
 
 
@@ -94,7 +96,12 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
     (lambda v: v.update(files={"/up": "ab" * 32}), "'/up'"),
     (lambda v: v.update(files={"a": "ab"}), "it must be a SHA-256"),
     (lambda v: v.update(files={"a": None}), "it must be a SHA-256"),
-    (lambda v: v.update(files={f"{n}": "ab" * 32 for n in range(200)}), "names 200 files"),
+    (
+        lambda v: v.update(files={f"{n}": "ab" * 32 for n in range(200)}),
+        "names 200 files",
+    ),
+    (lambda v: v.update(doubtful=["5"]), r"doubtful is \['5'\]; it must be a list of"),
+    (lambda v: v.update(libraries={"walking": 7}), "libraries: walking is 7; it must be a text"),
     (lambda v: v.update(evidence=[]), "evidence is .*; it must be an object"),
     (lambda v: v["evidence"].update(markers=["x" * 300]), "evidence: markers is"),
     (lambda v: v["evidence"].update(contours=1), "evidence: contours is 1; it must be true or false"),
@@ -118,6 +125,15 @@ def test_a_mistake_is_named(change: Callable[[dict[str, Any]], object], said: st
     with pytest.raises(InputError, match=said) as caught:
         read_record(tmp_path)
     assert str(caught.value).startswith(str(tmp_path / RECORD_FILE))
+
+
+def test_a_record_of_an_earlier_keymark_can_be_read(tmp_path: Path) -> None:
+    """It says neither which libraries took part nor what is doubtful."""
+    made(tmp_path)
+    value = json.loads((tmp_path / RECORD_FILE).read_text(encoding="utf-8"))
+    del value["libraries"], value["doubtful"]
+    (tmp_path / RECORD_FILE).write_text(json.dumps(value), encoding="utf-8")
+    assert read_record(tmp_path) == replace(RECORD, libraries={}, doubtful=())
 
 
 def test_what_is_written_can_be_read(tmp_path: Path) -> None:

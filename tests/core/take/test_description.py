@@ -99,6 +99,44 @@ def test_a_library_is_used_beside_existing_keyframes(shoot: Path) -> None:
     assert effective_settings(describe(take)).keyframes == take / "keyframes.json"
 
 
+def test_auto_keyframes_are_the_same_as_the_library_auto(shoot: Path) -> None:
+    """Beside keyframes in the usual file, or in one that is named nearer or farther."""
+    plain = settings_of(take_in(shoot / "plain"), library="auto")
+    auto = describe(take_in(shoot / "auto", keyframes="auto"))
+    assert auto.settings == plain == ConversionSettings(library="auto")
+    assert not auto.fields.has("keyframes") and auto.fields.source_of("library").endswith("take.json")
+    write_json(auto.folder / "keyframes.json", {"keyframes": []})
+    assert effective_settings(describe(auto.folder)).keyframes == auto.folder / "keyframes.json"
+    write_json(shoot / "shoot.json", {"root": True, "keyframes": "auto"})
+    posed = describe(take_in(shoot / "posed", keyframes="mine.json"))
+    assert (posed.settings.keyframes, posed.settings.library) == (posed.folder / "mine.json", "auto")
+    line = describe(posed.folder, {"keyframes": "auto"}, "list.jsonl, line 1")
+    assert line.settings == posed.settings
+
+
+def test_the_nearer_of_library_and_auto_keyframes_counts(shoot: Path) -> None:
+    """And null for either ends what auto began."""
+    write_json(shoot / "shoot.json", {"root": True, "keyframes": "auto"})
+    assert settings_of(take_in(shoot / "walk", library="walking")).library == "walking"
+    assert settings_of(take_in(shoot / "all")).library == "auto"
+    for name in ("library", "keyframes"):
+        assert settings_of(take_in(shoot / name, **{name: None})) == ConversionSettings()
+    write_json(shoot / "shoot.json", {"root": True, "library": "walking"})
+    assert settings_of(take_in(shoot / "jump", keyframes="auto")).library == "auto"
+    assert settings_of(take_in(shoot / "own", keyframes=None)).library == "walking"
+
+
+def test_auto_keyframes_and_a_library_in_one_file_are_refused(shoot: Path) -> None:
+    """As are keyframe files for a whole shoot; each sentence names the file."""
+    take = take_in(shoot / "take", keyframes="auto", library="walking")
+    with pytest.raises(InputError, match=r"take\.json: keyframes is 'auto' and library is 'walking'; the"):
+        describe(take)
+    assert settings_of(take_in(shoot / "both", keyframes="auto", library="auto")).library == "auto"
+    write_json(shoot / "shoot.json", {"root": True, "keyframes": "posed.json"})
+    with pytest.raises(InputError, match=r"shoot\.json: keyframes is 'posed\.json'; .*must be auto"):
+        describe(take_in(shoot / "other"))
+
+
 def test_paths_are_relative_to_the_file_that_gives_them(shoot: Path) -> None:
     """A library of the shoot lies in the shoot's folder, a take's in its own, a list's in the take's."""
     write_json(shoot / "shoot.json", {"root": True, "library": "ours.json"})

@@ -2,17 +2,15 @@
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
 from _synthetic_take import true_postures, write_synthetic_take
-from keymark.core.estimate.notes import filter_notes, left_out_notes, match_notes
+from keymark.core.estimate.notes import filter_notes, found_notes, left_out_notes
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.matching.candidates import Candidate, MatchedFrame
-from keymark.core.matching.library_match import LibraryMatch
-from keymark.core.matching.match_take import NEAR_FRAMES, with_matches
+from keymark.core.posing.found_poses import NEAR_FRAMES, FoundPoses, with_found
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
 from keymark.core.take.take import Take
@@ -40,16 +38,15 @@ def unposed(take: Take, confidence: float = 0.9) -> Take:
     return replace(take, keyframes=tuple(keyframes))
 
 
-def match(frames: list[int]) -> LibraryMatch:
-    """A match with the true postures."""
-    matched = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
-    library = SimpleNamespace(identifier="waving")
-    return cast(LibraryMatch, SimpleNamespace(library=library, frames=matched, postures=TRUTH))
+def found(frames: list[int], library: str = "waving") -> FoundPoses:
+    """The true postures, found at some frames."""
+    known = tuple(MatchedFrame(i, (Candidate(TRUTH[i], "wave", False, 0.8),)) for i in frames)
+    return FoundPoses(known, TRUTH, 0.9, 0.0, "it is", library=library)
 
 
 def test_the_notes_say_that_all_keyframes_are_matched_and_with_which_library(take: Take) -> None:
     """They name the library, and an uncertain frame as one to pose."""
-    sure, unsure = match_notes(unposed(take)), match_notes(unposed(take, 0.2))
+    sure, unsure = found_notes(unposed(take)), found_notes(unposed(take, 0.2))
     assert len(sure) == 1 and "no keyframe was posed" in sure[0] and "waving" in sure[0]
     assert len(unsure) == 2
     assert f"pose frame {take.keyframes[1].index + take.frame_start} " in unsure[1]
@@ -57,18 +54,18 @@ def test_the_notes_say_that_all_keyframes_are_matched_and_with_which_library(tak
 
 def test_posed_keyframes_alone_need_no_note_and_both_kinds_are_counted(take: Take) -> None:
     """Posed keyframes are the usual way."""
-    assert match_notes(take) == ()
+    assert found_notes(take) == ()
     first, *others = take.keyframes
     both = replace(take, keyframes=(first, *(replace(one, matched=said()) for one in others)))
-    assert match_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes are posed")
+    assert found_notes(both)[0].startswith(f"1 of {len(take.keyframes)} keyframes are posed")
 
 
 def test_the_notes_name_keyframes_left_out_and_the_limits_of_the_filter(take: Take) -> None:
     """Some matched keyframes or all of them; no note where none is left out."""
     every = unposed(take)
     assert left_out_notes(every, 0) == () == filter_notes(take)
-    assert left_out_notes(every, len(take.keyframes))[0].startswith("the library was left out")
-    assert left_out_notes(every, 1)[0].startswith(f"1 of {len(take.keyframes)} matched keyframes")
+    assert left_out_notes(every, len(take.keyframes))[0].startswith("the found keyframes were left out")
+    assert left_out_notes(every, 1)[0].startswith(f"1 of {len(take.keyframes)} found keyframes")
     assert "ekf" in filter_notes(every)[0]
 
 
@@ -84,9 +81,10 @@ def test_a_reconstruction_has_these_notes_and_a_larger_depth_variance(take: Take
 def test_matched_keyframes_move_beside_posed_ones(take: Take) -> None:
     """The posed one stays; the matched one takes the match's posture of its new frame."""
     posed = replace(take, keyframes=(Keyframe(0, TRUTH[0]), Keyframe(12, TRUTH[12])))
-    found = {keyframe.index: keyframe for keyframe in with_matches(posed, match([0, 6, 11, 23])).keyframes}
-    assert sorted(found) == [0, NEAR_FRAMES + 1, 6, 12 - NEAR_FRAMES - 1, 12, 23]
-    assert found[0].matched is None and found[12].matched is None
-    beside = found[NEAR_FRAMES + 1]
+    keyframes = with_found(posed, found([0, 6, 11, 23])).keyframes
+    mixed = {keyframe.index: keyframe for keyframe in keyframes}
+    assert sorted(mixed) == [0, NEAR_FRAMES + 1, 6, 12 - NEAR_FRAMES - 1, 12, 23]
+    assert mixed[0].matched is None and mixed[12].matched is None
+    beside = mixed[NEAR_FRAMES + 1]
     assert beside.matched is not None
     np.testing.assert_array_equal(beside.posture.angles, TRUTH[NEAR_FRAMES + 1].angles)

@@ -9,8 +9,12 @@ from driver import Steps, expect, turns, until
 
 ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
-STEP_PX = 13
+STEP_PX = 16
 """Buttons are about 20 px high."""
+NOTCHES = 15
+"""Of the wheel, of about 40 px each: nearly all that a sidebar shows, so that nothing is passed over."""
+MARGIN_PX = 6
+"""Beside what panels show, in the sidebar still."""
 PAGES = 10
 """More than any sidebar is long."""
 
@@ -22,6 +26,8 @@ class Hands:
         self.x = self.y = 0
         self.clicks = 0
         """Presses of the left mouse button so far."""
+        self.keys = 0
+        """Presses of keys so far; written text counts letter by letter."""
         self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
         """Where the mouse last saw what, by area, kind of text and text."""
 
@@ -55,6 +61,7 @@ class Hands:
     def press(self, key: str, text: str | None = None, **modifiers: bool) -> Steps[None]:
         """Press and release a key or a mouse button where the mouse is."""
         self.clicks += key == "LEFTMOUSE"
+        self.keys += key != "LEFTMOUSE"
         for value in ("PRESS", "RELEASE"):
             typed = {"unicode": text} if text is not None and value == "PRESS" else {}
             self.window.event_simulate(type=key, value=value, x=self.x, y=self.y, **typed, **modifiers)
@@ -151,10 +158,27 @@ class Hands:
         yield from self.press("RET")
 
     def _look(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
+        """The same, and then again in the steps that were folded because the work has left them behind."""
+        found = yield from self._look_around(kind, copy, wanted)
+        steps = bpy.context.window_manager.keymark_steps
+        folded = [name for name in steps.bl_rna.properties.keys() if getattr(steps, name) is False]
+        if found is not None or not folded:
+            return found
+        for name in folded:  # where a header is no script can see
+            setattr(steps, name, True)
+        self.area(kind).tag_redraw()
+        yield from turns(4)
+        return (yield from self._look_around(kind, copy, wanted))
+
+    def _look_around(self, kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[tuple[int, int] | None]:
         """Where in the sidebar the button is whose copied text contains all that is wanted."""
-        for text, place in list(self._remembered.items()):
-            if text[:2] == (kind, copy) and all(word in text[2] for word in wanted):
-                if (yield from self._is_at(place, kind, copy, wanted)):
+        known = [(place, text[2]) for text, place in self._remembered.items() if text[:2] == (kind, copy)]
+        for place, text in known:
+            if all(word in text for word in wanted):
+                yield from self._leave([other for other, said in known if said != text], kind, copy, wanted)
+                if not self._tells(kind, copy, wanted) and (
+                    yield from self._is_at(place, kind, copy, wanted)
+                ):
                     return place
         # Most buttons span the middle: the whole sidebar is gone through there first.
         for shares in (ACROSS[:1], ACROSS[1:]):
@@ -167,7 +191,7 @@ class Hands:
                 found = yield from self._search(kind, copy, wanted, shares)
                 seen = self._showing(kind)
                 if found is None:
-                    yield from self.scroll(kind, "WHEELDOWNMOUSE", 8)
+                    yield from self.scroll(kind, "WHEELDOWNMOUSE", NOTCHES)
                     if self._showing(kind) == seen:
                         break
             if found is not None:
@@ -180,12 +204,32 @@ class Hands:
         """The same among what the sidebar shows now."""
         region = self.region(kind, "UI")
         width = region.width - 25  # the tabs
+        been_elsewhere = not self._tells(kind, copy, wanted)
         for share in shares:
             for below in range(30, region.height - 4, STEP_PX):
                 place = round(region.x + share * width), region.y + region.height - below
-                if (yield from self._is_at(place, kind, copy, wanted)):
+                is_there = yield from self._is_at(place, kind, copy, wanted)
+                if is_there and been_elsewhere:
                     return place
+                been_elsewhere |= not is_there
         return None
+
+    def _leave(
+        self, others: list[tuple[int, int]], kind: str, copy: str, wanted: tuple[str, ...]
+    ) -> Steps[None]:
+        """Move the mouse over other buttons until none of the wanted kind is told of.
+
+        Where there is no button under the mouse, Blender tells of the one that was under it last.
+        """
+        for place in others:
+            if not self._tells(kind, copy, wanted):
+                return
+            yield from self.move(*place)
+
+    def _tells(self, kind: str, copy: str, wanted: tuple[str, ...]) -> bool:
+        """Whether the button under the mouse, or the one that was last, is a wanted one."""
+        text = self._copied(kind, copy)
+        return all(word in text for word in wanted)
 
     def _is_at(self, place: tuple[int, int], kind: str, copy: str, wanted: tuple[str, ...]) -> Steps[bool]:
         yield from self.move(*place)
@@ -206,9 +250,9 @@ class Hands:
         return str(manager.clipboard)
 
     def scroll(self, kind: str, wheel: str, notches: int) -> Steps[None]:
-        """Turn the wheel over a sidebar."""
+        """Turn the wheel over a sidebar, at its margin: over a list it would scroll that."""
         region = self.region(kind, "UI")
-        yield from self.move(region.x + 0.4 * region.width, region.y + 0.5 * region.height)
+        yield from self.move(region.x + MARGIN_PX, region.y + 0.5 * region.height)
         for _ in range(notches):
             self.window.event_simulate(type=wheel, value="PRESS", x=self.x, y=self.y)
         yield from turns(4)

@@ -1,4 +1,4 @@
-"""A person's session without posing: footage, markers, actor, a library's postures, the motion.
+"""A person's session without posing, step by step: a library is tried, then all is posed and a choice made.
 
 Usage: as of session.py, with the name of a library instead of the step to begin at.
 """
@@ -16,7 +16,7 @@ from person import Person  # noqa: E402
 
 
 def session(take: Path, folder: Path, camera: Camera, library: str) -> Steps[None]:
-    """All steps in order."""
+    """All steps in order, each undone and redone, and what can be cancelled cancelled once."""
     person = Person(take, folder, camera)
     for step in (
         steps_prepare.start_empty,
@@ -26,7 +26,8 @@ def session(take: Path, folder: Path, camera: Camera, library: str) -> Steps[Non
     ):
         yield from step(person)
     yield from steps_match.match(person, library)
-    yield from steps_match.reconstruct(person)
+    yield from steps_match.pose_all(person)
+    yield from steps_match.choose(person)
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
+from time import monotonic
 from types import ModuleType
 from typing import Any
 
@@ -23,11 +24,21 @@ def keymark(module: str) -> ModuleType:
 class Person:
     """An animator in front of Blender."""
 
-    def __init__(self, take_folder: Path, folder: Path, camera: Camera) -> None:
+    def __init__(self, take_folder: Path, folder: Path, camera: Camera, *, hurried: bool = False) -> None:
+        """Look at the take first.
+
+        Args:
+            take_folder: The take whose files stand for what the animator knows.
+            folder: Where results go.
+            camera: Takes pictures of the screen.
+            hurried: Go straight to the result: nothing is cancelled or undone on the way.
+        """
+        self.hurried = hurried
         self.known = keymark("core.take.take_file").read_take(take_folder)
         self.folder = folder
         self.camera = camera
         self.hands = Hands()
+        self.start_counting()
 
     @property
     def scene(self) -> bpy.types.Scene:
@@ -56,12 +67,30 @@ class Person:
 
     def wait_for_job(self) -> Steps[None]:
         """Wait until no job runs."""
+        begun = monotonic()
         yield from turns(3)
         yield from until(lambda: not self.jobs(), "the job's end", JOB_PATIENCE_S)
+        self.waited_s += monotonic() - begun
         yield from turns(3)
+
+    def start_counting(self) -> None:
+        """Count clicks, keys and time from now on."""
+        self.hands.clicks = self.hands.keys = 0
+        self.started, self.waited_s = monotonic(), 0.0
+
+    def summary(self) -> str:
+        """How much work it was so far, and how long it took on this machine."""
+        minutes = (monotonic() - self.started) / 60.0
+        return (
+            f"{self.hands.clicks} clicks and {self.hands.keys} keys; {minutes:.1f} minutes with the search "
+            f"for every button, {self.waited_s / 60.0:.1f} of them waiting for Keymark"
+        )
 
     def undoable(self, what: str, do: Callable[[], Steps[Any]]) -> Steps[None]:
         """Do something; hold that Ctrl Z takes all of it back and Ctrl Shift Z brings all of it again."""
+        if self.hurried:
+            yield from do()
+            return
         before = scene_state()
         yield from do()
         after = scene_state()
@@ -75,6 +104,8 @@ class Person:
 
     def changes_nothing(self, what: str, do: Callable[[], Steps[Any]]) -> Steps[None]:
         """Do something that is cancelled; hold that the scene is as it was."""
+        if self.hurried:
+            return
         before = scene_state()
         yield from do()
         left = differences(before, scene_state())

@@ -16,6 +16,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import steps_character  # noqa: E402
+import steps_correct  # noqa: E402
 import steps_finish  # noqa: E402
 import steps_prepare  # noqa: E402
 import steps_reconstruct  # noqa: E402
@@ -27,6 +28,7 @@ STEPS = (
     steps_prepare.markers,
     steps_prepare.actor,
     steps_reconstruct.keyframes,
+    steps_correct.correct,
     steps_reconstruct.reconstruct,
     steps_finish.review,
     steps_finish.finish,

@@ -1,43 +1,75 @@
-"""A session's middle without posing: keyframes from a library, one of them replaced, and the motion."""
+"""A session's middle without posing: found keyframes, a choice among candidates, and the motion."""
 
-from driver import Steps, expect
+from driver import Steps, expect, turns
 from person import Person, keymark
 from steps_finish import shown_points, write_points
 from steps_reconstruct import cancelled, job
 
-REPLACED = 1
-"""Place in the list of the match that is replaced."""
+OTHER = 1
+"""Candidate that is tried instead of the first one."""
 
 
 def match(person: Person, library: str) -> Steps[None]:
-    """Match a library, cancelled by Esc once; replace a match, and think better of it."""
-    name = "keymark.match_library"
-    person.take.matching.library = library
+    """Match a named library, and think better of it."""
+    frames, matching = keymark("operators.shell.keyed_frames"), person.take.matching
+    matching.library = library
     person.step_done("Choose the library")
-    yield from person.changes_nothing("cancelling the match", lambda: cancelled(person, name))
-    yield from person.undoable("matching", lambda: job(person, name))
-    matches = person.take.matching.matches
-    expect(len(matches) >= 2, f"{library} gave {len(matches)} matches")
-    frames = keymark("operators.shell.keyed_frames")
+    yield from person.undoable("matching", lambda: _match(person))
+    expect(len(person.take.matching.matches) >= 2, f"{library} gave too few keyframes")
     expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
     yield from person.look("matched")
-    person.take.matching.active_match = REPLACED
-    person.step_done("Choose a match")
-    expect(person.scene.frame_current == round(matches[REPLACED].frame), "choosing does not go there")
-    yield from person.undoable("replacing a match", lambda: _replace(person, 1))
-    expect(person.take.matching.matches[REPLACED].chosen == 1, "the other posture is not chosen")
-    yield from person.look("replaced")
-    yield from _replace(person, 0)
-    expect(len(frames.matched_frames(person.take)) == len(person.take.matching.matches), "a match is lost")
+    yield from person.undoable(
+        "removing what was found", lambda: person.hands.click_button("keymark.remove_found")
+    )
+    expect(not frames.keyframes_of(person.take), "found keyframes are left")
+
+
+def pose_all(person: Person) -> Steps[None]:
+    """Pose all proposed frames by one button, cancelled by Esc once."""
+    name, frames = "keymark.pose_all", keymark("operators.shell.keyed_frames")
+    yield from person.changes_nothing("cancelling Pose All", lambda: cancelled(person, name))
+    yield from person.undoable("posing all", lambda: job(person, name))
+    found = frames.matched_frames(person.take)
+    expect(len(found) >= 2, f"keyframes were found at {found}")
+    expect(not frames.unposed_proposals(person.take), "proposed frames are left without a pose")
+    expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
+    yield from person.look("posed_all")
+
+
+def choose(person: Person) -> Steps[None]:
+    """Look at a doubtful frame from the side, take another candidate, and think better of it."""
+    count, doubtful = keymark("operators.shell.found_frames").count_found(person.take)
+    command, words = "keymark.jump_to_match", ("direction='NEXT'", "only_doubtful=False")
+    if doubtful:
+        words = ("only_doubtful=True",)
+    yield from person.hands.click_button(command, *words)
+    match = person.take.matching.matches[person.take.matching.shown_match]
+    expect(person.scene.frame_current == round(match.frame), "the chosen frame is not shown")
+    yield from person.hands.click_button("keymark.look_from_side")
+    yield from turns(5)
+    yield from person.look("from_the_side")
+    if len(match.candidates) > OTHER:
+        yield from person.undoable("taking a candidate", lambda: _take(person, OTHER))
+        yield from person.look("replaced")
+        yield from _take(person, 0)
+    yield from person.hands.click_button("keymark.look_from_side")
+    left = keymark("operators.shell.found_frames").count_found(person.take)[0]
+    expect(left == count, f"of {count} found keyframes {left} are left")
 
 
 def reconstruct(person: Person) -> Steps[None]:
-    """The motion, from keyframes that nobody has posed."""
+    """The motion, from keyframes that were found."""
     yield from person.undoable("reconstructing", lambda: job(person, "keymark.reconstruct"))
     yield from person.look("unposed")
     points = yield from shown_points(person)
     write_points(person, "motion.json", points)
 
 
-def _replace(person: Person, candidate: int) -> Steps[None]:
+def _match(person: Person) -> Steps[None]:
+    """The button is in a panel that is folded."""
+    yield from person.hands.invoke("keymark.match_library")
+    yield from person.wait_for_job()
+
+
+def _take(person: Person, candidate: int) -> Steps[None]:
     yield from person.hands.click_button("keymark.replace_match", f"candidate={candidate}")

@@ -3,16 +3,20 @@
 from pathlib import Path
 
 import bpy
+import cv2
 import numpy as np
 from driver import Steps, expect, turns, until
 from mathutils import Matrix
 from numpy.typing import NDArray
 from person import Person, keymark
+from steps_camera import find_camera
 
-FARTHEST_COLOR = 40.0
-"""Between a pixel of a sleeve and the sleeve's color over the whole clip, of 255."""
+FARTHEST_COLOR = 25.0
+"""Between a sleeve's color in one frame and over the whole clip, made equally bright, of 255."""
 HIGHER_PX = 100
 """What the timeline is made higher by."""
+ABOUT_PX = 5
+"""Side of the square about a click that a person sees wholly on the sleeve."""
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its color, as a share of the picture's width."""
 
@@ -44,14 +48,15 @@ def opened(person: Person, reconstructed: bool) -> Steps[None]:
 
 
 def footage(person: Person) -> Steps[None]:
-    """Load the clip by the file browser, cancelled once, and set the camera up as it stood."""
+    """Load the clip by the file browser, cancelled once; find the camera, and set it up as it truly stood."""
     clip = "keymark.load_footage", person.known.clip
     yield from person.changes_nothing("cancelling the file browser", lambda: browse(person, *clip, "ESC"))
     yield from person.undoable("loading the footage", lambda: browse(person, *clip, "RET"))
     take, known = person.take, person.known
     expect(take.clip is not None and take.clip.frame_duration > 1, "the footage was not loaded")
     expect(person.scene.frame_end == known.frame_start + take.clip.frame_duration - 1, "the range is another")
-    camera = take.camera
+    yield from find_camera(person)
+    camera = person.take.camera
     camera.matrix_world = Matrix(known.camera.matrix_world.tolist())
     camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", known.camera.sensor_width_mm
     camera.data.lens = known.camera.lens_mm
@@ -75,30 +80,27 @@ def look_through_camera(person: Person) -> Steps[None]:
 
 
 def markers(person: Person) -> Steps[None]:
-    """Add the five markers, and pick each one's color from the footage."""
+    """Pick the usual five markers from the footage, by a button and five clicks."""
+    yield from person.changes_nothing("cancelling the clicks", lambda: _pick(person, 2, "ESC"))
+    before = person.hands.clicks
+    yield from person.undoable("picking the markers", lambda: _pick(person, len(person.known.markers)))
+    print(f"{person.hands.clicks - before} clicks to pick the markers")
     names = [style.segment for style in person.known.markers]
-    yield from person.undoable(
-        "adding the markers", lambda: person.hands.click_button("keymark.add_usual_markers")
-    )
     found = [marker.segment for marker in person.take.markers]
     expect(found == names, f"the markers are {found}, the performer wears {names}")
-    yield from person.changes_nothing("cancelling the eyedropper", lambda: _cancel_eyedropper(person))
-    for number, marker in enumerate(person.take.markers):
-        person.take.active_marker = number
-        person.step_done(f"Choose {marker.name}")
-        pixel = sleeve_pixel(person, number)
-        if number == 0:
-            yield from person.undoable("picking a color", lambda pixel=pixel: _pick(person, pixel))
-        else:
-            yield from _pick(person, pixel)
-    apart = [
-        np.abs(255.0 * np.array(marker.color) - style.color_srgb).max()
-        for marker, style in zip(person.take.markers, person.known.markers, strict=True)
-    ]
-    expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
+    check_colors(person)
     expect(bpy.context.window_manager.keymark_show_masks, "picking does not show the masks")
     yield from person.look("markers")
     yield from person.hands.click_button("keymark.show_masks")
+
+
+def check_colors(person: Person) -> None:
+    """Expect every marker to have nearly the color of its sleeve, be it in shade where it was picked."""
+    apart = []
+    for marker, style in zip(person.take.markers, person.known.markers, strict=True):
+        picked, known = np.array(marker.color), np.array(style.color_srgb, dtype=float)
+        apart.append(float(np.abs(picked * (known @ picked) / (picked @ picked) - known).max()))
+    expect(max(apart) < FARTHEST_COLOR, f"the picked colors are up to {apart} from the sleeves'")
 
 
 def actor(person: Person) -> Steps[None]:
@@ -136,11 +138,29 @@ def browse(person: Person, command: str, file: Path, key: str) -> Steps[None]:
     yield from turns(3)
 
 
-def _pick(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
-    """The eyedropper's button, then a click on a pixel of the footage."""
-    yield from person.hands.click_button("keymark.pick_marker_color")
-    yield from click_pixel(person, pixel)
-    yield from person.wait_for_job()
+def _pick(person: Person, count: int, key: str = "") -> Steps[None]:
+    """The button, a click on each of the first markers as it is asked for, and a key."""
+    yield from person.hands.click_button("keymark.pick_markers")
+    expect(person.jobs(), "nothing waits for a click")
+    for number in range(count):
+        expect_asked(person, number)
+        yield from click_pixel(person, sleeve_pixel(person, number))
+    if key:
+        yield from person.hands.press(key)
+        expect(not person.jobs(), f"{key} does not end the clicks")
+    else:
+        yield from person.wait_for_job()
+
+
+def expect_asked(person: Person, number: int) -> None:
+    """Expect that one of the performer's markers is asked for, with whose left or right it is."""
+    segment = person.known.markers[number].segment
+    request = keymark("operators.shell.footage_request").shown_request()
+    expect(request is not None, "nothing is asked for")
+    title = keymark("operators.markers.properties").segment_title(segment)
+    expect(title in request.title, f"{request.title!r} is asked for, not {title}")
+    side = {"L": "own left", "R": "own right"}.get(segment[-1], "")
+    expect(side in request.detail, f"the request for {segment} says {request.detail!r}")
 
 
 def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
@@ -152,18 +172,11 @@ def click_pixel(person: Person, pixel: NDArray[np.float64]) -> Steps[None]:
     yield from person.hands.click(region.x + x, region.y + y)
 
 
-def _cancel_eyedropper(person: Person) -> Steps[None]:
-    yield from person.hands.click_button("keymark.pick_marker_color")
-    expect(person.jobs(), "the eyedropper does not wait for a click")
-    yield from person.hands.press("ESC")
-    expect(not person.jobs(), "Esc does not cancel the eyedropper")
-
-
 def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     """A pixel [px] of the current frame where a person would click for a marker.
 
-    That is where the sleeve's color is nearest to what it is known to be, around where the first keyframe
-    has the middle of the limb.
+    That is where the colors about it are nearest to what the sleeve's is known to be, around where the first
+    keyframe has the middle of the limb.
     """
     known = person.known
     style, keyframe = known.markers[number], known.keyframes[0]
@@ -181,6 +194,7 @@ def sleeve_pixel(person: Person, number: int) -> NDArray[np.float64]:
     pixels = np.stack([columns, rows], axis=-1) + 0.5
     near = np.linalg.norm(pixels - center, axis=-1) < SEARCH_PX * image.shape[1]
     wrong = np.linalg.norm(image[..., ::-1].astype(float) - style.color_srgb, axis=-1)
+    wrong = cv2.blur(wrong, (ABOUT_PX, ABOUT_PX))
     wrong[~near] = np.inf
     return pixels[np.unravel_index(np.argmin(wrong), wrong.shape)]
 

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from _panelled_take import PANEL, panelled_take
+from _profile_take import profile_take
 from installed_blender import Blender
 from keymark.core.body.human import HUMAN
 from keymark.core.review.score import Score, read_truth, score_points
@@ -18,10 +20,15 @@ UNPOSED_MM = 200.0
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
-    *("character", "retargeted"),
+    *("drag_joints", "dragging", "dragged", "from_the_side", "corrected", "character", "retargeted"),
 )
 """Each leaves at least one picture of this name."""
 PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
+CHOOSING_STEPS = ("matched", "posed_all", "from_the_side")
+HURRIED_STEPS = ("posed_all", "decided", "corrected", "unposed")
+MOST_CLICKS = 40
+"""From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
+MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
 CLICKS_MM = 4.0
 """What a clicked point and a track in a single frame may change."""
 AGREEMENT_MM = 1.5
@@ -74,13 +81,28 @@ def test_a_session_leads_to_the_command_lines_motion(
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
 
 
-def test_a_motion_is_reconstructed_without_posing(blender_on_screen: Blender, repository: Path) -> None:
-    """Matching, replacing a match and reconstructing by mouse and keys lead near the truth."""
+def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: Path) -> None:
+    """Matching, removing, Pose All and taking candidates by mouse and keys, each undone and redone."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "library"
     run_script(blender_on_screen, "library_session.py", take, folder, "aerobic")
     pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in ("matched", "replaced", "unposed") if f"_{step}" not in pictures] == []
+    assert [step for step in CHOOSING_STEPS if f"_{step}" not in pictures] == []
+
+
+def test_few_clicks_lead_from_the_clip_to_a_motion(
+    blender_on_screen: Blender, repository: Path, tmp_path: Path
+) -> None:
+    """Pose All and a few corrections, of a performer who is first seen from the side."""
+    take = repository.parent / "shared" / "takes" / "kick"
+    if not (take / "take.json").is_file():
+        take = profile_take(repository / "presets" / "demo" / "aerobic", tmp_path / "profile")
+    folder = repository / "build" / "screenshots" / "hurried"
+    run_script(blender_on_screen, "hurried_session.py", take, folder)
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in HURRIED_STEPS if f"_{step}" not in pictures] == []
+    clicks = int((folder / "summary.txt").read_text(encoding="utf-8").split()[0])
+    assert clicks <= MOST_CLICKS
     assert _score(folder / "motion.json", take).rooted < UNPOSED_MM
 
 
@@ -100,6 +122,15 @@ def test_plain_clothes_lead_to_a_motion(
     assert done.returncode == 0, done.stdout + done.stderr
     by_hand, by_command = (_score(file, take) for file in (folder / "motion.json", output / "motion.json"))
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=CLICKS_MM)
+
+
+def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, tmp_path: Path) -> None:
+    """Five clicks with mistakes among them; then a panel of a sleeve's color is left out in both ways."""
+    take = panelled_take(repository / "presets" / "demo" / "aerobic", tmp_path / "panelled")
+    folder = repository / "build" / "screenshots" / "markers"
+    run_script(blender_on_screen, "markers_session.py", take, folder, ",".join(map(str, PANEL)))
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in MARKER_STEPS if f"_{step}" not in pictures] == []
 
 
 def plain_take(demo: Path, folder: Path) -> Path:

@@ -13,8 +13,8 @@ from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.library.library import Library
-from keymark.core.matching.match_take import match_take
 from keymark.core.observation.keypoints import KeypointModel
+from keymark.core.posing.match_clip import match_clip
 from keymark.core.progress import run
 from keymark.core.take.take import Take
 
@@ -73,20 +73,19 @@ def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float,
     truth = performed(walking, np.radians(heading_deg))
     people = detected(truth, camera())
     people = people if hinted else people.without_hints()
-    choice = run(match_take(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
-    rooted, absolute = errors_m(choice, truth)
+    found = run(match_clip(*unmarked(truth, camera(), people), walking, floor_m=0.0))
+    rooted, absolute = errors_m(found, truth)
     assert rooted < 0.075
     assert absolute < 0.2
-    assert choice.match is not None
-    assert choice.match.fit > 0.8
+    assert found.fit > 0.8
 
 
 def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
     """A fifth of all points anywhere, and left for right for half of the clip."""
     truth = performed(walking, np.radians(35.0))
     people = exchanged(detected(truth, camera(), wrong=0.2), range(10, 35))
-    choice = run(match_take(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
-    assert errors_m(choice, truth)[0] < 0.075
+    found = run(match_clip(*unmarked(truth, camera(), people), walking, floor_m=0.0))
+    assert errors_m(found, truth)[0] < 0.075
 
 
 def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(walking: Library) -> None:
@@ -94,7 +93,7 @@ def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(w
     truth = performed(walking, np.radians(35.0))
     take, reading = filmed(truth, camera())
     wrong = replace(take, keypoints=(exchanged(detected(truth, camera()), range(FRAMES)),))
-    assert errors_m(run(match_take(wrong, reading, [walking], floor_m=0.0)), truth)[0] < 0.075
+    assert errors_m(run(match_clip(wrong, reading, walking, floor_m=0.0)), truth)[0] < 0.075
 
 
 def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -> None:
@@ -105,27 +104,9 @@ def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -
     trunk = {name: getattr(reading.tracks, name)[:, :1] for name in names}
     bare = replace(take, markers=take.markers[:1])
     seen = Reading(replace(reading.tracks, names=reading.tracks.names[:1], **trunk))
-    alone = errors_m(run(match_take(bare, seen, [walking], floor_m=0.0)), truth)[0]
+    alone = errors_m(run(match_clip(bare, seen, walking, floor_m=0.0)), truth)[0]
     both = replace(bare, keypoints=(detected(truth, camera()),))
-    assert errors_m(run(match_take(both, seen, [walking], floor_m=0.0)), truth)[0] < 0.7 * alone
-
-
-def test_the_right_library_is_chosen_and_none_where_none_fits(walking: Library, squatting: Library) -> None:
-    """Of two, each performance finds its own by keypoints; limbs thrown about find neither."""
-    for own, other in ((walking, squatting), (squatting, walking)):
-        truth = performed(own, 0.6)
-        choice = run(match_take(*unmarked(truth, camera(), detected(truth, camera())), [other, own]))
-        assert choice.match is not None
-        assert choice.match.library is own
-    rng = np.random.default_rng(11)
-    led = performed(walking, 0.0)
-    knots = rng.normal(0.0, 0.9, (6, led.skeleton.dof_count))
-    knots[:, :6] *= 0.3
-    times = np.linspace(0, FRAMES, 6)
-    moves = np.stack([np.interp(np.arange(FRAMES), times, dof) for dof in knots.T], axis=1)
-    thrown = led.plus(moves)
-    nothing = unmarked(thrown, camera(), detected(thrown, camera()))
-    assert run(match_take(*nothing, [walking, squatting])).match is None
+    assert errors_m(run(match_clip(both, seen, walking, floor_m=0.0)), truth)[0] < 0.7 * alone
 
 
 def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
@@ -136,10 +117,8 @@ def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
     nobody = SeenPeople(np.zeros((0, len(NAMES), 2)), np.zeros((0, len(NAMES))), np.zeros((0, len(NAMES), 3)))
     blind = replace(blind, frames=(nobody,) * FRAMES)
     first, second = (
-        run(match_take(each, reading, [walking])).match for each in (take, replace(take, keypoints=(blind,)))
+        run(match_clip(each, reading, walking)) for each in (take, replace(take, keypoints=(blind,)))
     )
-    assert first is not None
-    assert second is not None
     np.testing.assert_array_equal(first.postures.to_vector(), second.postures.to_vector())
 
 
@@ -148,8 +127,8 @@ def test_a_take_with_neither_markers_nor_keypoints_is_refused(walking: Library) 
     truth = performed(walking, 0.6)
     take, reading = unmarked(truth, camera(), detected(truth, camera()))
     with pytest.raises(InputError, match="neither markers nor keypoints"):
-        run(match_take(replace(take, keypoints=()), reading, [walking]))
+        run(match_clip(replace(take, keypoints=()), reading, walking))
     nobody = SeenPeople(np.zeros((0, len(NAMES), 2)), np.zeros((0, len(NAMES))), np.zeros((0, len(NAMES), 3)))
     blind = replace(take.keypoints[0], frames=(nobody,) * FRAMES)
     with pytest.raises(InputError, match="no keypoint is seen"):
-        run(match_take(replace(take, keypoints=(blind,)), reading, [walking]))
+        run(match_clip(replace(take, keypoints=(blind,)), reading, walking))

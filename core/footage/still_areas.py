@@ -1,0 +1,172 @@
+"""Still areas: where a marker's color stays in the same pixels all over a clip, while the marker moves.
+
+A wall panel does so, and a poster, and a chair. They are told only where it is sure that they are no marker:
+only one marker has the color, something else of it moves at the same time, and their outlines rest, as
+that of a garment on somebody who breathes does not.
+"""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from ..arrays import Array, BoolArray, Image
+from .association import STILL_STEP_PX, Candidates
+from .clips.clip_samples import ClipSamples
+from .colors.color_model import BACKGROUND, ColorModel
+from .ignored_regions import IgnoredPixels, PixelBox, is_ignored
+from .marker_warnings import SMALL_PX
+from .segmentation.working_image import halvings, smooth
+
+NEARLY_ALWAYS = 0.9
+"""Share of the sampled frames in which a still pixel has the color; in others a passing limb may hide it."""
+FEWEST_SAMPLES = 8
+"""Sampled frames from which on that is no chance."""
+ELSEWHERE = 0.5
+"""Share of the sampled frames in which the marker must be seen elsewhere."""
+SELDOM = 0.25
+"""Share of the sampled frames below which a pixel has the color by the marker that passes."""
+MOVES_PX = 2.0 * STILL_STEP_PX
+"""Median distance of a moving marker from its usual place, in pixels of the measuring grid."""
+MOST_UNSURE = 1.5
+"""Most pixels about a still area that have its color now and then, relative to its outline: the ring that
+blends into what is behind it may flicker with the noise, a second ring shows that it moves."""
+LEAST_SHARE = 0.1
+"""Least area of a still area that is worth a word, relative to the marker's."""
+MARGIN = 2
+"""Pixels of the measuring grid around a still area that lens and encoding blend its color into."""
+WELL_FILLED = 0.75
+"""Share of a box from which on one box does for an area; others are cut in two."""
+SMALLEST_SIDE = 8
+"""Side in px of the measuring grid of boxes that are not cut further."""
+SIDE = cv2.getStructuringElement(cv2.MORPH_RECT, (3, 3))
+THIRDS = (
+    ("top left", "top", "top right"),
+    ("left", "middle", "right"),
+    ("bottom left", "bottom", "bottom right"),
+)
+
+
+def still_areas(
+    samples: ClipSamples,
+    model: ColorModel,
+    groups: Sequence[Sequence[int]],
+    found: Sequence[Candidates],
+    ignored: IgnoredPixels,
+) -> dict[int, tuple[PixelBox, ...]]:
+    """Boxes around the still areas of each marker's color, by the marker's index.
+
+    Args:
+        samples: Frames spread over the clip.
+        model: The colors learned from them.
+        groups: The markers of each color; where several share one, either may be the one at rest.
+        found: The regions of each color in the sampled frames.
+        ignored: What is ignored already, by sample.
+
+    Returns:
+        Boxes in pixels of the clip, the largest area's first; none where it is not sure.
+    """
+    boxes: dict[int, tuple[PixelBox, ...]] = {marker: () for group in groups for marker in group}
+    count = len(samples.images)
+    if count < FEWEST_SAMPLES:
+        return boxes
+    labels = np.stack([model.labels(smooth(image)) for image in samples.images])
+    for index in range(count):
+        mask = ignored.mask(index)
+        if mask is not None:
+            labels[index][is_ignored(mask)] = BACKGROUND
+    for color, group in enumerate(groups):
+        if len(group) == 1:
+            share = np.mean(labels == color, axis=0)
+            boxes[group[0]] = _boxes(share, found[color], samples.size)
+    return boxes
+
+
+def places(boxes: Sequence[PixelBox], size: tuple[int, int]) -> tuple[str, ...]:
+    """Where in a picture of (width, height) boxes lie, each place once: `at the top left`."""
+    found = []
+    for left, top, right, bottom in boxes:
+        column = min(int(1.5 * (left + right) / size[0]), 2)
+        row = min(int(1.5 * (top + bottom) / size[1]), 2)
+        found.append(f"{'in' if row == column == 1 else 'at'} the {THIRDS[row][column]}")
+    return tuple(dict.fromkeys(found))
+
+
+def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[PixelBox, ...]:
+    """Boxes around the still areas that are no marker, in px of a clip of (width, height).
+
+    Args:
+        share: (rows, columns) share of the sampled frames in which each pixel has the color.
+        found: The regions of the color in the sampled frames.
+        size: Width and height of the clip.
+    """
+    scale, still = 1 << halvings(size), share >= NEARLY_ALWAYS
+    grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=MARGIN), dtype=np.uint8)
+    least = LEAST_SHARE * _moving_area(grown, found, scale)
+    if not least:
+        return ()
+    count, number, stats, _ = cv2.connectedComponentsWithStats(grown, connectivity=8)
+    covering: list[tuple[int, int, int, int]] = []
+    for one in (1 + np.argsort(-stats[1:, cv2.CC_STAT_AREA], kind="stable")).tolist():
+        area = still & (number == one)
+        if np.count_nonzero(area) >= least and _rests(area, share):
+            covering += _covering(np.equal(number, one).view(np.uint8), 0, 0)
+    width, height = size
+    return tuple(
+        (float(a * scale), float(b * scale), float(min(c * scale, width)), float(min(d * scale, height)))
+        for a, b, c, d in covering
+    )
+
+
+def _rests(area: BoolArray, share: Array) -> bool:
+    """Whether the outline of a still area rests: few pixels about it have the color now and then.
+
+    Args:
+        area: (rows, columns) the still area.
+        share: (rows, columns) share of the sampled frames in which each pixel has the color.
+    """
+    mask = area.view(np.uint8)
+    around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
+    now_and_then = around & (share >= SELDOM) & (share < NEARLY_ALWAYS)
+    outline = np.count_nonzero(mask) - np.count_nonzero(cv2.erode(mask, SIDE))
+    return bool(np.count_nonzero(now_and_then) <= MOST_UNSURE * outline)
+
+
+def _moving_area(still: Image, found: Candidates, scale: int) -> float:
+    """Usual area of what moves beside the still areas, in pixels of the measuring grid; 0 if it is not sure.
+
+    Args:
+        still: (rows, columns) 1 in the still areas and around them.
+        found: The regions of the color in N sampled frames.
+        scale: Pixels of the clip to one of the grid.
+    """
+    place, area = found.centroid / scale, found.area / scale**2
+    total = cv2.integral(still)
+    left, top, right, bottom = np.round(found.box / scale).astype(int).T
+    within = total[bottom, right] - total[top, right] - total[bottom, left] + total[top, left]
+    beside = np.flatnonzero((within < 0.5 * area) & (area >= SMALL_PX))
+    # A frame's regions begin with the largest.
+    frames, first = np.unique(found.frame[beside], return_index=True)
+    if len(frames) < ELSEWHERE * (len(found.start) - 1):
+        return 0.0
+    largest = beside[first]
+    usual = float(np.median(area[largest]))
+    away = np.linalg.norm(place[largest] - np.median(place[largest], axis=0), axis=1)
+    return usual if float(np.median(away)) >= MOVES_PX else 0.0
+
+
+def _covering(mask: Image, left: int, top: int) -> list[tuple[int, int, int, int]]:
+    """Few boxes (left, top, right, bottom) over a mask and little more; its corner is at (left, top)."""
+    x, y, columns, rows = cv2.boundingRect(mask)
+    if not columns:
+        return []
+    part = np.ascontiguousarray(mask[y : y + rows, x : x + columns])
+    left, top = left + x, top + y
+    filled = cv2.countNonZero(part) / part.size
+    if filled >= WELL_FILLED or max(columns, rows) <= SMALLEST_SIDE:
+        return [(left, top, left + columns, top + rows)]
+    if columns >= rows:
+        half = columns // 2
+        return _covering(part[:, :half], left, top) + _covering(part[:, half:], left + half, top)
+    half = rows // 2
+    return _covering(part[:half], left, top) + _covering(part[half:], left, top + half)

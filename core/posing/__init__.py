@@ -1,0 +1,1 @@
+"""Poses that nobody posed: candidates of a frame, the likeliest sequence of them, and what contradicts."""

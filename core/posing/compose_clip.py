@@ -1,0 +1,232 @@
+"""Postures of a clip put together from parts: what frames say, the path through them, the place."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.kinematics import Body
+from ..body.limbs import LIMBS
+from ..body.posture import Posture
+from ..estimate.performer_placement import place_standing
+from ..footage.camera import Camera
+from ..library.library import Library
+from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
+from ..matching.frame_likelihood import frame_likelihoods
+from ..matching.library_match import tempering
+from ..matching.match_evidence import MatchEvidence
+from ..matching.match_input import MatchInput
+from ..matching.noise_scales import NoiseScales
+from ..progress import Part, scaled
+from .composed_path import ComposedPath, best_path
+from .composed_states import LEGS, FrameCosts, FrameStates
+from .library_belief import PartBelief, part_beliefs
+from .mean_posture import mean_postures
+from .part_features import StanceFeatures
+from .part_pools import PartPools
+from .posed_costs import PosedCosts
+
+PART_SCALE = 0.4
+"""Deviation of a composed body from the performer, relative to that of another performer's posture."""
+WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
+"""Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
+NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
+"""Distances tried about the first path."""
+BETWEEN_POSED = (1.0, 0.96, 1.04)
+"""Distances tried between two posed frames, which tell the place."""
+LONGEST_GAP_S = 2.0
+"""Between posed frames that are no farther apart nobody goes far away and comes back."""
+SEARCHED_AND_LED = 0.6, 0.7
+"""Shares of a round after which the states are found, and the path through them."""
+SMOOTH_S = 0.6
+"""Time over which the rough distance is smoothed."""
+FLOOR_STD_M = 0.06
+"""Height of a standing foot where a likelihood has a floor of its own."""
+MOST_PLACED = 16
+"""Frames in which the performer is placed by size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Composition:
+    """Postures of T frames, put together from parts."""
+
+    path: ComposedPath
+    states: list[FrameStates]
+    posture: Posture
+    """(T,)."""
+    floor_m: float
+    """Height of the floor."""
+
+
+def compose_frames(
+    given: MatchInput,
+    pools: PartPools,
+    stances: StanceFeatures,
+    sampled: IndexArray,
+    floor_m: float | None,
+    libraries: Sequence[Library],
+) -> Part[Composition]:
+    """Compose the postures of some frames.
+
+    Args:
+        given: The take.
+        pools: All parts.
+        stances: Their stances.
+        sampled: (T,) which frames.
+        floor_m: Height of the floor; None where it is not known.
+        libraries: Those of the pools, whose whole motions are believed in as far as the clip shows them; not
+            asked between posed frames that are near each other.
+
+    Yields:
+        The fraction done.
+    """
+    evidence, camera = given.evidence, given.camera
+    time_s = evidence.tracks.time_s[sampled]
+    rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
+    if _posed_throughout(given, sampled):  # the place is known, then, and what lies between is soon found
+        known = given.constraints
+        depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
+        rough = np.interp(sampled, known.frames, depths)
+        rounds = (BETWEEN_POSED,)
+    else:
+        rough = rough_depths(given.body, camera, evidence, sampled, time_s)
+    if floor_m is None:
+        floor_m = floor_height_m(given, stances, sampled, rough)
+    yield 0.1
+    beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
+    for turn, shares in enumerate(rounds):
+        begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
+        searched, led = (begun + part * (ended - begun) for part in SEARCHED_AND_LED)
+        is_last = turn == len(rounds) - 1
+        # The first round is for the place and the library; exchanged sides are tried where they are known.
+        rows = np.arange(len(sampled)) if is_last else _every_second(len(sampled))
+        weight = tempering(time_s[rows])
+        believed = [beliefs[row] for row in rows]
+        costs = _costs(given, stances, sampled[rows], floor_m, believed, weight)
+        others: list[FrameCosts] = []
+        if is_last and len(evidence.points):
+            mirrored = replace(given, evidence=evidence.exchanged())
+            others = _costs(mirrored, stances, sampled[rows], floor_m, believed, weight)
+        states = yield from scaled(_states(costs, others, rough[rows], shares), begun, searched)
+        step_m = float(np.median(rough)) * abs(shares[1] - shares[0])
+        leading = best_path(stances, states, costs, others, time_s[rows], weight, step_m)
+        path = yield from scaled(leading, searched, led)
+        posture = mean_postures(pools, stances, states, path)
+        if not is_last:
+            at = zip(path.hips, sampled[rows], strict=True)
+            depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
+            rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
+            telling = part_beliefs(given, libraries, pools, stances, sampled, posture, floor_m)
+            beliefs = yield from scaled(telling, led, ended)
+    return Composition(path, states, posture, floor_m)
+
+
+def _every_second(count: int) -> IndexArray:
+    """Every second of some frames, and the last."""
+    return np.unique(np.append(np.arange(0, count, 2), count - 1)).astype(np.intp)
+
+
+def _posed_throughout(given: MatchInput, sampled: IndexArray) -> bool:
+    """Whether the first and the last frame are posed, and others so often that the place is known."""
+    frames = given.constraints.frames
+    if not {int(sampled[0]), int(sampled[-1])} <= set(map(int, frames)):
+        return False
+    return bool((np.diff(given.evidence.tracks.time_s[frames]) <= LONGEST_GAP_S).all())
+
+
+def _costs(
+    given: MatchInput,
+    stances: StanceFeatures,
+    frames: IndexArray,
+    floor_m: float,
+    beliefs: Sequence[PartBelief | None],
+    weight: float,
+) -> list[FrameCosts]:
+    """What some frames say, each of the given weight; posed ones hold."""
+    costs = frame_costs(given, stances, frames, floor_m, beliefs)
+    posed = given.constraints
+    for index, frame in enumerate(posed.frames):
+        for row in np.flatnonzero(frames == frame):
+            hips, points = posed.hips[index], posed.points[index]
+            costs[row] = PosedCosts(costs[row].likelihood, stances, hips, points, weight)
+    return costs
+
+
+def frame_costs(
+    given: MatchInput,
+    stances: StanceFeatures,
+    frames: IndexArray,
+    floor_m: float | None,
+    beliefs: Sequence[PartBelief | None] | None = None,
+) -> list[FrameCosts]:
+    """What some frames say of stances and limbs, and what a library's motion tells of them."""
+    unit = NoiseScales.of(given.evidence)
+    scales = replace(unit, centroid=unit.centroid * PART_SCALE)
+    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, floor_m, FLOOR_STD_M, scales)
+    told = [None] * len(likelihoods) if beliefs is None else beliefs
+    return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, told, strict=True)]
+
+
+def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array) -> float:
+    """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
+    rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
+    free, heights = [], []
+    for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):
+        if not cost.likelihood.visible.any():
+            continue
+        states = cost.states(rough[row] * np.array(WIDE))
+        best = states.chosen(np.array([int(states.cost.argmin())]))
+        relative = best.hips - cost.location
+        feet = [
+            float(cost.foot_heights(limb, best.stance, relative)[0, best.limbs[0, LIMBS.index(limb)]])
+            for limb in LEGS
+        ]
+        heights.append(min(feet))
+        free.append((row, float(states.cost.min())))
+    found = float(np.median(heights)) if heights else 0.0
+    if abs(found) < WORLD_FLOOR_M:
+        return 0.0
+    seen = np.array([row for row, _ in free])
+    grounded = frame_costs(given, stances, sampled[seen], 0.0)
+    added = [
+        float(cost.states(rough[row] * np.array(WIDE)).cost.min()) - least
+        for (row, least), cost in zip(free, grounded, strict=True)
+    ]
+    return 0.0 if np.mean(added) < FLOOR_COST_MARGIN else found
+
+
+def _states(
+    costs: Sequence[FrameCosts], others: Sequence[FrameCosts], rough: Array, shares: Sequence[float]
+) -> Part[list[FrameStates]]:
+    """The states of each frame, with those of exchanged sides where `others` are given."""
+    found = []
+    for index, (cost, depth) in enumerate(zip(costs, rough, strict=True)):
+        states = cost.states(depth * np.array(shares))
+        if others and not isinstance(cost, PosedCosts):
+            states = states.with_exchanged(others[index].states(depth * np.array(shares[:1])))
+        found.append(states)
+        yield index / len(costs)
+    return found
+
+
+def rough_depths(
+    body: Body, camera: Camera, evidence: MatchEvidence, frames: IndexArray, time_s: Array
+) -> Array:
+    """(T,) distances of the hips along the camera's axis by sizes in the picture [m], smoothed."""
+    depths = np.full(len(frames), np.nan)
+    seen = evidence.visible[frames].any(axis=1)
+    for row in np.flatnonzero(seen)[:: max(1, seen.sum() // MOST_PLACED)]:
+        frame = int(frames[row])
+        regions, keypoints = evidence.tracks.frame(frame), evidence.keypoints.frame(frame)
+        placed = place_standing(body, camera, frame, regions, evidence.segments, keypoints)
+        depths[row] = float(camera.depth(placed.translation, frame))
+    known = np.isfinite(depths)
+    return _smoothed(np.interp(time_s, time_s[known], depths[known]), time_s)
+
+
+def _smoothed(values: Array, time_s: Array) -> Array:
+    """Running medians over `SMOOTH_S` and then means."""
+    near = np.abs(time_s[:, None] - time_s) < SMOOTH_S
+    median = np.array([np.median(values[own]) for own in near])
+    return np.array([median[own].mean() for own in near])

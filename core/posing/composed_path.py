@@ -1,0 +1,229 @@
+"""The likeliest sequence of stances through a clip, then of each limb on them.
+
+A stance keeps its place, its lean and its heading from one frame to the next, but for what people do in that
+time; a limb its points. Frames are tempered, since what makes one doubtful makes its neighbors doubtful.
+"""
+
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, IndexArray, SingleArray
+from ..body.human import HUMAN
+from ..body.limbs import LIMBS
+from ..matching.noise_scales import student_cost
+from .composed_states import LEGS, FrameCosts, FrameStates
+from .part_features import HEADINGS, StanceFeatures
+
+TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
+TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
+"""Usual speed of shoulders and hips about the hips' middle [m/s], and what pool and headings are rough by."""
+PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04
+"""The same of the place."""
+LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09
+"""The same of elbows, wrists, knees and ankles."""
+MOST_STEP_COST = np.float32(16.0)
+"""Largest cost of a step of the stance: evidence may be wrong for a while."""
+FORWARD_PER_M = 1.5
+"""How much likelier it is that a performer goes forwards by a meter than not."""
+FRAMES_A_YIELD = 8
+
+
+@dataclass(frozen=True, eq=False)
+class ComposedPath:
+    """The state of each of T frames and its limbs, all of the pools'."""
+
+    stance: IndexArray
+    """(T,)."""
+    hips: Array
+    """(T, 3) [m]."""
+    limbs: IndexArray
+    """(T, 4), in the order of `LIMBS`."""
+    posterior: list[SingleArray]
+    """T arrays (K,) of the probabilities of each frame's states."""
+    limb_posterior: dict[str, Array]
+    """(T, L) probability of each part of a limb on the stances, by limb."""
+
+
+def best_path(
+    stances: StanceFeatures,
+    states: Sequence[FrameStates],
+    costs: Sequence[FrameCosts],
+    others: Sequence[FrameCosts],
+    time_s: Array,
+    tempering: float,
+    depth_step_m: float,
+) -> Generator[float, None, ComposedPath]:
+    """The likeliest path through the states of T frames, see `ComposedPath`.
+
+    Args:
+        stances: All stances.
+        states: Those of each frame.
+        costs: What each frame says.
+        others: The same with left and right of the keypoints exchanged; none where that is not tried.
+        time_s: (T,) times of the frames.
+        tempering: Weight of a frame.
+        depth_step_m: Distance between the depths that were tried.
+
+    Yields:
+        The fraction done.
+    """
+    steps = []
+    for index in range(1, len(states)):
+        duration = float(time_s[index] - time_s[index - 1])
+        steps.append(
+            _step_cost(stances, states[index - 1], states[index], costs[index], duration, depth_step_m)
+        )
+        if index % FRAMES_A_YIELD == 0:
+            yield 0.5 * index / len(states)
+    own = [np.float32(tempering) * each.cost for each in states]
+    best = cheapest_path(own, steps)
+    posterior = path_posteriors(own, steps)
+    stance = np.array([each.stance[row] for each, row in zip(states, best, strict=True)])
+    hips = np.array([each.hips[row] for each, row in zip(states, best, strict=True)], dtype=float)
+    swapped = [bool(each.exchanged[row]) for each, row in zip(states, best, strict=True)]
+    said = [others[i] if swap else cost for i, (cost, swap) in enumerate(zip(costs, swapped, strict=True))]
+    limbs, parts = limb_paths(stances, said, stance, hips, time_s, tempering)
+    yield 1.0
+    return ComposedPath(stance, hips, limbs, posterior, parts)
+
+
+def limb_paths(
+    stances: StanceFeatures,
+    costs: Sequence[FrameCosts],
+    stance: IndexArray,
+    hips: Array,
+    time_s: Array,
+    tempering: float,
+) -> tuple[IndexArray, dict[str, Array]]:
+    """(T, 4) the likeliest limbs on given stances at given places (T, 3), and each part's probability."""
+    tables: list[dict[str, SingleArray]] = []
+    for cost, own, place in zip(costs, stance, hips, strict=True):
+        relative = (place[None] - cost.location).astype(np.float32)
+        tables.append({limb: cost.limb_table(limb, np.array([own]), relative) for limb in LIMBS})
+    variances = [np.float32((LIMB_SPEED * step) ** 2 + LIMB_ROUGH_M**2) for step in np.diff(time_s)]
+    points = {}
+    for limb in LIMBS:
+        turn, origin = stances.frame_of(limb, stance)
+        points[limb] = np.einsum("tij,lqj->tlqi", turn, stances.limbs[limb].points) + origin[:, None, None]
+    found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
+
+    def steps(limb: str, rows: Sequence[IndexArray | slice]) -> list[SingleArray]:
+        """Costs of steps from some parts to some parts of the next frame."""
+        moved = zip(points[limb][:-1], points[limb][1:], rows[:-1], rows[1:], variances, strict=True)
+        return [
+            student_cost(_squared_distances(before[own], after[other]) / variance, 3)
+            for before, after, own, other, variance in moved
+        ]
+
+    weight = np.float32(tempering)
+    posterior: dict[str, Array] = {}
+    for column, limb in enumerate(LIMBS):
+        own_costs = [weight * table[limb][0] for table in tables]
+        all_steps = steps(limb, [slice(None)] * len(stance))
+        found[:, column] = cheapest_path(own_costs, all_steps)
+        posterior[limb] = np.array(path_posteriors(own_costs, all_steps), dtype=float)
+    chosen = []
+    for row, (cost, own, place) in enumerate(zip(costs, stance, hips, strict=True)):
+        relative = (place[None] - cost.location).astype(np.float32)
+        chosen.append(cost.leg_pairs(np.array([own]), relative, tables[row], found[row][None]))
+    rows = [[left.index[0] for left, _, _ in chosen], [right.index[0] for _, right, _ in chosen]]
+    wholes = [weight * (a.cost[0][:, None] + b.cost[0] + pairs[0]) for a, b, pairs in chosen]
+    both = cheapest_pairs(wholes, *(steps(limb, own) for limb, own in zip(LEGS, rows, strict=True)))
+    for side, limb in enumerate(LEGS):
+        found[:, LIMBS.index(limb)] = [own[pick] for own, pick in zip(rows[side], both[side], strict=True)]
+    return found, posterior
+
+
+def cheapest_pairs(
+    own: Sequence[SingleArray], first: Sequence[SingleArray], second: Sequence[SingleArray]
+) -> tuple[IndexArray, IndexArray]:
+    """The cheapest path of pairs: rows and columns (T,) of (J, K) costs, with steps of either on its own."""
+    total, sources = own[0], []
+    for one, other, cost in zip(first, second, own[1:], strict=True):
+        through = total[:, None, :] + one[:, :, None]  # (J, J', K)
+        row = through.argmin(axis=0)
+        nearer = through.min(axis=0)[:, :, None] + other  # (J', K, K')
+        column = nearer.argmin(axis=1)
+        sources.append((row, column))
+        total = nearer.min(axis=1) + cost
+    pick = np.unravel_index(int(total.argmin()), total.shape)
+    path = [(int(pick[0]), int(pick[1]))]
+    for row, column in reversed(sources):
+        after, beside = path[-1]
+        before = int(column[after, beside])
+        path.append((int(row[after, before]), before))
+    found = np.array(path[::-1], dtype=np.intp)
+    return found[:, 0], found[:, 1]
+
+
+def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:
+    """(T,) rows of the cheapest path (Viterbi), by costs (K,) of rows and (J, K) of steps between them."""
+    total, sources = own[0], []
+    for step, cost in zip(steps, own[1:], strict=True):
+        through = total[:, None] + step
+        source = through.argmin(axis=0)
+        sources.append(source)
+        total = through[source, np.arange(len(cost))] + cost
+    rows = [int(total.argmin())]
+    for source in reversed(sources):
+        rows.append(int(source[rows[-1]]))
+    return np.array(rows[::-1], dtype=np.intp)
+
+
+def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[SingleArray]:
+    """Probabilities of each frame's rows given all frames."""
+    chance = [np.exp(-step) for step in steps]
+    forward = [_normalized(np.exp(own[0].min() - own[0]))]
+    for step, cost in zip(chance, own[1:], strict=True):
+        forward.append(_normalized((forward[-1] @ step) * np.exp(cost.min() - cost)))
+    backward = np.ones_like(own[-1])
+    found = [forward[-1]]
+    for index in range(len(own) - 2, -1, -1):
+        later = own[index + 1]
+        backward = _normalized(chance[index] @ (backward * np.exp(later.min() - later)))
+        found.append(_normalized(forward[index] * backward))
+    return found[::-1]
+
+
+def _normalized(share: SingleArray) -> SingleArray:
+    total = share.sum()
+    if not total > 0.0:
+        return np.full_like(share, 1.0 / len(share))
+    return np.asarray(share / total)
+
+
+def _step_cost(
+    stances: StanceFeatures,
+    before: FrameStates,
+    after: FrameStates,
+    cost: FrameCosts,
+    duration_s: float,
+    depth_step_m: float,
+) -> SingleArray:
+    """(J, K) costs of steps between the states of two frames."""
+    points = stances.features.points[:, TRUNK_POINTS]
+    apart = _squared_distances(points[before.stance], points[after.stance])
+    turned = apart / np.float32((TRUNK_SPEED * duration_s) ** 2 + TRUNK_ROUGH_M**2)
+    across = (PLACE_SPEED * duration_s) ** 2 + PLACE_ROUGH_M**2
+    along = across + 0.5 * depth_step_m**2
+    sight = cost.backward.astype(float)
+    covariance = across * np.eye(3) + (along - across) * np.outer(sight, sight)
+    whiten = np.linalg.inv(np.linalg.cholesky(covariance)).T.astype(np.float32)
+    moved = _squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])
+    total = np.minimum(turned + np.float32(0.5) * moved, MOST_STEP_COST)
+    angle = stances.heading_rad[after.stance % HEADINGS]
+    ahead = np.stack([np.sin(angle), -np.cos(angle)], axis=-1).astype(np.float32)  # facing -Y at 0
+    gone = (after.hips[:, :2] * ahead).sum(axis=-1) - before.hips[:, :2] @ ahead.T
+    limit = np.float32(4.0 * duration_s)
+    total -= np.float32(FORWARD_PER_M) * np.clip(gone, -limit, limit)
+    return np.asarray(total)
+
+
+def _squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
+    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
+    count = first.shape[1]
+    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
+    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
+    return np.maximum(squared, np.float32(0.0)) / np.float32(count)

@@ -1,0 +1,320 @@
+"""What one frame says of stances at several distances, with the best limbs on each.
+
+Given a stance and its place a frame's evidence splits into parts: the cost of a whole body is that of its
+torso and the sum of its limbs' own, so that the best of all compositions is found limb by limb. Only the
+floor asks both legs: one of them stands on it, or none does.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..body.center_of_mass import mass_weights
+from ..body.human import HUMAN
+from ..body.limbs import LIMBS
+from ..matching.emissions import EXCHANGED_COST, lowest
+from ..matching.frame_likelihood import FrameLikelihood, square_root
+from ..matching.noise_scales import student_cost
+from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
+from .library_belief import PartBelief
+from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
+from .part_pools import ARM
+
+MOST_STANCES = 500
+"""Stances that limbs are hung on, by how well their torsos fit."""
+MOST_NEAR = 90
+"""Of these the ones that are tried at all distances."""
+MOST_STATES = 240
+"""States kept of a frame."""
+MARGIN = 14.0
+"""States whose cost exceeds the frame's least by more are dropped."""
+DEPTH_STD_M = 0.02
+"""How firmly a state keeps to its distance."""
+LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
+
+
+@dataclass(frozen=True, eq=False)
+class FrameStates:
+    """K states of a frame: a stance at a place, with the best limb of each kind."""
+
+    stance: IndexArray
+    """(K,)."""
+    hips: SingleArray
+    """(K, 3) places of the hips in the world [m]."""
+    cost: SingleArray
+    """(K,) negative log likelihood, up to a constant of the frame."""
+    limbs: IndexArray
+    """(K, 4) the best of each limb, in the order of `LIMBS`."""
+    exchanged: BoolArray
+    """(K,) whether left and right of the keypoints are exchanged for it."""
+
+    def chosen(self, rows: IndexArray) -> "FrameStates":
+        """Some of the states."""
+        return FrameStates(
+            self.stance[rows], self.hips[rows], self.cost[rows], self.limbs[rows], self.exchanged[rows]
+        )
+
+    def with_exchanged(self, other: "FrameStates") -> "FrameStates":
+        """The best of these and of those with left and right of the keypoints exchanged."""
+        count = len(self.cost)
+        both = FrameStates(
+            np.concatenate([self.stance, other.stance]),
+            np.concatenate([self.hips, other.hips]),
+            np.concatenate([self.cost, other.cost + EXCHANGED_COST]),
+            np.concatenate([self.limbs, other.limbs]),
+            np.arange(count + len(other.cost)) >= count,
+        )
+        return both.chosen(lowest(both.cost, MOST_STATES, MARGIN))
+
+
+class FrameCosts:
+    """Costs of stances and limbs in one frame."""
+
+    def __init__(
+        self,
+        likelihood: FrameLikelihood,
+        stances: StanceFeatures,
+        floor_m: float | None,
+        belief: PartBelief | None = None,
+    ) -> None:
+        self.likelihood, self.stances, self.floor_m = likelihood, stances, floor_m
+        self.belief = belief
+        self.axes = np.asarray(likelihood.image_axes, dtype=np.float32)  # (A, 2, 3)
+        self.rows = self.axes * np.asarray(likelihood.weight, dtype=np.float32)[:, None, None]
+        self.location = np.asarray(likelihood.location, dtype=np.float32)
+        self.backward = np.asarray(likelihood.backward, dtype=np.float32)
+        self.sight = np.asarray(likelihood.sight, dtype=np.float32)
+        self.share = np.float32(likelihood.share)
+        self.markers = len(likelihood.unclipped)
+
+    def states(self, depths_m: Array) -> FrameStates:
+        """The states that explain the frame best, at some distances from the camera, the middle one first."""
+        every = np.arange(len(self.stances.pelvis))
+        middle = np.float32(depths_m[0])
+        places = self.places(every, np.full(len(every), middle))
+        cost = self.torso_cost(every, places)
+        kept = lowest(cost, MOST_STANCES, 2.0 * MARGIN)
+        whole, _ = self.whole_cost(every[kept], places[kept], cost[kept])
+        kept = kept[lowest(whole, MOST_NEAR, 1.5 * MARGIN)]
+        stance = np.tile(every[kept], len(depths_m))
+        depth = np.repeat(np.asarray(depths_m, dtype=np.float32), len(kept))
+        places = self.places(stance, depth)
+        cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places))
+        kept = lowest(cost, 2 * MOST_STATES, MARGIN)
+        stance, depth, limbs = stance[kept], depth[kept], limbs[kept]
+        places = self.places(stance, depth, limbs)
+        cost, limbs = self.whole_cost(stance, places, self.torso_cost(stance, places), paired=True)
+        kept = lowest(cost, MOST_STATES, MARGIN)
+        plain = np.zeros(len(kept), dtype=bool)
+        return FrameStates(stance[kept], places[kept] + self.location, cost[kept], limbs[kept], plain)
+
+    def places(
+        self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
+    ) -> SingleArray:
+        """(N, 3) places of the hips from the camera [m], by least squares at given distances.
+
+        Without limbs each counts as the middle of all of its kind, and little.
+        """
+        matrix = np.outer(self.backward, self.backward) / DEPTH_STD_M**2 + np.eye(3) * 1e-4
+        torso = self.stances.features
+        right = -np.outer(depth_m, self.backward) / DEPTH_STD_M**2
+        for column, observed in enumerate(torso.observed):
+            own = self.rows[observed].T @ self.rows[observed]
+            matrix = matrix + own
+            right -= torso.place[stance, column] @ own
+        for row, limb in enumerate(LIMBS):
+            features = self.stances.limbs[limb]
+            if not len(features.observed):
+                continue
+            turn, origin = self.stances.frame_of(limb, stance)
+            for column, observed in enumerate(features.observed):
+                weight = float(self.likelihood.weight[observed])
+                if weight == 0.0:
+                    continue
+                own = self.rows[observed].T @ self.rows[observed]
+                if limbs is None:
+                    local = np.broadcast_to(features.place[:, column].mean(axis=0), (len(stance), 3))
+                    spread = float(features.place[:, column].var(axis=0).mean())
+                    own = own / (1.0 + spread * weight**2)
+                else:
+                    local = features.place[limbs[:, row], column]
+                matrix = matrix + own
+                right -= (origin + (turn @ local[..., None])[..., 0]) @ own
+        return np.asarray(np.linalg.solve(matrix, right.T).T, dtype=np.float32)
+
+    def torso_cost(self, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N,) cost of stances at places from the camera, without limbs."""
+        features = self.stances.features
+        local = features.place[stance]
+        cost = np.array(features.cost[stance])
+        if self.belief is not None:
+            cost += self.belief.stance[stance]
+        for column, observed in enumerate(features.observed):
+            at = local[:, column] + places
+            cost += self._point_cost(observed, at @ self.rows[observed].T)
+            depth = self._hint_cost(observed, local[:, column] @ self.sight)
+            if depth is not None:
+                cost += depth
+            if observed < self.markers and self.likelihood.unclipped[observed]:
+                moment = features.second_moment[stance, column]
+                entries = [moment @ _products(*pair) for pair in self._pairs(observed)]
+                cost += self._extent_cost(observed, entries, -at @ self.backward)
+        nearness = -places @ self.backward
+        cost[nearness < 0.3] += np.float32(1e3)
+        return cost
+
+    def limb_table(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N, L) cost of each of a limb's parts on stances at places from the camera, without the floor."""
+        features = self.stances.limbs[limb]
+        turn, origin = self.stances.frame_of(limb, stance)
+        cost = self.stances.limb_cost[limb][stance // HEADINGS]
+        if self.belief is not None:
+            cost = cost + self.belief.limbs[limb]
+        for column, observed in enumerate(features.observed):
+            if self.likelihood.weight[observed] == 0.0:
+                continue
+            local = features.place[:, column].T  # (3, L)
+            squared = np.zeros_like(cost)
+            for row in self.rows[observed]:
+                residual = (row @ turn) @ local
+                residual += ((origin + places) @ row)[:, None]
+                residual *= residual
+                squared += residual
+            cost += self.share * student_cost(squared, 2)
+            guessed = self._hint_cost(observed, (self.sight @ turn) @ local + (origin @ self.sight)[:, None])
+            if guessed is not None:
+                cost += guessed
+            if observed < self.markers and self.likelihood.unclipped[observed]:
+                moment = features.second_moment[:, column].T  # (6, L)
+                first, second = (axis @ turn for axis in self.axes[observed])
+                entries = [
+                    _products(*pair) @ moment for pair in ((first, first), (first, second), (second, second))
+                ]
+                away = -((origin + places) @ self.backward)[:, None] - (self.backward @ turn) @ local
+                cost += self._extent_cost(observed, entries, away)
+        return cost
+
+    def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
+        """(N, L) height of each of a leg's feet over the floor [m], by its ankle, 0 where it lies flat."""
+        turn, origin = self.stances.frame_of(limb, stance)
+        ankle = self.stances.limbs[limb].points[:, 1]
+        base = origin[:, 2] + places[:, 2] + self.location[2] - np.float32(self.floor_m or 0.0)
+        above = turn[:, 2] @ ankle.T + base[:, None]
+        return np.asarray(above - np.float32(self.stances.ankle_height_m))
+
+    def whole_cost(
+        self, stance: IndexArray, places: SingleArray, torso: SingleArray, paired: bool = False
+    ) -> tuple[SingleArray, IndexArray]:
+        """(N,) cost with the best limbs, and (N, 4) which these are; legs balance the body where paired."""
+        cost, limbs = np.array(torso), np.zeros((len(stance), len(LIMBS)), dtype=np.intp)
+        tables = {}
+        for column, limb in enumerate(LIMBS):
+            tables[limb] = self.limb_table(limb, stance, places)
+            limbs[:, column] = tables[limb].argmin(axis=1)
+            cost += soft_least(tables[limb])
+        if paired and self.floor_m is not None:
+            rows = np.arange(len(stance))
+            left, right, pairs = self.leg_pairs(stance, places, tables, limbs)
+            chance = np.exp(left.cost.min(axis=1, keepdims=True) - left.cost)[:, :, None]
+            chance = chance * np.exp(right.cost.min(axis=1, keepdims=True) - right.cost)[:, None]
+            cost -= np.log((chance * np.exp(-pairs)).sum(axis=(1, 2)) / chance.sum(axis=(1, 2)))
+            whole = left.cost[:, :, None] + right.cost[:, None] + pairs
+            best = np.unravel_index(whole.reshape(len(stance), -1).argmin(axis=1), whole.shape[1:])
+            for limb, choices, which in zip(LEGS, (left, right), best, strict=True):
+                limbs[:, LIMBS.index(limb)] = choices.index[rows, which]
+        return cost, limbs
+
+    def leg_pairs(
+        self,
+        stance: IndexArray,
+        places: SingleArray,
+        tables: Mapping[str, SingleArray],
+        limbs: IndexArray,
+    ) -> tuple[LegChoices, LegChoices, SingleArray]:
+        """The likeliest legs of stances at places, with (N, C, C) costs of their pairs.
+
+        Args:
+            stance: (N,).
+            places: (N, 3) from the camera [m].
+            tables: (N, L) costs of each limb's parts.
+            limbs: (N, 4) the best limbs, of which arms count for the balance.
+        """
+        weights = mass_weights(HUMAN).astype(np.float32)
+        level = self.stances.features.points[stance, :, :2] * weights[:, None]
+        mass = level[:, TRUNK_POINTS].sum(axis=1)
+        choices = {}
+        for column, limb in enumerate(LIMBS):
+            turn, origin = self.stances.frame_of(limb, stance)
+            features = self.stances.limbs[limb]
+            own = weights[limb_points(limb)]
+            if limb not in LEGS:
+                points = features.points[limbs[:, column]] @ np.swapaxes(turn, -1, -2) + origin[:, None]
+                mass = mass + (points[..., :2] * own[:, None]).sum(axis=1)
+                continue
+            height = self.foot_heights(limb, stance, places)
+            table = tables[limb] if self.floor_m is None else tables[limb] + below_cost(height)
+            index = likeliest(table, height)
+            points = np.einsum("nij,ncqj->ncqi", turn[:, :2], features.points[index])
+            sole = features.soles.mean(axis=1)[index]
+            choices[limb] = LegChoices(
+                index,
+                np.take_along_axis(table, index, axis=1),
+                np.take_along_axis(height, index, axis=1),
+                np.einsum("nij,ncj->nci", turn[:, :2], sole),
+                (points * own[:, None]).sum(axis=2),
+            )
+        left, right = (choices[limb] for limb in LEGS)
+        pairs = self.stances.legs_together[left.index[:, :, None], right.index[:, None]]
+        if self.floor_m is not None:
+            pairs = pairs + pair_costs(left, right, mass)
+        return left, right, pairs
+
+    def _point_cost(self, observed: int, residual: SingleArray) -> SingleArray:
+        return np.asarray(self.share * student_cost((residual**2).sum(axis=-1), 2))
+
+    def _hint_cost(self, observed: int, depth: SingleArray) -> SingleArray | None:
+        """Cost of depths behind the hips where one was guessed; None where it was not."""
+        guess = observed - self.markers
+        if guess < 0 or not len(self.likelihood.depth_weight) or self.likelihood.depth_weight[guess] == 0.0:
+            return None
+        off = (depth - np.float32(self.likelihood.depth_m[guess])) * np.float32(
+            self.likelihood.depth_weight[guess]
+        )
+        return np.asarray(self.share * student_cost(off * off, 1))
+
+    def _pairs(self, observed: int) -> list[tuple[SingleArray, SingleArray]]:
+        a, b = self.axes[observed]
+        return [(a, a), (a, b), (b, b)]
+
+    def _extent_cost(self, marker: int, entries: Sequence[Any], depth: SingleArray) -> SingleArray:
+        xx, xy, yy = entries
+        predicted = square_root(xx, xy, yy)
+        seen = self.likelihood.extent[marker].astype(np.float32)
+        depth = np.maximum(depth, np.float32(0.1))
+        variance = (
+            np.float32(self.likelihood.extent_std_m[marker] ** 2)
+            + (np.float32(self.likelihood.pixel_size) * depth) ** 2
+        )
+        squared = sum(
+            (predicted[k] - seen[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
+        )
+        return student_cost(np.asarray(squared / variance), 3)
+
+
+def soft_least(cost: SingleArray) -> SingleArray:
+    """(N,) cost of any one of several (N, L): how many explain a frame counts, as well as how well one does.
+
+    A limb that points at the camera explains whatever a nearer body shows; few limbs do so.
+    """
+    least = cost.min(axis=1)
+    return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
+
+
+def _products(first: SingleArray, second: SingleArray) -> SingleArray:
+    """(..., 6) coefficients of a symmetric matrix's entries in uᵀ S v."""
+    u, v = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+    mixed = [u[i] * v[j] + u[j] * v[i] for i, j in ((0, 1), (0, 2), (1, 2))]
+    return np.stack([u[0] * v[0], u[1] * v[1], u[2] * v[2], *mixed], axis=-1)

@@ -1,0 +1,149 @@
+"""Flipping depth: what leans toward the camera leans away from it instead, and the picture stays the same."""
+
+from collections.abc import Iterator
+from enum import Enum
+
+import numpy as np
+
+from ..arrays import Array
+from ..body import rotations
+from ..body.kinematics import Body
+from ..body.limbs import LIMBS, TRUNK
+from ..body.posture import Posture
+from ..footage.camera import Camera
+from .dragged import planted
+from .limb_chain import LimbChain, limb_chain, swing
+from .limb_in_sight import DISTINCT_M, LimbInSight, depths_m, sight_lines, ways_in_sight
+from .reach import Pull, pulled
+from .sight_lines import SightLine
+
+
+class FlippedPart(Enum):
+    """The parts of a limb or of the trunk that lean to the other side."""
+
+    UPPER = (True, False)
+    """Upper arm or thigh, with forearm or shin leaning as before; of the trunk, the chest."""
+    LOWER = (False, True)
+    """Forearm or shin alone; of the trunk, the pelvis."""
+    BOTH = (True, True)
+    """The whole limb, or the whole trunk."""
+
+
+FLIPPABLE = (TRUNK, *LIMBS)
+"""Parts of the body whose depth can be flipped, as `body/limbs` names them."""
+FLAT_M = 0.5 * DISTINCT_M
+"""A part whose ends differ less in depth [m] lies flat in the picture, and has no other side."""
+SEEN_M, SEEN_DEPTH_M = 0.01, 0.1
+"""How near the head on a flipped trunk stays to where it was seen, and to its new depth."""
+_ORDER_OF_TRUNK = (FlippedPart.BOTH, FlippedPart.UPPER, FlippedPart.LOWER)
+"""A trunk that leans the wrong way mostly does so from the hips up."""
+
+
+def flipped(
+    body: Body, posture: Posture, camera: Camera, part_of_body: str, part: FlippedPart | None = None
+) -> tuple[Posture, ...]:
+    """Postures in which a limb or the trunk lies on the other side in depth, the most plausible first.
+
+    Its joints keep their image, lengths are exact, and joint limits are kept: where they forbid the flipped
+    posture, it is the nearest one within them that still lies on the other side. With a limb all else stays.
+    With the trunk arms and head keep their image, and the feet their place.
+
+    Args:
+        body: The actor's body.
+        posture: A single posture.
+        camera: The camera in this frame, as one that stands still.
+        part_of_body: One of `FLIPPABLE`.
+        part: What of it is flipped; by default everything that looks different.
+
+    Returns:
+        Up to three postures, none where the part lies flat in the picture, so that it has no depth to flip.
+
+    Raises:
+        KeyError: There is no such part of the body.
+    """
+    if part_of_body == TRUNK:
+        return tuple(_flipped_trunks(body, posture, camera, part))
+    limb = limb_chain(body.skeleton, part_of_body)
+    return tuple(way.posture for way in _flipped_limbs(body, posture, camera, limb, part))
+
+
+def _flipped_limbs(
+    body: Body, posture: Posture, camera: Camera, limb: LimbChain, part: FlippedPart | None
+) -> list[LimbInSight]:
+    lines = sight_lines(body, posture, camera, limb)
+    before = depths_m(body, posture, limb, lines)
+    found = []
+    for way in ways_in_sight(body, posture, limb, lines):
+        asked = (way.leans != (before > 0.0)) & (np.abs(before) > FLAT_M)
+        # Joint limits may hold a part back on the side where it was.
+        turned = (before > 0.0) != (depths_m(body, way.posture, limb, lines) > 0.0)
+        wanted = asked.any() if part is None else tuple(asked) == part.value
+        if wanted and turned[asked].all():
+            found.append(way)
+    return found
+
+
+def _flipped_trunks(
+    body: Body, posture: Posture, camera: Camera, part: FlippedPart | None
+) -> Iterator[Posture]:
+    trunk = [body.skeleton.joint_index(joint) for joint in ("waist", "neck")]
+    shown = [posture]
+    for each in _ORDER_OF_TRUNK if part is None else (part,):
+        leaning = _with_trunk(body, posture, camera, *each.value)
+        places = body.pose(leaning).origin[trunk]
+        apart = [np.linalg.norm(places - body.pose(other).origin[trunk], axis=-1).max() for other in shown]
+        if min(apart) > DISTINCT_M:
+            shown.append(leaning)
+            yield leaning
+
+
+def _with_trunk(body: Body, posture: Posture, camera: Camera, upper: bool, lower: bool) -> Posture:
+    """The posture with chest or pelvis leaning to the other side, and the rest of the body where it was."""
+    pose = body.pose(posture)
+    skeleton = body.skeleton
+    pelvis, waist = skeleton.joint_index("pelvis"), skeleton.joint_index("waist")
+    neck = skeleton.joint_index("neck")
+    hips, middle, end = (np.array(pose.origin[joint]) for joint in (pelvis, waist, neck))
+    new_middle = _other_place(camera, hips, middle, lower)
+    new_end = _other_place(camera, new_middle, end, upper, center_before=middle)
+    below = swing(middle - hips, new_middle - hips) @ pose.rotation[pelvis]
+    above = swing(end - middle, new_end - new_middle) @ pose.rotation[waist]
+    matrices = np.array(posture.rotations)
+    matrices[skeleton.ball_joints.index(pelvis)] = below
+    ball = skeleton.ball_joints.index(waist)
+    bend = rotations.logarithm(below.T @ above)
+    matrices[ball] = rotations.exponential(np.clip(bend, *skeleton.limits[skeleton.ball_dofs[ball]].T))
+    leaning = Posture(skeleton, posture.translation, matrices, posture.angles)
+    return _with_the_rest(body, posture, leaning, camera)
+
+
+def _other_place(
+    camera: Camera, center: Array, place: Array, flip: bool, center_before: Array | None = None
+) -> Array:
+    """Where a joint lies on its line of sight, on the other side of its moved center or on the same."""
+    before = center if center_before is None else center_before
+    line = SightLine.to(camera, place)
+    beyond = bool((place - before) @ line.direction > 0.0)
+    length = float(np.linalg.norm(place - before))
+    return np.asarray(line.at_distance(center, length)[int(beyond != flip)])
+
+
+def _with_the_rest(body: Body, before: Posture, leaning: Posture, camera: Camera) -> Posture:
+    """A posture whose trunk has moved, with arms and head where they were seen and feet where they stood."""
+    skeleton = body.skeleton
+    start = dict(zip(skeleton.point_names, body.points(body.pose(before)), strict=True))
+    now = dict(zip(skeleton.point_names, body.points(body.pose(leaning)), strict=True))
+    legs = {f"{joint}.{side}": 1.0 for joint in ("hip", "knee") for side in ("L", "R")}
+    held = pulled(body, leaning, planted(start), legs)
+    for name in LIMBS[:2]:
+        limb = limb_chain(skeleton, name)
+        lines = sight_lines(body, before, camera, limb)
+        leans = depths_m(body, before, limb, lines) > 0.0
+        ways = ways_in_sight(body, held, limb, lines)
+        if ways:
+            held = min(ways, key=lambda way: (int((way.leans != leans).sum()), way.strain)).posture
+    line = SightLine.to(camera, start["head"])
+    shoulders = ("shoulder.L", "shoulder.R")
+    moved = np.mean([now[name] - start[name] for name in shoulders], axis=0)
+    pull = Pull("head", line.nearest(start["head"] + moved), SEEN_M, line.direction, SEEN_DEPTH_M)
+    return pulled(body, held, [pull], {"neck": 1.0})

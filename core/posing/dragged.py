@@ -1,0 +1,164 @@
+"""Dragging a joint: the limb, or what else carries it, follows so that the joint lies where it should."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.kinematics import Body
+from ..body.limbs import TRUNK, limb_of
+from ..body.mirror import other_side
+from ..body.posture import Posture
+from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
+from .reach import Pull, pulled
+from .sight_lines import SightLine
+
+ON_SIGHT_M = 0.001
+"""A dragged joint lies under the mouse: a millimeter is less than a pixel of any footage, ..."""
+DEPTH_M = 0.03
+"""... while its depth may give way where the body does not allow both."""
+PUSHED_M = 0.01
+"""A joint that is pushed along the line of sight comes as near as it can, off the line or on it."""
+HELD_M = 0.05
+"""Joints that should stay where they are, but may give way to the dragged one."""
+PLANTED_M = 0.005
+"""Ankles of a body whose trunk is dragged."""
+FLAT_M = 0.01
+"""Difference in depth of a limb's middle from its root below which it is on neither side [m]."""
+STRAIGHT = 1e-3
+"""Sine of a bend below which a limb's middle lies on no side."""
+HIPS = ("hip.L", "hip.R")
+
+Freedom = Mapping[str, float]
+
+_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})
+"""The bend of a leaning trunk is shared, most of it above the waist."""
+_HEAD: Freedom = MappingProxyType({"neck": 1.0, "waist": 0.1})
+
+
+def dragged(
+    body: Body, posture: Posture, point: str, place: Array, sight: Array, pushed: bool = False
+) -> Posture:
+    """A posture with one joint dragged to a place; lengths are exact, and joint limits are springs.
+
+    Wrists and ankles bend the limb, elbows and knees swing it about where wrist and ankle are, shoulders lean
+    and turn the trunk over the feet, the head nods, and hips take the whole body along. All else stays.
+
+    Args:
+        body: The actor's body.
+        posture: A single posture.
+        point: Name of the principal point that is dragged.
+        place: (3,) where to [m].
+        sight: (3,) unit direction in which the view looks there. Seen along it the joint comes to lie on
+            `place`; in depth it comes as near as lengths allow.
+        pushed: Whether it is dragged along the line of sight: then depth counts as much as the image.
+
+    Raises:
+        KeyError: There is no such point.
+    """
+    start = dict(zip(body.skeleton.point_names, body.points(body.pose(posture)), strict=True))
+    if point in HIPS:
+        shift = np.zeros(body.skeleton.dof_count)
+        shift[:3] = place - start[point]
+        return posture.plus(shift)
+    part = limb_of(point)
+    if part != TRUNK:
+        return _limb_dragged(body, posture, limb_chain(body.skeleton, part), point, place, sight, pushed)
+    pulls = [_pull(point, place, sight, pushed)]
+    if point == "head":
+        return pulled(body, posture, pulls, _HEAD)
+    _, _, side = point.partition(".")
+    legs = {f"{joint}.{each}": 1.0 for joint in ("hip", "knee") for each in ("L", "R")}
+    pulls += [Pull(other_side(point), start[other_side(point)], HELD_M), *planted(start)]
+    return pulled(body, posture, pulls, {**_TRUNK, **legs, f"girdle.{side}": 0.1})
+
+
+def planted(start: Mapping[str, Array]) -> list[Pull]:
+    """What holds the legs where they are, by the places (3,) of all points."""
+    held = [("ankle", PLANTED_M), ("knee", HELD_M)]
+    return [
+        Pull(f"{stem}.{side}", start[f"{stem}.{side}"], std_m) for stem, std_m in held for side in ("L", "R")
+    ]
+
+
+def _pull(point: str, place: Array, sight: Array, pushed: bool) -> Pull:
+    if pushed:
+        return Pull(point, place, PUSHED_M)
+    return Pull(point, place, ON_SIGHT_M, sight, DEPTH_M)
+
+
+def _limb_dragged(
+    body: Body, posture: Posture, limb: LimbChain, point: str, place: Array, sight: Array, pushed: bool
+) -> Posture:
+    """The posture with a limb whose middle or end was dragged."""
+    places, lengths = limb_points(body, posture, limb), part_lengths_m(body, limb)
+    root, before, held = places
+    line = SightLine(place, sight)
+    if point == limb.points[2]:
+        least, most = _reach_m(body, limb, lengths)
+        end = line.within(place, root, (least, most))
+        if pushed:
+            away = float(np.linalg.norm(place - root))
+            end = _on_sphere(place, root, float(np.clip(away, least, most)))
+        middle = _bent(places, lengths, end, _bends_to(body, posture, limb))
+        pulls = [_pull(point, end, sight, pushed)]
+    else:
+        middle = _on_sphere(place, root, lengths[0]) if pushed else _swung_about(places, lengths, line)
+        end = middle + lengths[1] * (held - middle) / max(float(np.linalg.norm(held - middle)), 1e-9)
+        pulls = [_pull(point, middle, sight, pushed), Pull(limb.points[2], held, HELD_M)]
+    moved = aimed(body, posture, limb, middle, end)
+    excess = limb_excess_rad(moved, limb)
+    if (np.abs(excess) <= np.abs(limb_excess_rad(posture, limb)) + 1e-9).all():
+        return moved
+    free = {limb.points[0]: 1.0, limb.points[1]: 1.0}
+    return pulled(body, moved, pulls, free, allowed=posture)
+
+
+def _on_sphere(place: Array, center: Array, radius_m: float) -> Array:
+    """The place nearest to one at a distance from a center."""
+    return np.asarray(center + radius_m * (place - center) / max(float(np.linalg.norm(place - center)), 1e-9))
+
+
+def _swung_about(places: Array, lengths: tuple[float, float], line: SightLine) -> Array:
+    """Where a limb's middle lies on a line of sight: on the side of its root where it was.
+
+    Where it was on neither, on the side where its end can stay more nearly where it is.
+    """
+    root, before, end = places
+    near, far = line.at_distance(root, lengths[0])
+    depth = float((before - root) @ line.direction)
+    if abs(depth) > FLAT_M:
+        return np.asarray(far if depth > 0.0 else near)
+    choices = sorted((near, far), key=lambda each: abs(float(np.linalg.norm(end - each)) - lengths[1]))
+    return np.asarray(choices[0])
+
+
+def _reach_m(body: Body, limb: LimbChain, lengths: tuple[float, float]) -> tuple[float, float]:
+    """Least and most distance of a limb's end from its root [m]: bent as far as it goes, and straight."""
+    upper, lower = lengths
+    most_bent = float(body.skeleton.limits[limb.dofs[3], 1])
+    return float(np.sqrt(upper**2 + lower**2 + 2.0 * upper * lower * np.cos(most_bent))), upper + lower
+
+
+def _bends_to(body: Body, posture: Posture, limb: LimbChain) -> Array:
+    """(3,) direction in the world to which a limb's middle comes out when it bends."""
+    above = body.pose(posture).rotation[limb.above]
+    return np.asarray(-(above @ posture.rotations[limb.ball] @ limb.rest[:, 1]))
+
+
+def _bent(places: Array, lengths: tuple[float, float], end: Array, out: Array) -> Array:
+    """Where the middle of a limb lies with its end elsewhere: on the side where it was, swung along."""
+    root, middle, before = places
+    upper, lower = lengths
+    reach = float(np.linalg.norm(end - root))
+    axis = (end - root) / max(reach, 1e-9)
+    turn = swing(before - root, end - root)
+    along = (reach**2 + upper**2 - lower**2) / (2.0 * max(reach, 1e-9))
+    aside = turn @ (middle - root)
+    aside = aside - (aside @ axis) * axis
+    if np.linalg.norm(aside) < STRAIGHT * upper:
+        aside = turn @ out
+        aside = aside - (aside @ axis) * axis
+    off = np.sqrt(max(upper**2 - along**2, 0.0))
+    return np.asarray(root + along * axis + off * aside / max(float(np.linalg.norm(aside)), 1e-9))

@@ -1,0 +1,88 @@
+"""Postures found in footage without posing, with the candidates of every proposed frame."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from ..body.posture import Posture
+from ..footage.reading import Reading
+from ..library.several_libraries import COMPOSED
+from ..matching.candidates import MatchedFrame
+from ..prior.keyframes import Keyframe, Matched
+from ..take.take import Take
+
+NEAR_FRAMES = 2
+"""Found keyframes keep farther than this from posed ones."""
+
+
+@dataclass(frozen=True, eq=False)
+class FoundPoses:
+    """The most probable postures of a clip that nobody posed."""
+
+    frames: tuple[MatchedFrame, ...]
+    """The frames proposed for keyframes, in order, with their candidates, the chosen one first."""
+    postures: Posture
+    """(F,) the posture in every frame of the clip."""
+    fit: float
+    """Mean share of the footage that is explained, 0 to 1."""
+    floor_m: float
+    """Height of the floor that the performer stands on [m]."""
+    reason: str
+    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
+    say."""
+    contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+    """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
+    library: str = COMPOSED
+    """Identifier of the library that was matched, where only one was."""
+    reading: Reading | None = None
+    """The clip as read again with the postures telling where each marker is; None where the given reading
+    holds."""
+    between: tuple[int, int] | None = None
+    """First and last frame that were looked at; None for the whole clip."""
+
+    def keyframe(self, frame: MatchedFrame, index: int | None = None) -> Keyframe:
+        """The found keyframe with a frame's chosen candidate.
+
+        Args:
+            frame: One of `frames`.
+            index: Where to put it instead, with the posture found there.
+        """
+        chosen = frame.candidates[0]
+        at = frame.index if index is None else index
+        posture = chosen.posture if at == frame.index else self.postures[at]
+        said = Matched(self.library, chosen.name, chosen.mirrored, chosen.confidence)
+        return Keyframe(at, posture, matched=said)
+
+    def sought(self, index: int) -> bool:
+        """Whether a frame was looked at."""
+        return self.between is None or self.between[0] <= index <= self.between[1]
+
+
+def with_found(take: Take, found: FoundPoses) -> Take:
+    """The take with the found keyframes; posed ones stay, and found ones make room for them.
+
+    Beside a posed keyframe a found one tells how the performer differs from the postures it was made of
+    (`prior/performer_offset`).
+
+    Args:
+        take: The take; keyframes that were found earlier go, except where none was sought now.
+        found: What was found of it.
+    """
+    posed = [key.index for key in take.keyframes if key.matched is None]
+    kept = {key.index: key for key in take.keyframes if key.matched is None or not found.sought(key.index)}
+    keyframes: dict[int, Keyframe] = {}
+    for frame in found.frames:
+        index = _free_frame(frame.index, posed, found.postures.batch[0])
+        if index is not None and index not in keyframes:
+            keyframes[index] = found.keyframe(frame, index)
+    return replace(take, keyframes=tuple(each for _, each in sorted((keyframes | kept).items())))
+
+
+def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
+    """The frame itself or, near a posed keyframe, the nearest one that is far enough; None without one."""
+    reach = range(-NEAR_FRAMES - 1, NEAR_FRAMES + 2)
+    free = [
+        index + step
+        for step in sorted(reach, key=abs)
+        if 0 <= index + step < frames and all(abs(index + step - other) > NEAR_FRAMES for other in posed)
+    ]
+    return free[0] if free else None

@@ -1,0 +1,156 @@
+"""The postures of one frame, with no keyframe at all: a few distinct candidates, each with a confidence.
+
+What is seen of a frame does not tell a posture: several explain it alike. So the hypotheses of a search
+(`frame_search`) are gathered around the likeliest ones; each candidate is the mean of those near it, weighed
+by their probability and brought to the evidence again, which is nearer to the truth than the best single one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..body.limbs import TRUNK
+from ..body.posture import Posture
+from ..errors import InputError
+from ..estimate.single_frame import fit_frame
+from ..library.library import Library
+from ..matching.candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate, distinct_rows
+from ..prior.frame_prior import FramePrior
+from .frame_belief import belief_costs, believed_fit
+from .frame_confidence import frame_confidence
+from .frame_contradictions import unexplained, unworn_marker
+from .frame_search import Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
+from .frame_shown import FrameShown
+from .known_postures import part_shapes
+
+MOST_CANDIDATES = 4
+MOST_MEANS = 8
+"""Means that are brought to the evidence, where some may end alike."""
+APART_M = 0.13
+"""Hypotheses that lead to different means are farther apart than this on average, hips aligned."""
+NO_TORSO = -1
+"""Stands for the torso of a hypothesis from keyframes."""
+TEMPERATURE = 3.0
+"""Costs count for so many times less: what is seen of one body errs together, and so do its parts."""
+
+
+@dataclass(frozen=True, eq=False)
+class FramePoses:
+    """What a frame may show."""
+
+    candidates: tuple[Candidate, ...]
+    """The likeliest first; at least one."""
+    contradictions: tuple[str, ...] = ()
+    """Names of the markers and keypoints that the first candidate does not explain, as no plausible posture
+    does."""
+    cost: float = 0.0
+    """Near a pose, the negative logarithm of the posture's probability, up to a constant of the frame."""
+
+
+def find_frame_poses(
+    shown: FrameShown,
+    libraries: Sequence[Library],
+    floor_m: float | None = None,
+    belief: FramePrior | None = None,
+) -> FramePoses:
+    """Find the postures that a frame may show.
+
+    Args:
+        shown: The frame.
+        libraries: What is known of postures.
+        floor_m: Height of the floor in the world [m]; None where it is not known.
+        belief: What keyframes nearby tell of the frame; None without any.
+
+    Raises:
+        InputError: No library has a posture, or nothing is seen in the frame.
+    """
+    if shown.is_empty:
+        raise InputError("neither a marker nor a keypoint is seen in the frame, so no posture can be found")
+    known = knowledge(shown.body, libraries)
+    found = _hypotheses(known, shown, floor_m, belief)
+    unworn = unworn_marker(known, shown, found, floor_m)
+    left_out: tuple[str, ...] = ()
+    if unworn is not None:
+        shown, left_out = unworn.shown, (unworn.name,)
+        found = _hypotheses(known, shown, floor_m, belief)
+    candidates = _candidates(known, shown, found, floor_m)
+    named = (*left_out, *unexplained(known, shown, candidates[0].posture))
+    return FramePoses(candidates, tuple(dict.fromkeys(named)))
+
+
+def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
+    """The posture that explains a frame nearest to a pose that somebody has set for it.
+
+    Args:
+        shown: The frame.
+        belief: About that pose, which is not doubted as a whole: no library is asked.
+    """
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=shown.points_of(False))
+    names = [shown.tracks.names[marker] for marker in fit.misplaced]
+    only = Candidate(fit.posture, "", False, 1.0)
+    return FramePoses((only,), (*names, *fit.misplaced_points), fit.cost)
+
+
+def _hypotheses(
+    known: Knowledge, shown: FrameShown, floor_m: float | None, belief: FramePrior | None
+) -> Hypotheses:
+    """Those of a search; what keyframes tell comes first."""
+    found = search(known, shown, floor_m)
+    if belief is None:
+        return found
+    fit, cost = believed_fit(known, shown, belief, floor_m)
+    return Hypotheses(
+        Posture.concatenate([Posture.stack([fit.posture]), found.posture]),
+        np.concatenate([[cost], found.cost + belief_costs(belief, found.posture)]),
+        np.concatenate([[NO_TORSO], found.torso]),
+        np.concatenate([[False], found.exchanged]),
+    )
+
+
+def _candidates(
+    known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None
+) -> tuple[Candidate, ...]:
+    """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
+    body = known.pools.body
+    points = points_from_hips(body, found.posture)
+    weight = np.exp(-(found.cost - found.cost.min()) / TEMPERATURE)
+    weight /= weight.sum()
+    near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
+    share = near @ weight
+    leading = int(found.cost.argmin())
+    kept = found.torso[leading] == NO_TORSO
+    order = np.argsort(-share, kind="stable")
+    if kept:
+        order = np.concatenate([[leading], order])
+    chosen = distinct_rows(points, order, APART_M, MOST_MEANS)
+    means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
+    start = Hypotheses(means, found.cost[chosen], found.torso[chosen], found.exchanged[chosen])
+    final = refined(known, shown, start, floor_m)
+    if kept:
+        rest = final.posture[np.arange(1, len(chosen))]
+        final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
+    made = []
+    ended = points_from_hips(body, final.posture)
+    for rank in distinct_rows(ended, np.arange(len(chosen)), DISTINCT_M, MOST_CANDIDATES):
+        posture = final.posture[int(rank)]
+        name, flipped = _nearest(known, posture)
+        sure = frame_confidence(float(share[chosen[rank]]), float(final.cost[rank]))
+        made.append(Candidate(posture, name, flipped, sure))
+    return tuple(made)
+
+
+def _nearest(known: Knowledge, posture: Posture) -> tuple[str, bool]:
+    """Name of the known posture whose trunk is nearest, and whether it is mirrored."""
+    own = known.plausibility.known
+    shape = part_shapes(own.body, own.body.pose(Posture.stack([posture])))[TRUNK]
+    row = int(np.linalg.norm(own.parts[TRUNK] - shape, axis=-1).argmin())
+    return own.names[row], own.mirrored[row]
+
+
+def _mean(postures: Posture, row: int, weight: Array) -> Posture:
+    """The mean (1,) of postures in the tangent space of one of them, by weights (S,)."""
+    own = np.flatnonzero(weight)
+    step = postures[own].minus(postures[np.full(len(own), row)])
+    return postures[np.array([row])].plus((weight[own] @ step / weight[own].sum())[None])

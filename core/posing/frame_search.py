@@ -1,0 +1,227 @@
+"""A search for the postures that one frame may show, from nothing but what is seen in it.
+
+Compositions of all known torsos and limbs in all headings are screened (`composed_states`), the likeliest
+distinct ones descend side by side to what is seen, and each result is weighed: by the evidence, by floor,
+balance and joint limits, by how plausible its parts are, and by how well its surroundings do in screening.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..estimate.clip_state import ClipState
+from ..estimate.frame_descent import descend
+from ..estimate.performer_placement import place_standing
+from ..estimate.terms.assembly import free_frame_terms
+from ..estimate.terms.regions import FEATURES, RegionNoise, limb_widths
+from ..estimate.terms.term import total_cost
+from ..library.library import Library
+from ..matching.candidates import distinct_rows
+from ..matching.emissions import EXCHANGED_COST
+from ..matching.frame_likelihood import frame_likelihoods
+from ..matching.noise_scales import NoiseScales
+from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
+from .compose_clip import FLOOR_STD_M, PART_SCALE, WIDE
+from .composed_states import FrameCosts
+from .frame_shown import FrameShown
+from .leg_pairs import NO_CONTACT_COST
+from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
+from .part_pools import PartPools, content_of, part_pools
+from .plausibility import Plausibility, plausibility
+
+MOST_STARTS = 80
+"""Postures that descend side by side."""
+DISTINCT_M = 0.05
+"""Starts whose points, hips aligned, are nearer than this lead to the same posture."""
+PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3
+"""How far a descent may go from its start: sizes are good to a tenth, headings are 15 degrees apart."""
+FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))
+"""Factors of the image noise, one a step, from a composition, which a performer is about 5 cm off."""
+NEVER_COST = 1e3
+"""Cost of a body part of which lies behind the camera, where nothing can be compared."""
+SCREENED_SHARE = 0.5
+"""Weight of a start's cost in screening, in which the many compositions around it count: a posture that only
+one combination leads to is less likely than its own evidence says."""
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """What is known of postures on one body."""
+
+    pools: PartPools
+    plausibility: Plausibility
+
+
+@dataclass(frozen=True, eq=False)
+class Hypotheses:
+    """S postures that the frame may show."""
+
+    posture: Posture
+    """(S,) in the world."""
+    cost: Array
+    """(S,) negative log probability, up to a constant of the frame."""
+    torso: IndexArray
+    """(S,) torso of the pools that each began with."""
+    exchanged: BoolArray
+    """(S,) whether left and right of the keypoints are exchanged."""
+
+
+def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
+    """What some libraries tell of postures on a body; that of the last few bodies is kept.
+
+    Raises:
+        InputError: No library has a posture.
+    """
+    usable = tuple(each for each in libraries if each.postures)
+    return _knowledge(_Given(body, usable, content_of(usable, body)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """A body and libraries, alike where their contents are."""
+
+    body: Body
+    libraries: tuple[Library, ...]
+    content: tuple[object, ...]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Given) and self.content == other.content
+
+    def __hash__(self) -> int:
+        return hash(self.content)
+
+
+@lru_cache(maxsize=4)
+def _knowledge(given: _Given) -> Knowledge:
+    likely = plausibility(given.body, given.libraries)
+    return Knowledge(part_pools(given.libraries, given.body), likely)
+
+
+def search(
+    known: Knowledge, shown: FrameShown, floor_m: float | None, count: int = MOST_STARTS
+) -> Hypotheses:
+    """Look for the postures that a frame may show.
+
+    Args:
+        known: What is known of postures.
+        shown: The frame.
+        floor_m: Height of the floor in the world [m]; None where it is not known, which asks whether z = 0
+            may be it.
+        count: Number of starts.
+
+    Returns:
+        The hypotheses, in no order.
+    """
+    starts, screened, floor_m = _starts(known, shown, floor_m, count)
+    posture, cost = _descended(known, shown, starts, floor_m)
+    return replace(starts, posture=posture, cost=cost + SCREENED_SHARE * (screened - screened.min()))
+
+
+def _starts(
+    known: Knowledge, shown: FrameShown, floor_m: float | None, count: int
+) -> tuple[Hypotheses, Array, float | None]:
+    """The likeliest distinct compositions, their costs in screening, and the height of the floor if known."""
+    stances = stance_features(known.pools, shown.compared)
+    if floor_m is None:
+        least = [_screened(known, stances, shown, height).cost.min() for height in (0.0, None)]
+        floor_m = 0.0 if least[0] < least[1] + NO_CONTACT_COST else None
+    found = [_screened(known, stances, shown, floor_m)]
+    if len(shown.compared.points):
+        found.append(_screened(known, stances, shown, floor_m, is_exchanged=True))
+    every = Hypotheses(
+        Posture.concatenate([each.posture for each in found]),
+        np.concatenate([each.cost for each in found]),
+        np.concatenate([each.torso for each in found]),
+        np.concatenate([each.exchanged for each in found]),
+    )
+    kept = distinct_rows(
+        points_from_hips(known.pools.body, every.posture), np.argsort(every.cost), DISTINCT_M, count
+    )
+    return _chosen(every, kept), every.cost[kept], floor_m
+
+
+def _screened(
+    known: Knowledge,
+    stances: StanceFeatures,
+    shown: FrameShown,
+    floor_m: float | None,
+    is_exchanged: bool = False,
+) -> Hypotheses:
+    evidence = shown.compared.exchanged() if is_exchanged else shown.compared
+    usual = NoiseScales.of(evidence)
+    scales = replace(usual, centroid=usual.centroid * PART_SCALE)
+    first = np.zeros(1, dtype=np.intp)
+    likelihood = frame_likelihoods(shown.camera, evidence, first, floor_m, FLOOR_STD_M, scales)[0]
+    placed = place_standing(
+        known.pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints
+    )
+    depth = float(shown.camera.depth(placed.translation))
+    states = FrameCosts(likelihood, stances, floor_m).states(depth * np.array(WIDE))
+    cost = states.cost.astype(np.float64) + (EXCHANGED_COST if is_exchanged else 0.0)
+    posture = composed_postures(known.pools, stances, states.stance, states.limbs, states.hips)
+    return Hypotheses(posture, cost, states.stance // HEADINGS, np.full(len(cost), is_exchanged))
+
+
+def refined(known: Knowledge, shown: FrameShown, given: Hypotheses, floor_m: float | None) -> Hypotheses:
+    """Hypotheses brought to what is seen, from near it."""
+    posture, cost = _descended(known, shown, given, floor_m, FROM_START[-4:])
+    return replace(given, posture=posture, cost=cost)
+
+
+def _descended(
+    known: Knowledge,
+    shown: FrameShown,
+    starts: Hypotheses,
+    floor_m: float | None,
+    temperatures: Sequence[float] = FROM_START,
+) -> tuple[Posture, Array]:
+    """Postures at the end of all descents, and their costs."""
+    count = len(starts.cost)
+    order, postures, costs = [], [], []
+    for is_exchanged in (False, True):
+        own = np.flatnonzero(starts.exchanged == is_exchanged)
+        if len(own):
+            posture, cost = _side_by_side(shown, starts.posture[own], is_exchanged, floor_m, temperatures)
+            order.append(own)
+            postures.append(posture)
+            costs.append(cost)
+    place = np.argsort(np.concatenate(order)) if count else np.zeros(0, dtype=np.intp)
+    posture = Posture.concatenate(postures)[place]
+    cost = np.concatenate(costs)[place] + EXCHANGED_COST * starts.exchanged
+    cost = cost + known.plausibility.costs(known.pools.body.pose(posture)).sum(axis=-1)
+    return posture, np.where(np.isfinite(cost), cost, NEVER_COST)
+
+
+def _side_by_side(
+    shown: FrameShown,
+    starts: Posture,
+    is_exchanged: bool,
+    floor_m: float | None,
+    temperatures: Sequence[float],
+) -> tuple[Posture, Array]:
+    """Descents of the same evidence, and the costs of what is seen, floor, balance and limits."""
+    body, model, count = shown.body, shown.evidence.model, starts.batch[0]
+    std = ROUGH_POSE_SHARE * unrelated_std(body.skeleton)
+    std[:3], std[5] = PLACE_STD_M, TURN_STD_RAD
+    width = limb_widths(model, np.median(starts.translation, axis=0)[None], shown.frames(1))
+    nothing = np.zeros((count, len(model.placements) * FEATURES))
+    state = ClipState(body, starts, shown.frames(count), np.diag(std), np.zeros((count, len(std))), nothing)
+    belief, terms = free_frame_terms(
+        shown.evidence, shown.regions, count, floor_m, RegionNoise(), width, shown.points_of(is_exchanged)
+    )
+    best, _ = descend(state, [belief, *terms], temperatures)
+    return best.posture, total_cost(terms, best)
+
+
+def _chosen(given: Hypotheses, rows: IndexArray) -> Hypotheses:
+    return Hypotheses(given.posture[rows], given.cost[rows], given.torso[rows], given.exchanged[rows])
+
+
+def points_from_hips(body: Body, posture: Posture) -> Array:
+    """(S, P, 3) principal points relative to the hips [m]."""
+    return np.asarray(body.points(body.pose(posture)) - posture.translation[:, None])

@@ -1,0 +1,181 @@
+"""Features of parts: where what is seen of them lies, in the frame of what they hang on.
+
+Torsos in all headings are *stances*: a stance gives the frames of the pelvis and of the chest, from which
+legs and arms hang.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, IndexArray, SingleArray
+from ..body.heading import yaw_rotation
+from ..body.human import HUMAN
+from ..body.limbs import LIMBS, TRUNK, limb_of
+from ..body.mirror import mirrored
+from ..body.posture import Posture
+from ..body.soles import sole_places
+from ..estimate.ankle_height import standing_ankle_m
+from ..matching.marker_moments import marker_moments
+from ..matching.match_evidence import MatchEvidence
+from .part_pools import ARM, PartPool, PartPools
+
+HEADINGS = 24
+TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == TRUNK]
+"""The trunk's among the principal points."""
+ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Entries of a symmetric matrix in the order of `second_moment`."""
+
+
+@dataclass(frozen=True, eq=False)
+class PartFeatures:
+    """Features of the N parts of a pool, or of all stances, for some evidence."""
+
+    observed: IndexArray
+    """(A,) which of the evidence's markers and keypoints lie on this part; markers first."""
+    place: SingleArray
+    """(N, A, 3) where they are in the frame of what the part hangs on [m]."""
+    second_moment: SingleArray
+    """(N, M, 6) second moments of the markers among them [m²], see `ENTRIES`."""
+    points: SingleArray
+    """(N, Q, 3) elbow and wrist or knee and ankle; of stances the body's points without those [m]."""
+    soles: SingleArray
+    """(N, 2, 3) heel and tip of a leg's foot; none else [m]."""
+    cost: SingleArray
+    """(N,) how unusual each is."""
+
+
+@dataclass(frozen=True, eq=False)
+class StanceFeatures:
+    """S stances, T torsos in H headings: torso s // H in heading s % H."""
+
+    features: PartFeatures
+    pelvis: SingleArray
+    """(S, 3, 3) turn of the pelvis in the world."""
+    chest: SingleArray
+    """(S, 3, 3) turn of the chest."""
+    chest_place: SingleArray
+    """(S, 3) origin of the chest's frame from the hips [m], in the world's axes."""
+    heading_rad: Array
+    """(H,)."""
+    limbs: dict[str, PartFeatures]
+    """Features of each limb's parts."""
+    limb_cost: dict[str, SingleArray]
+    """(T, L) how unusual each part of a limb is with each torso."""
+    legs_together: SingleArray
+    """(L, L) how unusual a left and a right leg are together."""
+    ankle_height_m: float
+    """Height of the ankles over flat soles."""
+
+    def frame_of(self, limb: str, stance: IndexArray) -> tuple[SingleArray, SingleArray]:
+        """Turn (N, 3, 3) and place (N, 3) from the hips of what a limb hangs on."""
+        if limb.startswith(ARM):
+            return self.chest[stance], self.chest_place[stance]
+        turn = self.pelvis[stance]
+        return turn, np.zeros((len(turn), 3), dtype=np.float32)
+
+
+def stance_features(pools: PartPools, evidence: MatchEvidence) -> StanceFeatures:
+    """Features of all stances and limbs for some evidence."""
+    body, torsos = pools.body, pools.torsos
+    heading = 2.0 * np.pi * np.arange(HEADINGS) / HEADINGS
+    turn = yaw_rotation(heading)
+    pose = body.pose(torsos.posture)
+    waist = HUMAN.joint_index("waist")
+
+    def turned(vectors: Array) -> Array:
+        """(S, ..., 3) vectors of torsos (T, ..., 3) in all headings."""
+        flat = vectors.reshape(len(torsos), -1, 3)
+        all_ways = np.einsum("hij,tqj->thqi", turn, flat)
+        return all_ways.reshape(len(torsos) * HEADINGS, *vectors.shape[1:])
+
+    observed = _observed(evidence, TRUNK)
+    moments = marker_moments(body, evidence, torsos.posture)
+    markers = observed[observed < evidence.marker_count]
+    second = np.einsum("hij,tmjk,hlk->thmil", turn, moments.second_moment[:, markers], turn, optimize=True)
+    features = PartFeatures(
+        observed,
+        _single(turned(moments.centroid[:, observed])),
+        _symmetric(second.reshape(len(torsos) * HEADINGS, len(markers), 3, 3)),
+        _single(turned(moments.points)),
+        np.zeros((len(torsos) * HEADINGS, 0, 3), dtype=np.float32),
+        _single(np.repeat(torsos.cost, HEADINGS)),
+    )
+    frames = [
+        np.einsum("hij,tjk->thik", turn, pose.rotation[:, joint]).reshape(-1, 3, 3) for joint in (0, waist)
+    ]
+    limbs = {limb: _limb_features(pools, evidence, limb) for limb in LIMBS}
+    return StanceFeatures(
+        features,
+        _single(frames[0]),
+        _single(frames[1]),
+        _single(turned(pose.origin[:, waist])),
+        heading,
+        limbs,
+        {limb: _single(pools.limb_cost[limb]) for limb in LIMBS},
+        _single(pools.legs_together),
+        standing_ankle_m(body),
+    )
+
+
+def composed_postures(
+    pools: PartPools,
+    stances: StanceFeatures,
+    stance: IndexArray,
+    limbs: IndexArray,
+    hips: Array | SingleArray,
+) -> Posture:
+    """Postures put together from stances and limbs.
+
+    Args:
+        pools: All parts.
+        stances: Their stances.
+        stance: (N,) which stances.
+        limbs: (N, 4) parts of the limbs, in the order of `LIMBS`.
+        hips: (N, 3) places of the hips in the world [m].
+    """
+    parts = {limb: limbs[:, column] for column, limb in enumerate(LIMBS)}
+    heading = stances.heading_rad[stance % HEADINGS]
+    return pools.composed(stance // HEADINGS, parts, heading, np.asarray(hips, dtype=float))
+
+
+def limb_points(limb: str) -> list[int]:
+    """Indices of a limb's two principal points: elbow and wrist, or knee and ankle."""
+    return [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == limb]
+
+
+def _limb_features(pools: PartPools, evidence: MatchEvidence, limb: str) -> PartFeatures:
+    kind, side = limb.split(".")
+    pool: PartPool = pools.arms if kind == ARM else pools.legs
+    posture = pool.posture if side == "L" else mirrored(pool.posture)
+    body = pools.body
+    observed = _observed(evidence, limb)
+    moments = marker_moments(body, evidence, posture)
+    chest = body.offsets[HUMAN.joint_index("waist")] if kind == ARM else np.zeros(3)
+    markers = observed[observed < evidence.marker_count]
+    points = limb_points(limb)
+    soles = np.zeros((len(pool), 0, 3))
+    if kind != ARM:
+        soles = sole_places(body, body.pose(posture))[:, ("L", "R").index(side)]
+    return PartFeatures(
+        observed,
+        _single(moments.centroid[:, observed] - chest),
+        _symmetric(moments.second_moment[:, markers]),
+        _single(moments.points[:, points] - chest),
+        _single(soles),
+        _single(pool.cost),
+    )
+
+
+def _observed(evidence: MatchEvidence, part: str) -> IndexArray:
+    names = (*evidence.segments, *evidence.keypoints.names)
+    return np.array([i for i, name in enumerate(names) if limb_of(name) == part], dtype=np.intp)
+
+
+def _symmetric(matrices: Array) -> SingleArray:
+    """(..., 6) entries of symmetric matrices (..., 3, 3)."""
+    return _single(np.stack([matrices[..., i, j] for i, j in ENTRIES], axis=-1))
+
+
+def _single(values: Array) -> SingleArray:
+    return np.asarray(values, dtype=np.float32)

@@ -1,0 +1,264 @@
+"""Pools of the body's parts: torsos, arms and legs of all libraries, and samples of what joints allow.
+
+Given where the torso is, limbs move nearly independently: an arm from one posture and a leg from another make
+postures that no library has. Left and right limbs share one pool, mirrored.
+"""
+
+from collections import OrderedDict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.heading import headings_rad, yawed_at
+from ..body.human import HUMAN
+from ..body.kinematics import Body
+from ..body.limbs import LIMBS
+from ..body.mirror import mirrored
+from ..body.posture import Posture
+from ..library.library import Library
+from ..matching.posture_sequences import library_sequences
+
+ARM, LEG, TORSO = "arm", "leg", "torso"
+JOINTS = {
+    TORSO: ("pelvis", "waist", "neck"),
+    ARM: ("girdle", "shoulder", "elbow", "forearm"),
+    LEG: ("hip", "knee", "shin"),
+}
+"""Joints of each part, without their side."""
+POINTS = {
+    TORSO: ("head", "shoulder.L", "shoulder.R", "hip.L", "hip.R"),
+    ARM: ("elbow.L", "wrist.L"),
+    LEG: ("knee.L", "ankle.L"),
+}
+"""Principal points by which parts are compared; of the left side where there are two."""
+KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}
+"""Parts of libraries whose points are nearer than this on average look the same: below what performers differ
+by, and as fine as a clip of a few seconds can be searched."""
+MOST_KNOWN = {TORSO: 30, ARM: 130, LEG: 110}
+"""Parts taken from libraries at most."""
+SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}
+"""Samples of the range of motion keep this far from one another and from known parts."""
+MOST_SAMPLED = {TORSO: 18, ARM: 90, LEG: 70}
+SAMPLES = 4000
+RANGE_SHARE = 0.8
+"""Share of a joint's range that is sampled: its ends are for single moments."""
+UNUSUAL_M = 0.15
+"""Distance from the nearest known part that is as usual as the known part."""
+UNUSUAL_DEGREES = 3.0
+"""Of the Student's t by which parts farther off are rarer: a prior must forgive."""
+KERNEL_M = 0.08
+"""Distance within which parts go with the same other parts: what performers differ by."""
+TOGETHER_SHARE = 0.5
+"""Weight of which parts libraries show together; the rest is for any other combination."""
+MOST_TOGETHER = 20.0
+"""Largest factor by which legs are likelier together than by themselves."""
+
+
+@dataclass(frozen=True, eq=False)
+class PartPool:
+    """N parts of one kind."""
+
+    kind: str
+    posture: Posture
+    """(N,) postures of the take's body whose part it is; of limbs the left one. Torsos face -Y, hips at 0."""
+    cost: Array
+    """(N,) negative log of how usual each is, 0 for a known one."""
+    source: IndexArray
+    """(N,) the posture among all libraries' that is nearest."""
+
+    def __len__(self) -> int:
+        """Number of parts N."""
+        return len(self.cost)
+
+
+@dataclass(frozen=True, eq=False)
+class PartPools:
+    """Torsos, arms and legs on a body; limbs are the left ones, the right ones their mirror images."""
+
+    body: Body
+    torsos: PartPool
+    arms: PartPool
+    legs: PartPool
+    known: Posture
+    """(S,) the libraries' postures and their mirror images, facing -Y, the hips at the origin."""
+    library: IndexArray
+    """(S,) number of the library that each is from, in the order in which they were given."""
+    names: tuple[tuple[str, bool], ...]
+    """(S,) name of each, and whether it is mirrored."""
+    limb_cost: Mapping[str, Array]
+    """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
+    legs_together: Array
+    """(L, L) the same of two legs, left and right, beyond what either is by itself."""
+
+    def composed(
+        self, torso: IndexArray, limbs: dict[str, IndexArray], heading_rad: Array, hips: Array
+    ) -> Posture:
+        """Postures put together.
+
+        Args:
+            torso: (N,) indices of torsos.
+            limbs: (N,) indices of limbs, by `arm.L` and so on.
+            heading_rad: (N,) turn of the whole about the vertical.
+            hips: (N, 3) places of the hips [m].
+        """
+        chosen = self.torsos.posture[torso]
+        rotations, angles = np.array(chosen.rotations), np.array(chosen.angles)
+        for limb, index in limbs.items():
+            kind, side = limb.split(".")
+            given = (self.arms if kind == ARM else self.legs).posture[index]
+            own = given if side == "L" else mirrored(given)
+            balls, hinges = part_columns(kind, side)
+            rotations[:, balls], angles[:, hinges] = own.rotations[:, balls], own.angles[:, hinges]
+        whole = Posture(chosen.skeleton, np.zeros((len(torso), 3)), rotations, angles)
+        return yawed_at(whole, heading_rad, hips)
+
+
+@lru_cache(maxsize=16)
+def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
+    """Columns of a part's balls among a posture's rotations, and of its hinges among the angles."""
+    names = [f"{name}.{side}" if side else name for name in JOINTS[kind]]
+    balls = [c for c, joint in enumerate(HUMAN.ball_joints) if HUMAN.joints[joint].name in names]
+    hinges = [c for c, joint in enumerate(HUMAN.hinge_joints) if HUMAN.joints[joint].name in names]
+    return balls, hinges
+
+
+_KEPT: OrderedDict[tuple[object, ...], PartPools] = OrderedDict()
+MOST_KEPT = 4
+"""Pools kept for the next question about the same performer."""
+
+
+def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
+    """The parts of all libraries' postures and their mirror images on a body, with samples beside them."""
+    key = content_of(libraries, body)
+    if key not in _KEPT:
+        _KEPT[key] = _part_pools(libraries, body)
+        while len(_KEPT) > MOST_KEPT:
+            _KEPT.popitem(last=False)
+    return _KEPT[key]
+
+
+def content_of(libraries: Sequence[Library], body: Body) -> tuple[object, ...]:
+    """What is learned from libraries depends on this, however often their files are read."""
+    lengths = tuple(sorted(body.actor.segments_m.items()))
+    shapes = tuple(hash(each.posture.to_vector().tobytes()) for one in libraries for each in one.postures)
+    named = tuple((each.name, *one.motions) for one in libraries for each in one.postures)
+    return (*lengths, *shapes, *named)
+
+
+def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
+    found, names, numbers = [], [], []
+    for number, library in enumerate(libraries):
+        sequences = library_sequences(library, body)
+        if len(sequences):
+            found.append(sequences.posture)
+            names += [(sequences.name(i), sequences.is_mirrored(i)) for i in range(len(sequences))]
+            numbers += [number] * len(sequences)
+    one_side = Posture.concatenate(found)
+    everyone = Posture.concatenate([one_side, mirrored(one_side)])
+    names += [(name, not flipped) for name, flipped in names]
+    facing = yawed_at(everyone, -headings_rad(everyone), np.zeros((len(names), 3)))
+    samples = _samples(np.random.default_rng(0))
+    torsos, arms, legs = (_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG))
+    # Sources are postures and then their mirror images: the right limb of one is the left limb of the other.
+    other_side = np.roll(np.arange(len(names)), len(names) // 2)
+    near = _nearness(body, torsos, facing)
+    limb_cost, seen = {}, {}
+    for limb in LIMBS:
+        kind, side = limb.split(".")
+        pool = arms if kind == ARM else legs
+        own = _nearness(body, pool, facing)
+        seen[limb] = own / own.sum(axis=0)
+        seen[limb] = seen[limb] if side == "L" else seen[limb][:, other_side]
+        together = near @ seen[limb].T
+        together /= together.sum(axis=1, keepdims=True)
+        alone = np.exp(-pool.cost)
+        limb_cost[limb] = -np.log((1.0 - TOGETHER_SHARE) * alone + TOGETHER_SHARE * together)
+    both = seen["leg.L"] @ seen["leg.R"].T / len(names)
+    apart = np.outer(both.sum(axis=1), both.sum(axis=0))
+    ratio = both / np.maximum(apart, 1e-12)
+    usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, MOST_TOGETHER))
+    of = np.array(2 * numbers, dtype=np.intp)
+    return PartPools(body, torsos, arms, legs, facing, of, tuple(names), limb_cost, usual)
+
+
+def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
+    """(N, S) nearness of each part to that of each of S known postures."""
+    points, parts = (part_points(body, pool.kind, each) for each in (known, pool.posture))
+    apart = np.array([_distance(points, each) for each in parts])
+    return np.asarray(np.exp(-0.5 * (apart / KERNEL_M) ** 2) + 1e-9)
+
+
+def part_points(body: Body, kind: str, posture: Posture) -> Array:
+    """(N, Q, 3) points of a part in the frame of what it hangs on [m]: of torsos in the world's axes."""
+    bare = _only(kind, posture)
+    index = [HUMAN.point_names.index(name) for name in POINTS[kind]]
+    return np.asarray(body.points(body.pose(bare))[:, index])
+
+
+def _only(kind: str, posture: Posture) -> Posture:
+    """The postures at rest but for one part, of limbs the left one."""
+    rest = Posture.rest(posture.skeleton, posture.batch)
+    rotations, angles = np.array(rest.rotations), np.array(rest.angles)
+    balls, hinges = part_columns(kind, "" if kind == TORSO else "L")
+    rotations[:, balls], angles[:, hinges] = posture.rotations[:, balls], posture.angles[:, hinges]
+    return Posture(posture.skeleton, rest.translation, rotations, angles)
+
+
+def _samples(random: np.random.Generator) -> Posture:
+    """Postures all over the joints' ranges."""
+    limits = np.array(HUMAN.limits)
+    for row, name in enumerate(HUMAN.dof_names):
+        if name.startswith(("forearm", "shin", "girdle")):
+            limits[row] = 0.0  # about a limb's own axis, or small
+    free = np.array(["pelvis" in name for name in HUMAN.dof_names])
+    limits[free] = 0.0
+    limits[3:5] = np.radians([(-25.0, 70.0), (-25.0, 25.0)])  # pelvis forward and sideways
+    lower, upper = limits.T
+    share = 0.5 + RANGE_SHARE * (random.random((SAMPLES, len(limits))) - 0.5)
+    return Posture.from_vector(HUMAN, lower + share * (upper - lower))
+
+
+def _pool(body: Body, kind: str, known: Posture, samples: Posture) -> PartPool:
+    known_points, sample_points = (part_points(body, kind, each) for each in (known, samples))
+    chosen = _spread(known_points, None, KNOWN_M[kind], MOST_KNOWN[kind])
+    added = _spread(sample_points, known_points[chosen], SAMPLED_M[kind], MOST_SAMPLED[kind])
+    away = _distance(sample_points[added][:, None], known_points[None])
+    nearest = away.argmin(axis=1)
+    off = away[np.arange(len(added)), nearest]
+    usual = np.sqrt(np.bincount(_nearest(known_points, known_points[chosen]), minlength=len(chosen)))
+    rare = np.median(usual) * (1.0 + (off / UNUSUAL_M) ** 2 / UNUSUAL_DEGREES) ** (
+        -0.5 * (UNUSUAL_DEGREES + 1.0)
+    )
+    weight = np.concatenate([usual, rare])
+    return PartPool(
+        kind,
+        Posture.concatenate([_only(kind, known[chosen]), _only(kind, samples[added])]),
+        -np.log(weight / weight.sum()),
+        np.concatenate([chosen, nearest]).astype(np.intp),
+    )
+
+
+def _nearest(points: Array, among: Array) -> IndexArray:
+    """(N,) the nearest of items (K, Q, 3) to each of (N, Q, 3)."""
+    return np.asarray(np.argmin([_distance(points, each) for each in among], axis=0))
+
+
+def _spread(points: Array, taken: Array | None, radius_m: float, most: int) -> IndexArray:
+    """Farthest-point sampling (Gonzalez 1985): indices of items (N, Q, 3) that lie apart."""
+    if taken is None:
+        first = int(_distance(points, points.mean(axis=0)).argmin())
+        chosen, away = [first], _distance(points, points[first])
+    else:
+        chosen, away = [], np.min([_distance(points, each) for each in taken], axis=0)
+    while len(chosen) < most and away.max() > radius_m:
+        chosen.append(int(away.argmax()))
+        away = np.minimum(away, _distance(points, points[chosen[-1]]))
+    return np.array(chosen, dtype=np.intp)
+
+
+def _distance(first: Array, second: Array) -> Array:
+    """Mean distance of points (..., Q, 3) [m]."""
+    return np.asarray(np.linalg.norm(first - second, axis=-1).mean(axis=-1))

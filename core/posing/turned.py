@@ -1,0 +1,163 @@
+"""Turning the performer to face the camera, left, right or away, with as much of the image kept as possible.
+
+Wrong about a pose that faces the wrong way is either the trunk alone, where each limb is seen where it is
+(markers and keypoints say which limb is which), or the depth of the whole body with left and right exchanged,
+which leaves its outline as it is.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.heading import facing_rad, headings_rad, yaw_rotation, yawed_in_place
+from ..body.kinematics import Body
+from ..body.limbs import LIMBS
+from ..body.mirror import mirrored, other_side
+from ..body.posture import Posture
+from ..footage.camera import Camera
+from .limb_chain import limb_chain
+from .limb_in_sight import sight_lines, strain_of, ways_in_sight
+from .reach import Pull, pulled
+from .sight_lines import SightLine
+
+SAME_SIDE_RAD = np.pi / 4.0
+"""Of the four directions, the nearest to a heading is at most this far away."""
+STRAIGHT_ABOVE_M = 1e-6
+"""A camera nearer than this [m] to the vertical through the performer is in no direction from there."""
+HEAD_M, HEAD_DEPTH_M = 0.02, 0.3
+"""How near the head comes to where it was seen, and to the depth it has on the turned neck."""
+
+
+class Facing(Enum):
+    """Where the performer faces, seen from the camera."""
+
+    CAMERA = "camera"
+    LEFT = "left"
+    """To the left of the picture."""
+    RIGHT = "right"
+    AWAY = "away"
+
+
+class Sides(Enum):
+    """What becomes of left and right when the performer is turned."""
+
+    STAY = "stay"
+    """Each arm and leg stays where it is in the picture; the trunk turns between them."""
+    EXCHANGE = "exchange"
+    """The left arm takes the right one's place in the picture, and so the legs: the outline stays."""
+    TURN = "turn"
+    """Everything turns with the trunk, as on a turntable."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """A posture that faces another way."""
+
+    posture: Posture
+    sides: Sides
+    strain: float
+    """How implausible its limbs are, as in `LimbInSight.strain`."""
+
+
+def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
+    """The heading with which a performer at a place (3,) faces one way, as `body/heading` counts it [rad].
+
+    Args:
+        camera: The camera in this frame, as one that stands still.
+        place: The performer's place [m].
+        facing: Where to.
+    """
+    rotation, eye = camera.pose()
+    toward = facing_rad(eye - place)
+    if np.hypot(*(eye - place)[:2]) < STRAIGHT_ABOVE_M:
+        toward = facing_rad(-rotation[:, 1])  # to the lower edge of the picture
+    # The performer's left is +X where they face -Y: toward the camera, that is to the right of the picture.
+    steps = {Facing.CAMERA: 0.0, Facing.RIGHT: 1.0, Facing.AWAY: 2.0, Facing.LEFT: -1.0}
+    return float(toward + 0.5 * np.pi * steps[facing])
+
+
+def facing_of(posture: Posture, camera: Camera) -> Facing:
+    """The one of the four ways that is nearest to where a single posture faces."""
+    heading = float(headings_rad(_batch(posture))[0])
+    away = {f: _apart_rad(facing_heading_rad(camera, posture.translation, f), heading) for f in Facing}
+    return min(away, key=lambda facing: away[facing])
+
+
+def turned(body: Body, posture: Posture, camera: Camera, facing: Facing, sides: Sides) -> Turned:
+    """A single posture turned about the vertical through its hips, which stay where they are.
+
+    Args:
+        body: The actor's body.
+        posture: The posture.
+        camera: The camera in this frame, as one that stands still.
+        facing: Where to.
+        sides: What becomes of left and right.
+    """
+    goal = facing_heading_rad(camera, posture.translation, facing)
+    if sides is Sides.TURN:
+        along = sum(strain_of(posture, limb_chain(body.skeleton, name)) for name in LIMBS)
+        return Turned(_at_heading(posture, goal), sides, along)
+    if sides is Sides.STAY:
+        base, names = _at_heading(posture, goal), {limb: limb for limb in LIMBS}
+    else:
+        base, names = _exchanged(posture, camera, goal), {limb: other_side(limb) for limb in LIMBS}
+    return _with_image(body, posture, base, camera, names, sides)
+
+
+def _with_image(
+    body: Body, seen: Posture, base: Posture, camera: Camera, names: Mapping[str, str], sides: Sides
+) -> Turned:
+    """A turned posture whose limbs are laid on the lines of sight to where those of another were seen."""
+    strain = 0.0
+    posture = base
+    for name, source in names.items():
+        limb, shown = limb_chain(body.skeleton, name), limb_chain(body.skeleton, source)
+        lines = sight_lines(body, seen, camera, shown)
+        ways = ways_in_sight(body, posture, limb, lines)
+        if ways:
+            best = min(ways, key=lambda way: way.strain + _changed(way.posture, base, limb.dofs))
+            posture, strain = best.posture, strain + best.strain
+    column = body.skeleton.point_names.index("head")
+    head, now = (body.points(body.pose(each))[column] for each in (seen, posture))
+    line = SightLine.to(camera, head)
+    pull = Pull("head", line.nearest(now), HEAD_M, line.direction, HEAD_DEPTH_M)
+    return Turned(pulled(body, posture, [pull], {"neck": 1.0}), sides, strain)
+
+
+def _changed(posture: Posture, base: Posture, dofs: IndexArray) -> float:
+    """Mean square change of a limb's joints [rad²]: of two ways, the one more like before."""
+    return float(np.mean(posture.minus(base)[dofs] ** 2))
+
+
+def _at_heading(posture: Posture, heading_rad: float) -> Posture:
+    turn = heading_rad - float(headings_rad(_batch(posture))[0])
+    return yawed_in_place(posture, np.array([turn]))[0]
+
+
+def _exchanged(posture: Posture, camera: Camera, heading_rad: float) -> Posture:
+    """The mirror image in depth, left and right exchanged; turned on where that faces another way.
+
+    A reflection in depth leaves every image in place but for perspective, and turns front into back.
+    """
+    _, eye = camera.pose()
+    depth = facing_rad(posture.translation - eye) - 0.5 * np.pi  # of the direction of sight from +X
+    image = mirrored(posture)
+    rotation = np.array(image.rotations)
+    # A reflection across a vertical plane is the one across x = 0, turned by twice the angle between them.
+    rotation[0] = yaw_rotation(2.0 * depth) @ rotation[0]
+    reflected = Posture(posture.skeleton, posture.translation, rotation, image.angles)
+    faces = float(headings_rad(_batch(reflected))[0])
+    return (
+        reflected if _apart_rad(faces, heading_rad) <= SAME_SIDE_RAD else _at_heading(reflected, heading_rad)
+    )
+
+
+def _batch(posture: Posture) -> Posture:
+    return Posture.stack([posture])
+
+
+def _apart_rad(first: float, second: float) -> float:
+    return abs(float((first - second + np.pi) % (2.0 * np.pi) - np.pi))

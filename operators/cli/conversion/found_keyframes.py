@@ -1,0 +1,95 @@
+"""Reconstruction of a take whose keyframes are posed, found in the footage, or both."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ....core.estimate.reconstruct import Reconstruction, reconstruct
+from ....core.library.library import Library
+from ....core.library.several_libraries import EVERY_LIBRARY
+from ....core.posing.found_poses import FoundPoses, with_found
+from ....core.posing.match_clip import match_clip
+from ....core.posing.pose_clip import pose_clip
+from ....core.progress import Job, stretch
+from ....core.take.read_footage import read_footage
+from ....core.take.take import Take
+
+PROGRESS_MATCHING, PROGRESS_POSING = (0.3, 0.5), (0.2, 0.7)
+"""Fractions of the whole job after reading the footage and after finding its keyframes: with one library, and
+with all."""
+
+
+@dataclass(frozen=True, eq=False)
+class FoundReconstruction:
+    """A motion, and the keyframes it was reconstructed from."""
+
+    take: Take
+    """With its found keyframes, if any."""
+    reconstruction: Reconstruction
+    found: FoundPoses | None = None
+    """What was found; None where that was not asked for."""
+
+
+def find_and_reconstruct(
+    take: Take, library: str | None, libraries: Sequence[Library], method: str, floor_m: float | None = None
+) -> Job[FoundReconstruction]:
+    """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
+
+    Args:
+        take: The take, with posed keyframes or, where they are found, without.
+        library: None where all keyframes are posed; `EVERY_LIBRARY`, or the one to match with.
+        libraries: Those that this means.
+        method: As for `reconstruct`.
+        floor_m: Height of the floor where it is known [m].
+
+    Raises:
+        InputError: The clip cannot be used, or there is no library with a posture.
+        ConversionError: No motion could be computed.
+    """
+    if library is None:
+        return FoundReconstruction(take, (yield from reconstruct(take, method)))
+    every = library == EVERY_LIBRARY
+    read, posed = PROGRESS_POSING if every else PROGRESS_MATCHING
+    reading = yield from stretch(read_footage(take), 0.0, read)
+    job = (
+        pose_clip(take, reading, libraries, floor_m)
+        if every
+        else match_clip(take, reading, libraries[0], floor_m)
+    )
+    found = yield from stretch(job, read, posed)
+    take = with_found(take, found)
+    result = yield from stretch(reconstruct(take, method, found.reading or reading), posed, 1.0)
+    return FoundReconstruction(take, result, found)
+
+
+def found_summary(take: Take, found: FoundPoses) -> dict[str, Any]:
+    """What was found as an object for `--json`."""
+    matches = [
+        (keyframe.index + take.frame_start, keyframe.matched)
+        for keyframe in take.keyframes
+        if keyframe.matched is not None
+    ]
+    return {
+        "library": found.library,
+        "fit": _rounded(found.fit),
+        "reason": found.reason,
+        "floor_m": found.floor_m,
+        "matches": [
+            {
+                "frame": frame,
+                "posture": said.posture,
+                "mirrored": said.mirrored,
+                "confidence": _rounded(said.confidence),
+                "doubtful": said.is_doubtful,
+            }
+            for frame, said in matches
+        ],
+        "contradictions": [
+            {"frame": index + take.frame_start, "evidence": list(names)}
+            for index, names in sorted(found.contradictions.items())
+        ],
+    }
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 4)

@@ -1,0 +1,230 @@
+"""Find the camera from lines that are drawn over the footage, and from the performer at several places."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ...core.errors import InputError, KeymarkError
+from ..shell.base_operator import BaseOperator
+from ..shell.cancel_on_esc import cancel_click
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import FootageView, view_of_footage_under
+from ..shell.messages import label, say
+from ..shell.redraw import redraw_footage, redraw_sidebars_soon
+from ..shell.requirements import camera, footage, idle
+from ..shell.takes import active_take
+from .camera_fields import still_camera
+from .drawn_lines import (
+    CLICKED_PX,
+    HEIGHT,
+    NEAR_PX,
+    Drawing,
+    DrawnLine,
+    Pixel,
+    evidence_of,
+    read_lines,
+    show,
+    store_lines,
+)
+from .found_camera import fit_take, values, write_fit
+from .properties import KINDS
+
+DONE = {"RET", "NUMPAD_ENTER"}
+REMOVE = {"X", "DEL"}
+BACK = "BACK_SPACE"
+REQUESTS = {
+    "VERTICAL": "Draw along something plumb: a door frame, the corner of a wall",
+    "LEVEL": "Draw lines on the floor or a wall that are level and parallel to each other",
+    "ACROSS": "Draw a level line at right angles to those",
+    "HEIGHT": "Draw from between the performer's feet to the top of the head, or type another known height",
+}
+PERFORMER_REQUEST = "Click on the floor between the feet, then on the top of the head; type the body height"
+KEYS = "{request}   |   Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
+
+
+class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
+    """Find the camera from lines that you draw over the picture; the floor's grid shows the result"""
+
+    bl_idname = "keymark.camera_from_lines"
+    bl_label = "Camera from Lines"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, still_camera, idle)
+
+    kind: bpy.props.EnumProperty(
+        name="Begin with", description="The lines that are drawn first", items=KINDS, options={"SKIP_SAVE"}
+    )
+
+    _drawing: Any = None
+    _place: tuple[int, int] = (0, 0)
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Describe the button by the lines it begins with."""
+        if properties.kind == HEIGHT:
+            return label(
+                "Find the camera from the performer: click on the floor between the feet, then on the top of "
+                "the head, where the performer stands upright; in other frames too, nearer and farther away"
+            )
+        return label(
+            "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
+        )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for lines, beginning with those that were drawn before."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        of_performer = self.kind == HEIGHT
+        self._drawing = Drawing(
+            self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
+        )
+        show(self._drawing)
+        self._place = event.mouse_x, event.mouse_y
+        self._find(context)
+        context.window.cursor_modal_set("CROSSHAIR")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Draw and drag lines until Enter; Esc forgets them."""
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        self._place = event.mouse_x, event.mouse_y
+        drawing, pressed = self._drawing, event.value == "PRESS"
+        if pressed and event.type in DONE:
+            return self._finish(context)
+        if event.type == "MOUSEMOVE" or event.type == "LEFTMOUSE":
+            return self._point(context, event)
+        if pressed and event.type == "TAB":
+            drawing.next_kind()
+        elif pressed and event.type in REMOVE:
+            drawing.remove(self._distance_of_line(context))
+        elif pressed and event.type == BACK:
+            if not drawing.type("\b"):
+                drawing.remove(self._distance_of_line(context))
+        elif pressed and event.unicode and event.unicode in "0123456789.":
+            drawing.type(event.unicode)
+        else:
+            # Navigation: the animator may zoom in, or go to other frames.
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        self._find(context)
+        return {"RUNNING_MODAL"}
+
+    def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Let the mouse begin, move or end a line."""
+        drawing, view = self._drawing, self._view(context)
+        if view is None:
+            return {"PASS_THROUGH"} if event.type == "MOUSEMOVE" else {"RUNNING_MODAL"}
+        pixel = self._pixel(view)
+        if event.type == "MOUSEMOVE":
+            if drawing.held is None:
+                return {"PASS_THROUGH"}
+            drawing.move(pixel)
+        elif event.value == "PRESS":
+            drawing.press(pixel, context.scene.frame_current, self._distance(view))
+        elif event.value == "RELEASE":
+            drawing.move(pixel)
+            drawing.release(
+                lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)),
+            )
+        self._find(context)
+        return {"RUNNING_MODAL"}
+
+    def _find(self, context: bpy.types.Context) -> None:
+        """Find the camera anew, show it, and ask for the next line."""
+        drawing = self._drawing
+        with_ends, drawing.fit = drawing.complete, None
+        if with_ends:
+            try:
+                drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
+            except KeymarkError as error:
+                self.report({"WARNING"}, str(error))
+        wanted = (
+            PERFORMER_REQUEST if drawing.of_performer and drawing.kind == HEIGHT else REQUESTS[drawing.kind]
+        )
+        request = label(KEYS, request=label(wanted))
+        context.workspace.status_text_set(request)
+        redraw_footage(context)
+
+    def _finish(self, context: bpy.types.Context) -> set[str]:
+        """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
+        take, lines = active_take(context.scene), self._drawing.complete
+        before = read_lines(take), take.stature
+        stature = self._drawing.stature_m
+        self.cancel(context)
+        if not lines and not before[0]:
+            return {"CANCELLED"}
+        store_lines(take, lines)
+        take.stature = stature
+        done = self.execute(context) if lines else {"FINISHED"}
+        if "CANCELLED" in done:
+            store_lines(take, before[0])
+            take.stature = before[1]
+        return done
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and status bar; Blender calls this as well."""
+        show(None)
+        if context.window is not None:  # None while Blender closes it or opens another file
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
+            redraw_footage(context)
+        redraw_sidebars_soon()
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Find the camera from the lines that the take keeps, and set it.
+
+        Raises:
+            InputError: There are no lines, or they say nothing of the camera.
+        """
+        take = active_take(context.scene)
+        lines = read_lines(take)
+        if not lines:
+            raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
+        fit = fit_take(take, evidence_of(lines, take.stature))
+        write_fit(take, fit)
+        say(self, "INFO", "{values}", values=values(fit))
+
+    def _view(self, context: bpy.types.Context) -> FootageView | None:
+        """The view of the footage under the mouse."""
+        return view_of_footage_under(context, active_take(context.scene), *self._place)
+
+    def _pixel(self, view: FootageView) -> Pixel:
+        """The footage pixel under the mouse, which may lie beside the picture."""
+        x, y = view.to_footage((self._place[0] - view.region.x, self._place[1] - view.region.y))
+        return float(x), float(y)
+
+    def _distance(self, view: FootageView) -> Any:
+        """Return the function that gives the distance of a pixel from the mouse."""
+        scale = NEAR_PX * _scale(bpy.context)
+        return lambda pixel: _apart(view, pixel, self._pixel(view)) / scale
+
+    def _distance_of_line(self, context: bpy.types.Context) -> Any:
+        """Return the function that gives the distance of a line from the mouse."""
+        view = self._view(context)
+        if view is None:
+            return lambda line: np.inf
+        mouse = np.array(self._place, dtype=np.float64) - (view.region.x, view.region.y)
+        scale = NEAR_PX * _scale(context)
+
+        def distance(line: DrawnLine) -> float:
+            start, end = view.to_region(np.array(line.ends))
+            along = end - start
+            share = float((mouse - start) @ along / max(float(along @ along), 1e-9))
+            nearest = start + min(max(share, 0.0), 1.0) * along
+            return float(np.linalg.norm(mouse - nearest)) / scale
+
+        return distance
+
+
+def _apart(view: FootageView, one: Pixel, other: Pixel) -> float:
+    """Distance of two pixels of the footage in the region [px]."""
+    return float(np.linalg.norm(view.to_region(one) - view.to_region(other)))
+
+
+def _scale(context: bpy.types.Context) -> float:
+    return float(context.preferences.system.ui_scale) or 1.0
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_camera_from_lines,))

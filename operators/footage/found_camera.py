@@ -1,0 +1,106 @@
+"""A camera that was found: given to the take's camera, and said in words."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ...core.errors import InputError
+from ..bridge.camera_placement import still_camera, write_found_camera
+from ..shell.messages import label
+from ..shell.takes import footage_of
+from .camera_fields import confirm_placement
+from .take_footage import lens_is_guess
+
+if TYPE_CHECKING:
+    from ...core.footage.camera_evidence import CameraEvidence
+    from ...core.footage.camera_fit import CameraFit
+
+HINTS = {
+    "height": "Height is kept: draw something of known height, or the performer nearer and farther away",
+    "tilt": "Tilt is kept: draw verticals farther apart, or the performer nearer and farther away",
+    "roll": "Roll is kept: draw verticals, or the performer at both sides of the picture",
+    "lens": "Lens is kept: level lines that run away from a tilted camera would tell it",
+}
+"""What would determine each part of the camera that a picture does not determine."""
+MOST_EXCESS = 3.0
+"""Ratio of the variance of the distances to the expected one beyond which lines contradict each other."""
+NOTHING_FOUND = (
+    "the picture says nothing of its camera yet; draw longer lines, farther apart, or a known height, or the "
+    "performer at two places, nearer and farther away"
+)
+CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is said to be, or lies wrong"
+
+
+def fit_take(take: bpy.types.PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
+    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept.
+
+    Raises:
+        InputError: There is no camera or clip, or the camera is of an unsupported type.
+    """
+    from ...core.footage.camera_fit import fit_camera
+
+    camera = still_camera(footage_of(take.id_data, take))
+    return fit_camera(camera, evidence, lens_is_known=not lens_is_guess(take))
+
+
+def is_found(fit: "CameraFit") -> bool:
+    """Whether a picture determines anything of its camera."""
+    return len(fit.kept) < len(fit.std)
+
+
+def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
+    """Give the take's camera what was found, and keep in words how sure it is.
+
+    Raises:
+        InputError: Nothing was found; or there is no camera or clip.
+    """
+    if not is_found(fit):
+        raise InputError(NOTHING_FOUND)
+    lens_was_guess = lens_is_guess(take)
+    write_found_camera(footage_of(take.id_data, take), fit.camera)
+    confirm_placement(take)
+    if "lens" not in fit.kept:
+        for other in take.id_data.keymark.takes:
+            if other.camera == take.camera:
+                other.guessed_lens_mm = 0.0
+    take.camera_findings = "\n".join((deviations(fit), *doubts(fit, lens_was_guess)))
+
+
+def values(fit: "CameraFit") -> str:
+    """The camera found, with the deviations of what the picture determines."""
+    placement = fit.placement
+    parts = (
+        _value(fit, "height", label("Height"), "{:.2f}{} m", placement.height_m),
+        _value(fit, "tilt", label("Tilt"), "{:.1f}{}°", np.degrees(placement.tilt_rad)),
+        _value(fit, "roll", label("Roll"), "{:.1f}{}°", np.degrees(placement.roll_rad)),
+        _value(fit, "lens", label("Lens"), "{:.1f}{} mm", fit.camera.lens_mm),
+    )
+    return "   ".join(parts)
+
+
+def deviations(fit: "CameraFit") -> str:
+    """The deviations alone, of what the picture determines."""
+    shown = {
+        "height": label("height ±\N{NO-BREAK SPACE}{std:.2f} m", std=fit.std["height"]),
+        "tilt": label("tilt ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["tilt"])),
+        "roll": label("roll ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["roll"])),
+        "lens": label("lens ±\N{NO-BREAK SPACE}{std:.1f} mm", std=fit.std["lens"]),
+    }
+    return label("Found: {parts}", parts=", ".join(shown[name] for name in shown if name not in fit.kept))
+
+
+def doubts(fit: "CameraFit", lens_is_guess: bool) -> list[str]:
+    """Sentences on what was not found and how it would be, and on a contradiction."""
+    open_ones = [name for name in HINTS if name in fit.kept and (name != "lens" or lens_is_guess)]
+    sentences = [label(HINTS[name]) for name in open_ones]
+    if fit.excess > MOST_EXCESS:
+        sentences.insert(0, label(CONTRADICTION, px=fit.misfit_px))
+    return sentences
+
+
+def _value(fit: "CameraFit", name: str, title: str, form: str, value: float) -> str:
+    spread = fit.std[name] if name in ("height", "lens") else float(np.degrees(fit.std[name]))
+    digits = 2 if name == "height" else 1
+    sure = f" ({label('kept')})" if name in fit.kept else ""
+    return f"{title} {form.format(value, '' if name in fit.kept else f' ± {spread:.{digits}f}')}{sure}"

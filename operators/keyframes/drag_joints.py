@@ -1,0 +1,209 @@
+"""Drag the actor's joints in a 3D view: over the footage, or from the side to correct their depth."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ...core.body.human import HUMAN
+from ...core.body.limbs import limb_of
+from ..bridge.joint_places import joint_places
+from ..keypoints.body_point_items import point_title
+from ..overlays import handles
+from ..shell.error_reports import reported
+from ..shell.footage_clicks import NAVIGATION
+from ..shell.job_progress import job_is_running
+from ..shell.messages import label
+from ..shell.redraw import redraw_editors, redraw_sidebars_soon
+from ..shell.requirements import actor, all_met, idle
+from ..shell.takes import find_take
+from ..shell.view_under_mouse import WorldInRegion, view_under
+from .corrections import DRAGGING, shown_pose
+from .joint_drag import JointDrag
+
+GRAB_PX = 18.0
+"""Distance of the mouse from a joint below which a press takes hold of it."""
+ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
+VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
+"""Keys that change the view: depth is corrected from the side."""
+IDLE_KEYS = "Drag: Move Joint   |   Ctrl: In Depth   |   Shift: Precise   |   F: Flip Depth   |   Enter: Done"
+HOVER_KEYS = "{joint}   |   " + IDLE_KEYS
+DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
+
+
+def not_dragging(context: bpy.types.Context) -> str | None:
+    """Joints are not being dragged already."""
+    running = job_is_running(context, DRAGGING)
+    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
+
+
+class KEYMARK_OT_drag_joints(bpy.types.Operator):
+    """Drag joints in the viewport; the limb follows and keeps its lengths. Hold Ctrl to move in depth"""
+
+    bl_idname = "keymark.drag_joints"
+    bl_label = "Drag Joints"
+    bl_options = {"REGISTER"}  # each drag is a step of undo of its own
+
+    _drag: Any = None
+    """The running drag; Blender would evaluate a type named here."""
+    _handles: Any = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether there is an actor, and no job runs."""
+        return all_met(cls, context, actor, idle, not_dragging)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the joints, and wait for the mouse."""
+        self._handles = handles.Handles()
+        handles.show(self._handles)
+        context.window_manager.modal_handler_add(self)
+        _say(context, IDLE_KEYS)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Nothing without a mouse: `keymark.move_joint` moves a joint from a script."""
+        return {"CANCELLED"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Hover, drag, or end."""
+        take = find_take(context.scene)
+        if take is None or actor(context) is not None:
+            self.cancel(context)
+            return {"CANCELLED"}
+        if self._drag is None and idle(context) is not None:
+            return {"PASS_THROUGH"}  # a job that was started meanwhile
+        if self._drag is not None:
+            return self._dragging(context, take, event)
+        view = view_under(context, event.mouse_x, event.mouse_y)
+        if event.type in ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE"):
+            self._hover(context, take, view, event)
+            return {"PASS_THROUGH"}
+        if view is None:  # buttons of a panel, the timeline, other editors
+            return {"PASS_THROUGH"}
+        if event.value == "PRESS" and event.type in ENDING:
+            self.cancel(context)
+            return {"FINISHED"}
+        if event.value == "PRESS" and event.type == "LEFTMOUSE":
+            self._hover(context, take, view, event)
+            self._begin(take, view, event)
+            return {"RUNNING_MODAL"}
+        if event.value == "PRESS" and event.type == "F" and self._handles.hovered:
+            limb = limb_of(self._handles.hovered)
+            bpy.ops.keymark.flip_depth("EXEC_DEFAULT", True, limb=limb)
+            return {"RUNNING_MODAL"}
+        undo = event.type == "Z" and (event.ctrl or event.oskey)
+        passed = undo or event.type in NAVIGATION or event.type in VIEWS or event.type.startswith("TIMER")
+        return {"PASS_THROUGH"} if passed else {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """End the tool; a drag that is not finished is taken back. Blender calls this as well."""
+        self._restore(context)
+        handles.show(None)
+        if context.window is not None:  # None while Blender closes it or opens another file
+            context.workspace.status_text_set(None)
+            context.window.cursor_modal_restore()
+            redraw_editors(context, "VIEW_3D")
+        redraw_sidebars_soon()
+
+    def _hover(
+        self,
+        context: bpy.types.Context,
+        take: bpy.types.PropertyGroup,
+        view: WorldInRegion | None,
+        event: bpy.types.Event,
+    ) -> None:
+        """Mark the joint under the mouse."""
+        hovered = None if view is None else nearest_joint(take, view, event.mouse_x, event.mouse_y)
+        if hovered == self._handles.hovered:
+            return
+        self._handles.hovered = hovered
+        if hovered is None:
+            context.window.cursor_modal_restore()
+            _say(context, IDLE_KEYS)
+        else:
+            context.window.cursor_modal_set("SCROLL_XY")
+            _say(context, HOVER_KEYS, hovered)
+        redraw_editors(context, "VIEW_3D")
+
+    def _begin(self, take: bpy.types.PropertyGroup, view: WorldInRegion, event: bpy.types.Event) -> None:
+        """Take hold of the joint under the mouse."""
+        joint = self._handles.hovered
+        if joint is None:
+            return
+        from ..bridge.scene_frames import pose_of
+
+        with reported(self):
+            body, posture = shown_pose(take)
+            start = body.points(body.pose(posture))[HUMAN.point_names.index(joint)]
+            position = view.position(start)
+            if position is not None:
+                pose, mouse = pose_of(take.armature), (event.mouse_x, event.mouse_y)
+                self._drag = JointDrag(joint, view, start, position, body, posture, pose, mouse)
+
+    def _dragging(
+        self, context: bpy.types.Context, take: bpy.types.PropertyGroup, event: bpy.types.Event
+    ) -> set[str]:
+        drag = self._drag
+        if event.value == "PRESS" and event.type in ("ESC", "RIGHTMOUSE"):
+            self._restore(context)
+            _say(context, IDLE_KEYS)
+        elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self._restore(context)
+            if drag.has_moved:
+                # As an operator of its own, so that each drag is one step of undo.
+                bpy.ops.keymark.move_joint(
+                    "EXEC_DEFAULT",
+                    True,
+                    joint=drag.joint,
+                    place=drag.place,
+                    sight=drag.sight,
+                    pushed=drag.pushed,
+                )
+            _say(context, IDLE_KEYS)
+        elif event.type == "MOUSEMOVE":
+            drag.follow(event)
+            _preview(take, drag)
+            _say(context, DRAG_KEYS, drag.joint)
+            redraw_editors(context, "VIEW_3D")
+        return {"RUNNING_MODAL"}
+
+    def _restore(self, context: bpy.types.Context) -> None:
+        """Give the actor the pose from before the drag."""
+        drag, self._drag = self._drag, None
+        take = find_take(context.scene) if context.scene is not None else None
+        if drag is not None and take is not None and take.armature is not None:
+            from ..bridge.object_space import evaluated
+            from ..bridge.scene_frames import restore_pose
+
+            restore_pose(take.armature, drag.pose)
+            evaluated(take.armature)
+
+
+def nearest_joint(
+    take: bpy.types.PropertyGroup, view: WorldInRegion, mouse_x: int, mouse_y: int
+) -> str | None:
+    """The joint that a view shows nearest to the mouse; None if none is near."""
+    mouse = np.array([mouse_x - view.region.x, mouse_y - view.region.y], dtype=np.float64)
+    positions = [view.position(place) for place in joint_places(take.armature)]
+    away = [np.inf if each is None else float(np.linalg.norm(each - mouse)) for each in positions]
+    nearest = int(np.argmin(away))
+    reach = GRAB_PX * (float(bpy.context.preferences.system.ui_scale) or 1.0)
+    return HUMAN.point_names[nearest] if away[nearest] <= reach else None
+
+
+def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
+    """Show the posture that the drag has come to; nothing is keyed."""
+    from ...core.posing.dragged import dragged
+    from ..bridge.pose import write_posture
+
+    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.pushed)
+    write_posture(take.armature, moved)
+
+
+def _say(context: bpy.types.Context, template: str, joint: str | None = None) -> None:
+    title = "" if joint is None else label(point_title(joint))
+    context.workspace.status_text_set(label(template, joint=title))
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_drag_joints,))

@@ -1,0 +1,51 @@
+"""Titles of candidates: in what each differs from the first one."""
+
+from math import degrees
+
+import bpy
+
+from ...core.library.several_libraries import COMPOSED
+from ..shell.messages import label
+
+NOTICEABLE_TURN_DEG = 15.0
+LIMBS = {"arm.L": "left arm", "arm.R": "right arm", "leg.L": "left leg", "leg.R": "right leg"}
+"""As a candidate's property names them, and in words; pairs are named together."""
+PAIRS = {("arm.L", "arm.R"): "arms", ("leg.L", "leg.R"): "legs"}
+
+
+def candidate_title(match: bpy.types.PropertyGroup, candidate: bpy.types.PropertyGroup) -> str:
+    """What tells a candidate from the first one: its turn, then the name of its posture.
+
+    Postures that were composed have the name of one that they resemble, which often is the same for all and
+    tells a person little: instead the limbs are named that are elsewhere.
+    """
+    turn = _turn(degrees(candidate.turned))
+    if match.library != COMPOSED:
+        named = str(candidate.name)
+        return label("{turn}: {posture}", turn=turn, posture=named) if turn else named[:1].upper() + named[1:]
+    limbs = ", ".join(_limbs(candidate.limbs.split()))
+    if turn:
+        return label("{turn}: {limbs}", turn=turn, limbs=limbs) if limbs else turn
+    if limbs:
+        return label("Other {limbs}", limbs=limbs)
+    return label("As found") if candidate == match.candidates[0] else label("Nearly as found")
+
+
+def _turn(angle_deg: float) -> str:
+    """Words for a turn to the left; none where it is hardly seen."""
+    if abs(angle_deg) < NOTICEABLE_TURN_DEG:
+        return ""
+    if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
+        return label("Turned round")
+    if angle_deg > 0.0:
+        return label("{angle:.0f}° left", angle=angle_deg)
+    return label("{angle:.0f}° right", angle=-angle_deg)
+
+
+def _limbs(names: list[str]) -> list[str]:
+    """Words for limbs, both of a pair together."""
+    words = []
+    for pair, both in PAIRS.items():
+        there = [name for name in pair if name in names]
+        words += [label(both)] if len(there) == len(pair) else [label(LIMBS[name]) for name in there]
+    return words

@@ -1,0 +1,144 @@
+"""Overlay of a found keyframe's candidates: the postures that its frame may show, as faint figures.
+
+They are numbered and colored like the buttons that take them, over the footage and from any other side, where
+depth shows. The one that the frame has is the actor itself.
+"""
+
+import bpy
+import numpy as np
+
+from ...core.arrays import Array
+from ...core.body.human import HUMAN
+from ..bridge.camera_from_scene import read_lens
+from ..bridge.candidate_posture import candidate_posture
+from ..shell.footage_view import FootageView, footage_view
+from ..shell.found_frames import match_at, offered_at, state_of
+from ..shell.lru_cache import LruCache
+from ..shell.takes import find_take, footage_of
+from . import drawing
+from .drawing import Color
+from .picture import Item, Label, Stroke, paint
+from .skeleton import limb_lines
+from .style import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Style, body_scale
+from .viewport import world_view
+
+TALL_M = 1.7
+"""Height of a figure by which lines get thinner where it is small [m]."""
+ABOVE = 6.0
+"""Distance of a figure's number from the point that it stands above [px]."""
+BESIDE = 16.0
+"""Distance at which the numbers of two figures, as high as this, can both be read [px]."""
+
+_points: "LruCache[Array]" = LruCache()
+"""(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
+
+
+def candidate_color(index: int) -> Color:
+    """A candidate's color in the user's theme."""
+    red, green, blue = bpy.context.preferences.themes[0].collection_color[index % CANDIDATE_COLORS].color
+    return (red, green, blue, GHOST)
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    scene, space = context.scene, context.space_data
+    settings, take = scene.keymark.overlays, find_take(scene)
+    hidden = space.type == "VIEW_3D" and not space.overlay.show_overlays
+    if take is None or hidden or not settings.show_candidates or context.screen.is_animation_playing:
+        return
+    match = _shown(take, scene.frame_current_final)
+    if match is None or take.armature is None:
+        return
+    points = candidate_points(take.armature, match)
+    footage = footage_view(scene, take, context.area, context.region)
+    if space.type == "VIEW_3D":
+        positions = world_view(context.region, context.region_data, footage).project(points)
+    elif footage is not None and take.camera is not None:
+        positions = over_footage(scene, take, footage, points)
+    else:
+        return
+    paint(picture(positions, match.chosen, settings))
+
+
+def _shown(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
+    """What there is to choose from at a scene frame: a found keyframe's candidates, or those offered."""
+    place = match_at(take, frame)
+    match = take.matching.matches[place] if place >= 0 else None
+    if match is not None and len(match.candidates) > 1 and state_of(take, match) == "FOUND":
+        return match
+    return offered_at(take, frame)
+
+
+def candidate_points(armature_object: bpy.types.Object, match: bpy.types.PropertyGroup) -> Array:
+    """(N, 13, 3) points of a found keyframe's candidates in the world."""
+    places = [[*candidate.place, *candidate.turns] for candidate in match.candidates]
+    lengths = [bone.length for bone in armature_object.data.bones]
+    key = f"{armature_object.session_uid} {lengths} {tuple(armature_object.scale)} {places}"
+
+    def found() -> Array:
+        from ..bridge.actor_lengths import read_body
+
+        body = read_body(armature_object, HUMAN)
+        return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
+
+    points = _points.get(key, found)
+    assert points is not None
+    return points
+
+
+def over_footage(
+    scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView, points: Array
+) -> Array:
+    """Region pixels (..., 2) of points (..., 3) as the take's camera sees them; NaN behind it."""
+    source = footage_of(scene, take)
+    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
+    pixels, depth = read_lens(source).project(points @ to_camera[:3, :3].T + to_camera[:3, 3])
+    return footage.to_region(np.where((depth > 0.0)[..., None], pixels, np.nan))
+
+
+def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
+    """The figures of all candidates but the chosen one, each with its number where it differs from that.
+
+    Args:
+        positions: (N, 13, 2) region pixels of the candidates' points, NaN where not seen.
+        chosen: Index of the one that the frame has.
+        settings: The overlays' settings.
+    """
+    scale, names = drawing.ui_scale(), HUMAN.point_names
+    heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
+    style = Style(settings.opacity, settings.line_width, scale, body_scale(heights / TALL_M, scale))
+    width = LIMB * style.width * style.body_scale
+    items: list[Item] = []
+    taken: list[Array] = []
+    for index, figure in enumerate(positions):
+        if index == chosen:
+            continue
+        color = style.color(candidate_color(index))
+        lines, is_right = limb_lines(names, figure)
+        items += [
+            Stroke(lines, color, width, GHOST * style.halo),
+            Stroke(lines[is_right], style.color(CORE), CORE_SHARE * width),
+        ]
+        apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
+        if apart.max() >= 0.0:
+            x, y = _number_place(figure, apart, taken, BESIDE * scale)
+            taken.append(np.array([x, y]))
+            items.append(Label(str(index + 1), x, y + ABOVE * scale, (*color[:3], 1.0), "middle"))
+    return items
+
+
+def _number_place(figure: Array, apart: Array, taken: list[Array], beside: float) -> tuple[float, float]:
+    """The point [px] of a figure above which its number stands.
+
+    Args:
+        figure: (13, 2) its points [px].
+        apart: (13,) their distances from those of the chosen figure [px], negative where not seen.
+        taken: Where other figures' numbers stand.
+        beside: Distance from those that is enough [px].
+    """
+    order = [point for point in np.argsort(-apart, kind="stable") if apart[point] >= 0.0]
+    free = (
+        point for point in order if all(np.linalg.norm(figure[point] - other) >= beside for other in taken)
+    )
+    x, y = figure[next(free, order[0])]
+    return float(x), float(y)

@@ -1,0 +1,69 @@
+"""Contradictions: what is seen at a frame of a take and no plausible posture explains, kept while it is true.
+
+Whoever looks for a posture notes what it found, an empty list as well, and the panel shows it at that frame.
+It holds until the frame is looked at again or posed, or the footage is read anew with other markers.
+"""
+
+from collections.abc import Sequence
+
+import bpy
+
+from ...core.footage.keypoints.body_points import BODY_POINTS
+from .job_progress import steady_frame
+from .messages import label
+from .panel import draw_sentence
+
+SAME_FRAME = 0.5
+"""A note nearer to a frame than this [frames] is of that frame."""
+SEPARATOR = "\n"
+"""Between names, which are of one line each."""
+
+
+class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):
+    """What no plausible posture explains at a frame."""
+
+    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
+    names: bpy.props.StringProperty(
+        name="Names", description="Names of the markers and keypoints, a line each", options={"HIDDEN"}
+    )
+    reading: bpy.props.StringProperty(
+        name="Reading", description="Key of the reading of the clip that it was found in", options={"HIDDEN"}
+    )
+
+
+def note_contradictions(take: bpy.types.PropertyGroup, frame: float, names: Sequence[str]) -> None:
+    """Note which markers and keypoints no plausible posture explains at a scene frame; none: all are."""
+    noted = take.contradictions
+    for index in reversed(range(len(noted))):
+        if abs(noted[index].frame - frame) < SAME_FRAME:
+            noted.remove(index)
+    if names:
+        entry = noted.add()
+        entry.frame, entry.names, entry.reading = frame, SEPARATOR.join(names), take.reading_key
+
+
+def contradictions_at(take: bpy.types.PropertyGroup, frame: float) -> tuple[str, ...]:
+    """Names of what no plausible posture explains at a scene frame, as far as it is still followed."""
+    for entry in take.contradictions:
+        if abs(entry.frame - frame) < SAME_FRAME and entry.reading == take.reading_key:
+            return tuple(name for name in entry.names.split(SEPARATOR) if _is_followed(take, name))
+    return ()
+
+
+def _is_followed(take: bpy.types.PropertyGroup, name: str) -> bool:
+    if any(marker.name == name for marker in take.markers):
+        return bool(take.follow.use_markers)
+    return name in BODY_POINTS and bool(take.follow.use_keypoints or take.follow.use_tracks)
+
+
+def draw_contradictions(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw what contradicts in the current frame, if anything does."""
+    names = contradictions_at(take, steady_frame(context))
+    if names:
+        said = label("No plausible pose explains {names} here", names=", ".join(names))
+        draw_sentence(layout, context, said, "ERROR")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_contradiction,))

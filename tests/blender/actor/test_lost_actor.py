@@ -1,0 +1,115 @@
+"""An actor that was deleted or replaced: keyframes and motion stay, and animate the next one."""
+
+import bpy
+import numpy as np
+import pytest
+from _posed import posture_of
+from keymark.core.body.actor import Actor
+from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.armature import build_armature
+from keymark.operators.shell.keyed_frames import keyframes_of
+from keymark.operators.shell.takes import active_take, has_lost_actor, present_actor
+from keymark.operators.takes.next_step import next_step
+
+pytestmark = pytest.mark.usefixtures("registered")
+FRAME = 7
+NEAR = 1e-4
+
+
+def delete(armature_object: bpy.types.Object) -> None:
+    """Delete an object as X in the viewport does: it leaves the scene."""
+    with bpy.context.temp_override(selected_objects=[armature_object], active_object=armature_object):
+        assert bpy.ops.object.delete() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("again", ["restore_actor", "build_actor"])
+@pytest.mark.parametrize("how", ["in the viewport", "from the file"])
+def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, how: str, again: str) -> None:
+    """Whether it is in the file still or has to be built: the same lengths, frames and poses."""
+    take = active_take(opened)
+    bpy.ops.keymark.apply_lengths()
+    opened.frame_set(FRAME)
+    before, frames, action = posture_of(opened), keyframes_of(take), take.keyframe_action
+    lengths = read_body(take.armature, HUMAN).actor.segments_m
+    stature = read_body(take.armature, HUMAN).actor.stature_m
+    if how == "in the viewport":
+        delete(take.armature)
+    else:
+        bpy.data.objects.remove(take.armature)
+    assert present_actor(take) is None and has_lost_actor(take)
+    assert take.keyframe_action == action and next_step(take) == "Next: bring the actor back"
+    with pytest.raises(RuntimeError, match="Bring the deleted actor back"):
+        bpy.ops.keymark.store_keyframe()
+
+    if again == "restore_actor":
+        assert bpy.ops.keymark.restore_actor() == {"FINISHED"}
+        assert read_body(take.armature, HUMAN).actor.segments_m == pytest.approx(lengths, rel=1e-4)
+    else:
+        assert bpy.ops.keymark.build_actor(stature=stature) == {"FINISHED"}
+    assert present_actor(take) is take.armature is not None and not has_lost_actor(take)
+    assert take.armature.animation_data.action == take.keyframe_action == action
+    assert keyframes_of(take) == frames
+    opened.frame_set(FRAME + 1)
+    opened.frame_set(FRAME)
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=NEAR)
+
+
+def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opened: bpy.types.Scene) -> None:
+    """Keys move the hips from where they are at rest, which the lengths alone do not tell."""
+    take = active_take(opened)
+    bpy.ops.keymark.build_actor(stature=1.95)  # longer legs, the hips at rest stay
+    opened.frame_set(FRAME)
+    before = posture_of(opened)
+    bpy.data.objects.remove(take.armature)
+    bpy.ops.keymark.restore_actor()
+    opened.frame_set(FRAME)
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=NEAR)
+
+
+def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened: bpy.types.Scene) -> None:
+    """One that has an Action of its own keeps it."""
+    take = active_take(opened)
+    frames = keyframes_of(take)
+    first, other = take.armature, build_armature(opened, Body(Actor.from_stature(1.7)))
+    take.armature = other
+    assert other.animation_data.action == take.keyframe_action and keyframes_of(take) == frames
+    own = bpy.data.actions.new("Own")
+    first.animation_data.action = own
+    take.armature = first
+    assert first.animation_data.action == own
+
+
+def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.types.Scene) -> None:
+    """No second one is built beside it."""
+    take = active_take(opened)
+    actor, count = take.armature, len(bpy.data.objects)
+    take.armature = None
+    assert bpy.ops.keymark.restore_actor() == {"FINISHED"}
+    assert take.armature == actor and len(bpy.data.objects) == count
+
+
+def test_an_actor_in_the_scene_needs_no_bringing_back(opened: bpy.types.Scene) -> None:
+    """The operator says so."""
+    assert not has_lost_actor(active_take(opened))
+    with pytest.raises(RuntimeError, match="is in the scene"):
+        bpy.ops.keymark.restore_actor()
+
+
+def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:
+    """No other armatures, and no actor that was deleted and is kept by another take."""
+    from keymark.operators.takes.take_properties import _is_actor
+
+    take = active_take(opened)
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    opened.collection.objects.link(rig)
+    assert _is_actor(take, take.armature) and not _is_actor(take, rig)
+    delete(take.armature)
+    assert not _is_actor(take, take.armature)
+
+
+def test_a_height_is_shown_to_the_millimeter(opened: bpy.types.Scene) -> None:
+    """Blender's precision of a length with a unit counts all digits, not those after the point."""
+    precision = active_take(opened).bl_rna.properties["stature"].precision
+    assert bpy.utils.units.to_string("METRIC", "LENGTH", 1.797, precision=precision) == "1.797 m"

@@ -1,0 +1,212 @@
+"""Correcting the pose: flipped depth, turns, a neighbor's pose, a joint moved, as scripted operators."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+import pytest
+from _posed import posture_of
+from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.posing.turned import Facing, facing_of
+from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.joint_places import joint_places
+from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.pose import write_posture
+from keymark.operators.keyframes.corrections import camera_now
+from keymark.operators.keyframes.limb_selection import selected_limbs
+from keymark.operators.shell.keyed_frames import posed_frames
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+
+def select(scene: bpy.types.Scene, *names: str) -> None:
+    """Select bones of the actor, and no others, in Pose Mode."""
+    armature_object = active_take(scene).armature
+    bpy.context.view_layer.objects.active = armature_object
+    if armature_object.mode != "POSE":
+        bpy.ops.object.mode_set(mode="POSE")
+    for bone in armature_object.pose.bones:
+        target = bone if hasattr(bone, "select") else bone.bone
+        target.select = bone.name in names
+
+
+def reaching(scene: bpy.types.Scene) -> Posture:
+    """The actor reaches forward with its left arm, bent, in the frame that is shown."""
+    vector = posture_of(scene).to_vector()
+    for name, value in {
+        "shoulder.L.rotation_x": 0.0,
+        "shoulder.L.rotation_y": 0.2,
+        "shoulder.L.rotation_z": -0.5,
+        "elbow.L.flexion": 0.5,
+    }.items():
+        vector[HUMAN.dof_names.index(name)] = value
+    posture = Posture.from_vector(HUMAN, vector)
+    write_posture(active_take(scene).armature, posture)
+    return posture
+
+
+def points_of(scene: bpy.types.Scene) -> np.ndarray:
+    """The 13 points that the actor shows [m]."""
+    body = read_body(active_take(scene).armature, HUMAN)
+    return body.points(body.pose(posture_of(scene)))
+
+
+def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bpy.types.Scene) -> None:
+    """The selected arm alone moves; pressing until it comes round gives the first pose again."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    before = reaching(opened)
+    keys = keyed_frames(take.armature, take.keyframe_action, HUMAN)
+    seen, camera = points_of(opened), camera_now(opened, take)
+    select(opened, "forearm.L")
+    assert selected_limbs(take) == ["arm.L"]
+    assert bpy.ops.keymark.flip_depth() == {"FINISHED"}
+    flipped = points_of(opened)
+    elbow = HUMAN.point_names.index("elbow.L")
+    assert np.linalg.norm(flipped[elbow] - seen[elbow]) > 0.05
+    np.testing.assert_allclose(camera.project(flipped)[0], camera.project(seen)[0], atol=1.0)
+    assert keyed_frames(take.armature, take.keyframe_action, HUMAN) == keys
+    shown = [posture_of(opened)]
+    for _ in range(3):
+        bpy.ops.keymark.flip_depth()
+        shown.append(posture_of(opened))
+    assert min(float(np.abs(each.minus(before)).max()) for each in shown) < 1e-4
+
+
+def test_flipping_in_a_posed_frame_changes_its_keyframe_at_once(opened: bpy.types.Scene) -> None:
+    """And leaves the other keyframes."""
+    take = active_take(opened)
+    opened.frame_set(7)
+    reaching(opened)
+    bpy.ops.keymark.store_keyframe()
+    frames = posed_frames(take)
+    select(opened, "upper_arm.L")
+    bpy.ops.keymark.flip_depth()
+    flipped = posture_of(opened)
+    opened.frame_set(1)
+    first = posture_of(opened)
+    opened.frame_set(7)
+    np.testing.assert_allclose(posture_of(opened).minus(flipped), 0.0, atol=1e-4)
+    assert posed_frames(take) == frames
+    opened.frame_set(1)
+    np.testing.assert_allclose(posture_of(opened).minus(first), 0.0, atol=1e-6)
+
+
+def test_flipping_asks_for_a_selected_bone(opened: bpy.types.Scene) -> None:
+    """The tooltip says what to select."""
+    select(opened)
+    with pytest.raises(RuntimeError, match="Select a bone of an arm, a leg or the trunk"):
+        bpy.ops.keymark.flip_depth()
+
+
+def test_with_all_bones_selected_the_active_one_counts(opened: bpy.types.Scene) -> None:
+    """As after A."""
+    take = active_take(opened)
+    select(opened, *take.armature.pose.bones.keys())
+    take.armature.data.bones.active = take.armature.data.bones["shin.R"]
+    assert selected_limbs(take) == ["leg.R"]
+
+
+@pytest.mark.parametrize("facing", ["CAMERA", "LEFT", "RIGHT", "AWAY"])
+def test_the_performer_turns_in_place(opened: bpy.types.Scene, facing: str) -> None:
+    """Whatever becomes of the limbs; without a fit the hips stay to the millimeter."""
+    take = active_take(opened)
+    opened.frame_set(4)
+    before = posture_of(opened).translation
+    assert bpy.ops.keymark.turn_performer(facing=facing, fit=False) == {"FINISHED"}
+    assert facing_of(posture_of(opened), camera_now(opened, take)) is Facing[facing]
+    np.testing.assert_allclose(posture_of(opened).translation, before, atol=1e-4)
+
+
+def test_a_turned_pose_is_fitted_to_the_footage(opened: bpy.types.Scene) -> None:
+    """Turned away and back, it lies on the markers again."""
+    opened.frame_set(4)
+    true = points_of(opened)
+    bpy.ops.keymark.turn_performer(facing="AWAY", sides="TURN", fit=False)
+    turned = np.linalg.norm(points_of(opened) - true, axis=-1).mean()
+    bpy.ops.keymark.turn_performer(facing="CAMERA")
+    assert np.linalg.norm(points_of(opened) - true, axis=-1).mean() < 0.6 * turned
+
+
+def test_turning_outside_the_footage_needs_no_fit(opened: bpy.types.Scene) -> None:
+    """The performer turns all the same."""
+    opened.frame_set(40)
+    assert bpy.ops.keymark.turn_performer(facing="RIGHT") == {"FINISHED"}
+    camera = camera_now(opened, active_take(opened))
+    assert facing_of(posture_of(opened), camera) is Facing.RIGHT
+
+
+@pytest.mark.parametrize(("direction", "frame"), [("PREVIOUS", 7), ("NEXT", 13)])
+def test_a_neighbors_pose_is_copied_to_the_place_of_this_frame(
+    opened: bpy.types.Scene, direction: str, frame: int
+) -> None:
+    """Only the place is this frame's own; scene and keys are as before."""
+    take = active_take(opened)
+    opened.frame_set(frame)
+    there = posture_of(opened)
+    opened.frame_set(10)
+    here = posture_of(opened)
+    keys = posed_frames(take)
+    assert bpy.ops.keymark.copy_neighbor(direction=direction) == {"FINISHED"}
+    copied = posture_of(opened)
+    np.testing.assert_allclose(copied.translation, here.translation, atol=1e-5)
+    np.testing.assert_allclose(copied.minus(there)[3:], 0.0, atol=1e-4)
+    assert opened.frame_current == 10 and posed_frames(take) == keys
+
+
+def test_beyond_the_last_keyframe_there_is_no_neighbor(opened: bpy.types.Scene) -> None:
+    """Nothing changes."""
+    opened.frame_set(13)
+    before = posture_of(opened)
+    assert bpy.ops.keymark.copy_neighbor(direction="NEXT") == {"CANCELLED"}
+    np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=1e-9)
+
+
+def test_a_moved_joint_lies_where_it_was_moved_to(opened: bpy.types.Scene) -> None:
+    """And a posed frame has it at once."""
+    opened.frame_set(7)
+    place = points_of(opened)[HUMAN.point_names.index("wrist.R")] + [0.05, 0.0, 0.08]
+    bpy.ops.keymark.move_joint(joint="wrist.R", place=place, sight=(0.0, 1.0, 0.0))
+    opened.frame_set(1)
+    opened.frame_set(7)
+    moved = points_of(opened)[HUMAN.point_names.index("wrist.R")]
+    np.testing.assert_allclose(moved[[0, 2]], place[[0, 2]], atol=2e-3)
+
+
+def test_correcting_the_shown_motion_goes_on_with_the_keyframes(opened: bpy.types.Scene) -> None:
+    """The keyframe Action is shown, with the corrected pose of the motion."""
+    take = active_take(opened)
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    opened.frame_set(4)
+    place = points_of(opened)[HUMAN.point_names.index("wrist.L")] + [0.0, 0.0, 0.05]
+    bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=(0.0, 1.0, 0.0))
+    assert take.armature.animation_data.action == take.keyframe_action
+    np.testing.assert_allclose(points_of(opened)[HUMAN.point_names.index("wrist.L")][2], place[2], atol=2e-3)
+    assert 4.0 not in posed_frames(take)
+
+
+def test_joints_are_read_from_bones(
+    opened: bpy.types.Scene, body: Body, random_posture: Callable[[int], Posture]
+) -> None:
+    """As forward kinematics has them."""
+    write_posture(active_take(opened).armature, random_posture(4))
+    np.testing.assert_allclose(joint_places(active_take(opened).armature), points_of(opened), atol=1e-4)
+
+
+def test_undo_takes_a_correction_back(opened: bpy.types.Scene) -> None:
+    """With the keyframe that it changed."""
+    opened.frame_set(7)
+    before = posture_of(opened)
+    bpy.ops.ed.undo_push(message="before")
+    place = points_of(opened)[HUMAN.point_names.index("ankle.L")] + [0.1, 0.0, 0.1]
+    bpy.ops.keymark.move_joint(joint="ankle.L", place=place, sight=(0.0, 1.0, 0.0))
+    bpy.ops.ed.undo_push(message="moved")
+    bpy.ops.ed.undo()
+    scene = bpy.context.scene
+    scene.frame_set(1)
+    scene.frame_set(7)
+    np.testing.assert_allclose(posture_of(scene).minus(before), 0.0, atol=1e-5)

@@ -1,0 +1,128 @@
+"""Figures of a found keyframe's candidates, without a screen."""
+
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from _found import made_up_frames
+from keymark.core.body.human import HUMAN
+from keymark.core.take.motion import Motion
+from keymark.operators.bridge.camera_from_scene import read_camera
+from keymark.operators.matching.match_edits import add_candidate, add_match, key_matches
+from keymark.operators.overlays import candidates
+from keymark.operators.overlays.picture import Label, Stroke
+from keymark.operators.overlays.style import candidate_icon
+from keymark.operators.shell.footage_view import FootageView
+from keymark.operators.shell.takes import active_take, footage_of
+
+FOOTAGE = FootageView(None, (160, 120), np.array([10.0, 490.0]), np.array([640.0, -480.0]), None)
+Group = bpy.types.PropertyGroup
+
+
+@pytest.fixture
+def match(opened: bpy.types.Scene, wave_motion: Motion) -> Group:
+    """A found keyframe at frame 4 with two candidates."""
+    take = active_take(opened)
+    (frame,) = made_up_frames(wave_motion, {3: 0.4})
+    found = add_match(take, 4.0, "composed")
+    for each in frame.candidates:
+        add_candidate(found, each.posture, each.name, each.mirrored, each.confidence)
+    key_matches(take, np.array([4.0]), [frame.candidates[0].posture])
+    opened.frame_set(4)
+    return take.matching.matches[0]
+
+
+def test_figures_stand_where_the_candidates_would(
+    match: Group, opened: bpy.types.Scene, wave_motion: Motion
+) -> None:
+    """In the world, and over the footage as the camera sees them."""
+    take = active_take(opened)
+    points = candidates.candidate_points(take.armature, match)
+    assert points == pytest.approx(wave_motion.points[[3, 9]], abs=1e-4)
+    seen = read_camera(footage_of(opened, take), np.array([4.0])).project(points)[0]
+    over = candidates.over_footage(opened, take, FOOTAGE, points)
+    assert over == pytest.approx(FOOTAGE.to_region(seen), abs=1e-3)
+    behind = candidates.over_footage(opened, take, FOOTAGE, points - [0.0, 20.0, 0.0])
+    assert np.isnan(behind).all()
+
+
+def test_they_are_found_anew_only_where_something_changed(match: Group, opened: bpy.types.Scene) -> None:
+    """Redraws reuse them; another actor's lengths do not."""
+    armature = active_take(opened).armature
+    first = candidates.candidate_points(armature, match)
+    assert candidates.candidate_points(armature, match) is first
+    armature.scale = (1.2, 1.2, 1.2)
+    bpy.context.view_layer.update()
+    again = candidates.candidate_points(armature, match)
+    assert np.ptp(again[0, :, 2]) == pytest.approx(1.2 * np.ptp(first[0, :, 2]), rel=0.05)
+
+
+def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: bpy.types.Scene) -> None:
+    """But for the one that the frame has, which the actor shows; the number stands where they differ most."""
+    points = candidates.candidate_points(active_take(opened).armature, match)
+    positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
+    settings = SimpleNamespace(opacity=0.5, line_width=1.5)
+    for chosen, other in ((0, 1), (1, 0)):
+        lines, cores, number = candidates.picture(positions, chosen, settings)
+        assert isinstance(lines, Stroke) and len(lines.segments) == 12 and len(cores.segments) == 4
+        theme = bpy.context.preferences.themes[0].collection_color[other].color
+        assert tuple(lines.color)[:3] == pytest.approx(tuple(theme)) and lines.color[3] < 0.5
+        assert isinstance(number, Label) and number.words == str(other + 1)
+        apart = np.linalg.norm(positions[other] - positions[chosen], axis=-1)
+        assert number.x == pytest.approx(positions[other, apart.argmax(), 0])
+        assert "wrist" in HUMAN.point_names[apart.argmax()]
+        assert candidate_icon(other) == f"COLLECTION_COLOR_0{other + 1}"
+    icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+    assert all(candidate_icon(index) in icons for index in range(9))
+
+
+def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy.types.Scene) -> None:
+    """Of figures in one place each has its number above another joint; where none is free, above one."""
+    points = candidates.candidate_points(active_take(opened).armature, match)
+    positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
+    settings = SimpleNamespace(opacity=0.5, line_width=1.5)
+    many = np.concatenate([positions[:1], np.repeat(positions[1:2], 4, axis=0)])
+    numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
+    places = np.array([[number.x, number.y] for number in numbers])
+    apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(4, 1)]
+    assert len(numbers) == 4 and apart.min() >= candidates.BESIDE
+    tiny = 0.01 * many
+    tiny[1:, 0] += 1.0
+    numbers = [item for item in candidates.picture(tiny, 0, settings) if isinstance(item, Label)]
+    assert len({(number.x, number.y) for number in numbers}) == 1
+
+
+def test_points_that_are_not_seen_are_left_out() -> None:
+    """A figure behind the viewer is none, and has no number."""
+    positions = np.full((2, 13, 2), np.nan)
+    positions[0] = np.arange(26.0).reshape(13, 2)
+    lines, cores = candidates.picture(positions, 0, SimpleNamespace(opacity=1.0, line_width=1.5))
+    assert len(lines.segments) == len(cores.segments) == 0
+
+
+@pytest.mark.parametrize("reason", ["nothing", "another frame", "off", "posed", "playing", "one candidate"])
+def test_they_are_drawn_at_an_undecided_frame_alone(
+    match: Group, opened: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, reason: str
+) -> None:
+    """Not elsewhere, nor while frames play, nor where the animator has decided or there is no choice."""
+    painted = []
+    monkeypatch.setattr(candidates, "paint", painted.append)
+    monkeypatch.setattr(candidates, "footage_view", lambda *_: FOOTAGE)
+    if reason == "another frame":
+        opened.frame_set(6)
+    if reason == "off":
+        opened.keymark.overlays.show_candidates = False
+    if reason == "posed":
+        bpy.ops.keymark.store_keyframe()
+    if reason == "one candidate":
+        match.candidates.remove(1)
+    context = SimpleNamespace(
+        scene=opened,
+        space_data=SimpleNamespace(type="CLIP_EDITOR"),
+        screen=SimpleNamespace(is_animation_playing=reason == "playing"),
+        area=None,
+        region=None,
+    )
+    candidates.draw(context)
+    assert len(painted) == (reason == "nothing")

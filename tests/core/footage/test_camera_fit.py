@@ -1,0 +1,179 @@
+"""The camera from lines and upright things: exact ones give it exactly, drawn ones within what is stated."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from keymark.core.arrays import Array
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.camera_evidence import CLICK_STD_PX, CameraEvidence, Uprights
+from keymark.core.footage.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, CameraFit, fit_camera
+from keymark.core.footage.camera_placement import CameraPlacement, heading_rad
+from keymark.core.footage.default_camera import default_camera_pose
+
+SIZE = (1280, 720)
+STATURE_M = 1.75
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def camera(lens_mm: float, height_m: float, tilt: float, roll: float) -> Camera:
+    """A camera that looks along +Y; tilt and roll in degrees."""
+    placement = CameraPlacement(height_m, float(np.radians(tilt)), float(np.radians(roll)))
+    return Camera(lens_mm, 36.0, SIZE, placement.matrix())
+
+
+def usual(lens_mm: float = 35.0) -> Camera:
+    """The camera before anything is known of it."""
+    return Camera(lens_mm, 36.0, SIZE, default_camera_pose(lens_mm, 36.0, SIZE))
+
+
+def lines(true: Camera, ends: Array) -> Array:
+    """Lines (L, 2, 2) in the picture between points (L, 2, 3)."""
+    return true.project(ends)[0]
+
+
+def room(true: Camera, level: bool = True) -> CameraEvidence:
+    """Two door frames, two lines on the floor that run away, one across, and someone between them."""
+    plumb = np.array([[[x, 5.0, 0.0], [x, 5.0, 2.1]] for x in (-1.3, 1.5)])
+    along = np.array([[[x, 3.5, 0.0], [x + 0.4, 6.0, 0.0]] for x in (-1.0, 1.0)])
+    across = np.array([[[-1.0, 5.0, 0.0], [1.0, 4.68, 0.0]]])
+    none = np.zeros((0, 2, 2))
+    return CameraEvidence(
+        lines(true, plumb),
+        lines(true, along) if level else none,
+        lines(true, across) if level else none,
+        Uprights.things(*true.project([[0.0, 4.5, 0.0], [0.0, 4.5, 1.9]])[0], 1.9),
+    )
+
+
+def people(true: Camera, places: Array) -> Uprights:
+    """Someone who stands at places (N, 2) on the floor."""
+    ground = np.column_stack([places, np.zeros(len(places))])
+    return Uprights.persons(true.project(ground)[0], true.project(ground + STATURE_M * UP)[0], STATURE_M)
+
+
+def errors(fit: CameraFit, true: Camera) -> dict[str, float]:
+    """Of each parameter, in the units of its deviation."""
+    known, found = CameraPlacement.of(true.matrix_world), fit.placement
+    return {
+        HEIGHT: found.height_m - known.height_m,
+        TILT: found.tilt_rad - known.tilt_rad,
+        ROLL: found.roll_rad - known.roll_rad,
+        LENS: fit.camera.lens_mm - true.lens_mm,
+    }
+
+
+CAMERAS = [
+    camera(40.0, 1.1, -9.0, 0.0),
+    camera(28.0, 2.2, -20.0, 1.0),
+    camera(58.0, 1.9, -12.0, 9.0),
+    camera(30.0, 0.8, 8.0, -1.5),
+]
+
+
+@pytest.mark.parametrize("true", CAMERAS)
+def test_exact_lines_give_the_exact_camera(true: Camera) -> None:
+    """Within a share of what is stated: beliefs still pull a little, since lines could be drawn wrong."""
+    fit = fit_camera(usual(), room(true))
+    assert fit.kept == () and fit.misfit_px < 0.5
+    for name, error in errors(fit, true).items():
+        assert abs(error) < 0.3 * fit.std[name], name
+    many = CameraEvidence(*(np.tile(each, (400, 1, 1)) for each in _three(room(true))), room(true).uprights)
+    for name, error in errors(fit_camera(usual(), many), true).items():
+        assert abs(error) < 0.02 * fit.std[name] + (0.01 if name == HEIGHT else 0.0), name
+
+
+def _three(evidence: CameraEvidence) -> tuple[Array, Array, Array]:
+    return evidence.vertical, evidence.along, evidence.across
+
+
+def test_drawn_lines_are_as_far_off_as_stated() -> None:
+    """Squared errors in standard deviations have a mean of about one, over cameras and drawings."""
+    rng = np.random.default_rng(3)
+    squared: dict[str, list[float]] = {name: [] for name in PARAMETERS}
+    for true in CAMERAS:
+        exact = room(true)
+        for _ in range(12):
+            drawn = [each + rng.normal(0.0, CLICK_STD_PX, each.shape) for each in _three(exact)]
+            lower = exact.uprights.lower_px + rng.normal(0.0, CLICK_STD_PX, (1, 2))
+            upper = exact.uprights.upper_px + rng.normal(0.0, CLICK_STD_PX, (1, 2))
+            fit = fit_camera(usual(), CameraEvidence(*drawn, Uprights.things(lower, upper, 1.9)))
+            for name, error in errors(fit, true).items():
+                if name not in fit.kept:
+                    squared[name].append((error / fit.std[name]) ** 2)
+    for name in PARAMETERS:
+        assert len(squared[name]) > 30 and 0.4 < np.mean(squared[name]) < 1.6, name
+
+
+@pytest.mark.parametrize("true", CAMERAS)
+def test_people_at_several_places_give_height_tilt_and_roll(true: Camera) -> None:
+    """Where the lens is known; errors of standing and clicking stay within three deviations."""
+    rng = np.random.default_rng(8)
+    places = np.array([[-1.0, 4.2], [1.0, 5.0], [0.0, 7.0], [-0.5, 5.5]])
+    seen = people(true, places)
+    shown = np.linalg.norm(seen.upper_px - seen.lower_px, axis=1)
+    lean = rng.normal(0.0, 0.5 * np.stack([seen.lean_std_rad, seen.length_std], axis=1) * shown[:, None])
+    standing = replace(seen, upper_px=seen.upper_px + lean)
+    fit = fit_camera(usual(true.lens_mm), CameraEvidence(uprights=standing), lens_is_known=True)
+    assert fit.kept == (LENS,) and fit.camera.lens_mm == pytest.approx(true.lens_mm)
+    for name in (HEIGHT, TILT, ROLL):
+        assert abs(errors(fit, true)[name]) < 3.0 * fit.std[name], name
+
+
+def test_one_place_determines_the_height_only_with_the_tilt() -> None:
+    """The other is kept as it was, and said to be."""
+    true = camera(35.0, 1.4, 0.0, 0.0)
+    fit = fit_camera(usual(), CameraEvidence(uprights=people(true, np.array([[0.0, 5.0]]))))
+    assert LENS in fit.kept and {HEIGHT, TILT} & set(fit.kept)
+    for name in fit.kept:
+        assert errors(fit, usual())[name] == pytest.approx(0.0, abs=1e-9)
+    assert fit.std[HEIGHT] > 0.1
+
+
+def test_nothing_determines_nothing() -> None:
+    """The camera stays as it was."""
+    before = usual()
+    fit = fit_camera(before, CameraEvidence())
+    assert fit.kept == PARAMETERS and np.allclose(fit.camera.matrix_world, before.matrix_world)
+    assert fit.camera.lens_mm == pytest.approx(before.lens_mm) and fit.misfit_px == 0.0
+
+
+def test_lines_too_near_each_other_leave_the_tilt_and_a_level_camera_the_lens() -> None:
+    """Where a vanishing point is uncertain or at infinity the value is kept instead of nonsense."""
+    true = camera(50.0, 1.4, -2.0, 0.0)
+    near = np.array([[[x, 5.0, 1.0], [x, 5.0, 1.3]] for x in (0.0, 0.03)])
+    fit = fit_camera(usual(), CameraEvidence(vertical=lines(true, near)))
+    assert {TILT, LENS, HEIGHT} <= set(fit.kept) and fit.placement.tilt_rad == pytest.approx(0.0, abs=1e-9)
+    level = camera(50.0, 1.4, 0.0, 0.0)
+    evidence = room(level)
+    fit = fit_camera(usual(), CameraEvidence(evidence.vertical, evidence.along, uprights=evidence.uprights))
+    assert fit.kept == (LENS,) and abs(errors(fit, level)[TILT]) < fit.std[TILT]
+
+
+def test_lines_that_contradict_each_other_widen_the_deviations_and_say_so() -> None:
+    """One line that is not plumb at all, among many that are."""
+    true = camera(35.0, 1.5, -10.0, 0.0)
+    plumb = np.array([[[x, 5.0, 0.0], [x, 5.0, 2.0]] for x in (-1.5, -0.7, 0.2, 0.9, 1.5)])
+    good = fit_camera(usual(), CameraEvidence(vertical=lines(true, plumb)))
+    plumb[2, 1, 0] += 0.6
+    bad = fit_camera(usual(), CameraEvidence(vertical=lines(true, plumb)))
+    assert good.excess < 1.5 and bad.excess > 10.0 and bad.misfit_px > 5.0
+    assert bad.std[TILT] > 2.0 * good.std[TILT]
+
+
+def test_place_and_heading_stay_and_distortion_is_heeded() -> None:
+    """Lines are bent by the lens; the camera stands elsewhere and looks another way."""
+    placement = CameraPlacement(1.6, float(np.radians(-12.0)), 0.0)
+    true = Camera(30.0, 36.0, SIZE, placement.matrix(), distortion=(-0.08, 0.01, 0.0))
+    before = replace(true, lens_mm=33.0, matrix_world=CameraPlacement(1.3, 0.0, 0.0).matrix((3.0, -2.0), 1.1))
+    fit = fit_camera(before, room(true))
+    assert np.allclose(fit.camera.matrix_world[:2, 3], (3.0, -2.0))
+    assert heading_rad(fit.camera.matrix_world) == pytest.approx(1.1)
+    assert abs(errors(fit, true)[TILT]) < np.radians(0.7) and abs(errors(fit, true)[LENS]) < 1.5
+
+
+def test_a_moving_camera_has_no_single_pose() -> None:
+    """It is refused."""
+    moving = replace(usual(), matrix_world=np.stack([usual().matrix_world] * 2))
+    with pytest.raises(ValueError, match="moving camera"):
+        fit_camera(moving, CameraEvidence())

@@ -1,0 +1,89 @@
+"""What whole motions of the libraries tell of single parts."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _performed import BODY, camera, filmed, performed
+from keymark.core.body.heading import yawed_at
+from keymark.core.body.limbs import LIMBS
+from keymark.core.library.library import Library
+from keymark.core.library.library_file import read_library
+from keymark.core.matching.library_match import sampled_frames
+from keymark.core.matching.match_input import match_input
+from keymark.core.posing.library_belief import nearest_libraries, part_beliefs
+from keymark.core.posing.part_features import (
+    HEADINGS,
+    TRUNK_POINTS,
+    StanceFeatures,
+    limb_points,
+    stance_features,
+)
+from keymark.core.posing.part_pools import part_pools
+from keymark.core.progress import run
+
+HEADING = np.radians(30.0)
+
+
+@pytest.fixture(scope="module")
+def waving(repository: Path) -> Library:
+    """A library of another motion."""
+    return read_library(repository / "presets" / "keyframes" / "waving.json")
+
+
+def test_libraries_are_ordered_by_their_nearest_postures(
+    walking: Library, squatting: Library, waving: Library
+) -> None:
+    """Whichever way somebody faces and wherever the performer is."""
+    walk = performed(walking, HEADING)
+    elsewhere = yawed_at(walk, np.full(len(walk.translation), 2.0), walk.translation + 3.0)
+    pools = part_pools([waving, squatting, walking], BODY)
+    for posture in (walk, elsewhere):
+        assert nearest_libraries(pools, posture)[0] == 2
+    assert nearest_libraries(pools, performed(waving, HEADING))[0] == 0
+
+
+def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, waving: Library) -> None:
+    """The most believed parts are about the truth's; those that face the other way less so."""
+    truth = performed(walking, HEADING)
+    take, reading = filmed(truth, camera())
+    given = match_input(take, reading)
+    libraries = [waving, walking]
+    pools = part_pools(libraries, BODY)
+    stances = stance_features(pools, given.evidence)
+    sampled = sampled_frames(given.evidence.tracks, given.keyframes)
+    beliefs = run(part_beliefs(given, libraries, pools, stances, sampled, truth, 0.0))
+    assert len(beliefs) == len(sampled)
+    for belief, frame in zip(beliefs, sampled, strict=True):
+        points = BODY.points(BODY.pose(truth[frame])) - truth.translation[frame]
+        likeliest = int(belief.stance.argmin())
+        trunk = stances.features.points[likeliest, TRUNK_POINTS]
+        assert np.linalg.norm(trunk - points[TRUNK_POINTS], axis=-1).mean() < 0.15
+        limbs = {limb: int(cost.argmin()) for limb, cost in belief.limbs.items()}
+        for limb in LIMBS:
+            own = _placed(stances, limb, likeliest, limbs[limb])
+            assert np.linalg.norm(own - points[limb_points(limb)], axis=-1).mean() < 0.25
+            assert belief.limbs[limb].max() <= 0.0
+        behind = (likeliest // HEADINGS) * HEADINGS + (likeliest + HEADINGS // 2) % HEADINGS
+        assert belief.stance[behind] > 0.4 * belief.stance[likeliest]
+
+
+def test_a_motion_that_fits_badly_is_believed_little(walking: Library, waving: Library) -> None:
+    """How much likelier parts are follows from how sure the match is."""
+    truth = performed(walking, HEADING)
+    take, reading = filmed(truth, camera())
+    given = match_input(take, reading)
+    sampled = sampled_frames(given.evidence.tracks, given.keyframes)
+    most = []
+    for library in (walking, waving):
+        pools = part_pools([library], BODY)
+        stances = stance_features(pools, given.evidence)
+        beliefs = run(part_beliefs(given, [library], pools, stances, sampled, truth, 0.0))
+        most.append(np.mean([belief.limbs["leg.L"].min() for belief in beliefs]))
+    assert most[0] < 1.5 * most[1] < 0.0
+
+
+def _placed(stances: StanceFeatures, limb: str, stance: int, part: int) -> np.ndarray:
+    """(2, 3) points of a limb's part on a stance, from the hips."""
+    turn, origin = stances.frame_of(limb, np.array([stance]))
+    return np.asarray(stances.limbs[limb].points[part] @ turn[0].T + origin[0])

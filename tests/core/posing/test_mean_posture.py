@@ -1,0 +1,111 @@
+"""Means of the likely parts around a path."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from _performed import BODY, camera, filmed, performed
+from keymark.core.body.human import HUMAN
+from keymark.core.body.limbs import LIMBS
+from keymark.core.body.posture import Posture
+from keymark.core.library.library import Library
+from keymark.core.matching.match_input import match_input
+from keymark.core.posing.composed_path import ComposedPath
+from keymark.core.posing.composed_states import FrameStates
+from keymark.core.posing.mean_posture import mean_postures
+from keymark.core.posing.part_features import (
+    HEADINGS,
+    StanceFeatures,
+    composed_postures,
+    stance_features,
+)
+from keymark.core.posing.part_pools import PartPools, part_pools
+
+ARM = "arm.L"
+STANCE, HIPS = 3, np.array([0.2, 0.1, 0.9])
+Known = tuple[PartPools, StanceFeatures]
+
+
+@pytest.fixture(scope="module")
+def known(walking: Library) -> Known:
+    """The parts of one library, for markers."""
+    pools = part_pools([walking], BODY)
+    take, reading = filmed(performed(walking, 0.0), camera())
+    return pools, stance_features(pools, match_input(take, reading).evidence)
+
+
+def path_of(known: Known, arms: dict[int, float]) -> tuple[list[FrameStates], ComposedPath]:
+    """One frame whose left arm has some probabilities, by part; the likeliest of them is on the path."""
+    _, stances = known
+    limbs = np.zeros((1, len(LIMBS)), dtype=np.intp)
+    limbs[0, LIMBS.index(ARM)] = max(arms, key=lambda part: arms[part])
+    chance = {limb: np.eye(1, len(stances.limbs[limb].points)) for limb in LIMBS}
+    chance[ARM] = np.zeros_like(chance[ARM])
+    chance[ARM][0, list(arms)] = list(arms.values())
+    one = np.array([STANCE])
+    states = FrameStates(one, HIPS[None].astype(np.float32), np.zeros(1, np.float32), limbs, one > HEADINGS)
+    return [states], ComposedPath(one, HIPS[None], limbs, [np.ones(1, np.float32)], chance)
+
+
+def mean_of(known: Known, arms: dict[int, float]) -> Posture:
+    """The mean with a left arm of some probabilities."""
+    states, path = path_of(known, arms)
+    return mean_postures(*known, states, path)
+
+
+def points_of(posture: Posture) -> np.ndarray:
+    """(P, 3) the principal points."""
+    return BODY.points(BODY.pose(posture))[0]
+
+
+def apart_by(known: Known, least: float, most: float) -> tuple[int, int]:
+    """Two left arms that are so far apart on average [m]."""
+    points = known[1].limbs[ARM].points
+    apart = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1)
+    first, second = np.argwhere((apart > least) & (apart < most))[0]
+    return int(first), int(second)
+
+
+def test_what_is_certain_stays(known: Known) -> None:
+    """A single state with one part of each limb is its own mean."""
+    _, path = path_of(known, {4: 1.0})
+    pools, stances = known
+    exact = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
+    assert points_of(mean_of(known, {4: 1.0})) == pytest.approx(points_of(exact), abs=1e-5)
+
+
+def test_near_parts_are_averaged(known: Known) -> None:
+    """Two arms that differ little, alike in probability: the wrist is between theirs."""
+    one, other = apart_by(known, 0.08, 0.12)
+    wrist = HUMAN.point_names.index("wrist.L")
+    first, second = (points_of(mean_of(known, {part: 1.0})) for part in (one, other))
+    both = points_of(mean_of(known, {one: 0.51, other: 0.49}))
+    whole = np.linalg.norm(first[wrist] - second[wrist])
+    assert np.linalg.norm(both[wrist] - first[wrist]) == pytest.approx(0.45 * whole, abs=0.2 * whole)
+    others = [HUMAN.point_names.index(name) for name in ("head", "wrist.R", "ankle.L")]
+    assert both[others] == pytest.approx(first[others], abs=1e-6)
+
+
+def test_parts_of_another_kind_do_not_enter(known: Known) -> None:
+    """An arm far from the likeliest one moves it by little, however probable it is."""
+    one, other = apart_by(known, 0.45, 0.6)
+    wrist = HUMAN.point_names.index("wrist.L")
+    alone, both = points_of(mean_of(known, {one: 1.0})), points_of(mean_of(known, {one: 0.51, other: 0.49}))
+    assert np.linalg.norm(both[wrist] - alone[wrist]) < 0.03
+
+
+def test_turns_are_averaged_on_the_manifold(known: Known) -> None:
+    """Two states beside each other in heading: shoulders turn half the way, and stay as far apart."""
+    states, path = path_of(known, {0: 1.0})
+    both = np.array([STANCE, STANCE + 1])
+    twice = states[0].chosen(np.array([0, 0]))
+    states = [replace(twice, stance=both)]
+    chance = np.array([0.5, 0.5], np.float32)
+    posture = mean_postures(*known, states, replace(path, posterior=[chance]))
+    shoulders = [HUMAN.point_names.index(f"shoulder.{side}") for side in "LR"]
+    mean, alone = (points_of(each)[shoulders] for each in (posture, mean_of(known, {0: 1.0})))
+    way, before = mean[0] - mean[1], alone[0] - alone[1]
+    assert np.linalg.norm(way) == pytest.approx(np.linalg.norm(before), abs=1e-6)
+    turned = np.degrees(np.arctan2(way[1], way[0]) - np.arctan2(before[1], before[0]))
+    assert abs(turned) == pytest.approx(7.5, abs=1.5)
+    assert path.stance[0] == STANCE

@@ -1,0 +1,138 @@
+"""Poses of a clip that nobody posed, put together from the parts of several libraries."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from _performed import BODY, FRAMES, camera, filmed, performed
+from keymark.core.body.posture import Posture
+from keymark.core.errors import InputError
+from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.reading import Reading
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.library.library import Library
+from keymark.core.library.library_file import read_library
+from keymark.core.observation.keypoints import KeypointModel
+from keymark.core.posing.found_poses import FoundPoses, with_found
+from keymark.core.posing.pose_clip import pose_clip
+from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import run
+from keymark.core.take.take import Take
+
+ROOT = Path(__file__).resolve().parents[3]
+NAMES = (
+    "nose",
+    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
+)
+
+
+@cache
+def libraries() -> tuple[Library, ...]:
+    """Three shipped libraries, of which none has the motion below."""
+    return tuple(
+        read_library(ROOT / "presets" / "keyframes" / f"{name}.json")
+        for name in ("walking", "waving", "squatting_lifting")
+    )
+
+
+@cache
+def truth() -> Posture:
+    """Somebody who walks and waves: legs and trunk of one library, an arm of another."""
+    walking, waving, _ = libraries()
+    legs, arms = performed(walking, np.radians(35.0)), performed(waving, np.radians(35.0))
+    skeleton = legs.skeleton
+    rotations, angles = np.array(legs.rotations), np.array(legs.angles)
+    ball = [skeleton.joints[joint].name for joint in skeleton.ball_joints].index("shoulder.R")
+    hinges = [skeleton.joints[joint].name for joint in skeleton.hinge_joints]
+    rotations[:, ball] = arms.rotations[:, ball]
+    for name in ("girdle.R", "elbow.R", "forearm.R"):
+        angles[:, hinges.index(name)] = arms.angles[:, hinges.index(name)]
+    return Posture(skeleton, legs.translation, rotations, angles)
+
+
+def by_keypoints() -> tuple[Take, Reading]:
+    """The same in any clothes, with a detector's keypoints, which jitter."""
+    rng = np.random.default_rng(8)
+    take, reading = filmed(truth(), camera())
+    frames = np.arange(FRAMES)
+    pixel = KeypointModel.usual(BODY, camera(), NAMES).pixels(BODY.pose(truth()), frames)
+    pixel = pixel + rng.normal(0.0, 2.0, pixel.shape)
+    seen = tuple(
+        SeenPeople(pixel[[i]], np.full((1, len(NAMES)), 0.9), np.full((1, len(NAMES), 3), np.nan))
+        for i in frames
+    )
+    people = People(NAMES, "test", camera().resolution, seen)
+    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
+    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)
+
+
+@cache
+def found_by_markers() -> FoundPoses:
+    """The poses by five markers."""
+    return run(pose_clip(*filmed(truth(), camera()), libraries()))
+
+
+def errors_m(postures: Posture) -> tuple[np.ndarray, np.ndarray]:
+    """(F,) mean distance of the points from the truth, hips aligned and absolutely."""
+    found, true = (BODY.points(BODY.pose(each)) for each in (postures, truth()))
+    off = found - true
+    hips = (postures.translation - truth().translation)[:, None]
+    return np.linalg.norm(off - hips, axis=-1).mean(axis=-1), np.linalg.norm(off, axis=-1).mean(axis=-1)
+
+
+def test_a_motion_of_no_library_is_found_by_five_markers() -> None:
+    """A walk with a waving arm: whole postures of any library would be a waving arm's length off."""
+    rooted, absolute = errors_m(found_by_markers().postures)
+    assert rooted.mean() < 0.09
+    assert absolute.mean() < 0.2
+
+
+def test_and_by_keypoints() -> None:
+    """Nothing but a detector's points, without depths."""
+    rooted, absolute = errors_m(run(pose_clip(*by_keypoints(), libraries())).postures)
+    assert rooted.mean() < 0.08
+    assert absolute.mean() < 0.25
+
+
+def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
+    """What a person chooses among differs to the eye."""
+    found = found_by_markers()
+    assert found.frames[0].index == 0
+    assert found.frames[-1].index == FRAMES - 1
+    assert any(len(frame.candidates) > 1 for frame in found.frames)
+    for frame in found.frames:
+        assert np.array_equal(frame.candidates[0].posture.rotations, found.postures[frame.index].rotations)
+        batch = Posture.stack([each.posture for each in frame.candidates])
+        shape = BODY.points(BODY.pose(batch)) - batch.translation[:, None]
+        apart = np.linalg.norm(shape[:, None] - shape, axis=-1).mean(axis=-1)
+        assert (apart[~np.eye(len(shape), dtype=bool)] > 0.08).all()
+        assert all(0.0 <= each.confidence <= 1.0 for each in frame.candidates)
+
+
+def test_between_two_posed_frames_only_those_change() -> None:
+    """Two corrected keyframes hold, and what lies between follows them."""
+    take, reading = filmed(truth(), camera())
+    found = with_found(take, found_by_markers())
+    posed = tuple(Keyframe(index, truth()[index]) for index in (12, 37))
+    others = tuple(key for key in found.keyframes if abs(key.index - 12) > 2 and abs(key.index - 37) > 2)
+    corrected = replace(take, keyframes=tuple(sorted((*posed, *others), key=lambda key: key.index)))
+    again = run(pose_clip(corrected, reading, libraries(), between=(12, 37), frames=(20, 29)))
+    assert [frame.index for frame in again.frames] == [20, 29]
+    rooted, _ = errors_m(again.postures)
+    assert rooted[[12, 37]].max() < 0.02
+    assert rooted[12:38].mean() < errors_m(found_by_markers().postures)[0][12:38].mean()
+    changed = {key.index: key for key in with_found(corrected, again).keyframes}
+    outside = [key for key in corrected.keyframes if not 12 <= key.index <= 37]
+    assert all(changed[key.index] is key for key in outside)
+    assert changed[12].matched is None and changed[20].matched is not None
+
+
+def test_what_is_needed_is_said() -> None:
+    """No library, and a take that nothing is seen of."""
+    take, reading = filmed(truth(), camera())
+    with pytest.raises(InputError, match="at least one is needed"):
+        run(pose_clip(take, reading, ()))
+    with pytest.raises(InputError, match="neither markers nor keypoints"):
+        run(pose_clip(replace(take, markers=()), reading, libraries()))

@@ -1,0 +1,130 @@
+"""The field `ignored_regions` of take.json and shoot.json: read, inherited, written, refused in sentences."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from _shoot import write_shoot
+from _synthetic_take import SIZE, write_json, write_synthetic_take
+from keymark.core.errors import InputError
+from keymark.core.footage.ignored_region_fields import MOST_POINTS, MOST_REGIONS
+from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.core.progress import run
+from keymark.core.take.read_footage import read_footage
+from keymark.core.take.take_file import read_take, write_take
+
+FRAMES = 16
+BOX = {"box": [1, 2.5, 30, 40]}
+STROKE = {"stroke": [[5, 5], [9.5, 7]], "radius_px": 4, "frames": [11, 13]}
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A take that tests must not change."""
+    return write_synthetic_take(tmp_path_factory.mktemp("ignored") / "pristine", FRAMES)
+
+
+@pytest.fixture
+def folder(pristine: Path, tmp_path: Path) -> Path:
+    """A take of the test's own."""
+    return Path(shutil.copytree(pristine, tmp_path / "take"))
+
+
+def ignoring(folder: Path, value: Any) -> Path:
+    """A take with the field."""
+    said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
+    write_json(folder / "take.json", {**said, "ignored_regions": value})
+    return folder
+
+
+def test_a_take_says_what_is_never_a_marker_and_is_written_back(folder: Path, tmp_path: Path) -> None:
+    """Frames are those of the scene in the file, and counted from the clip's first in core."""
+    assert read_take(folder).ignored_regions == ()
+    said = json.loads((folder / "take.json").read_text(encoding="utf-8"))
+    keyframes = json.loads((folder / "keyframes.json").read_text(encoding="utf-8"))
+    for keyframe in keyframes["keyframes"]:
+        keyframe["frame"] += 10
+    write_json(folder / "keyframes.json", keyframes)
+    write_json(folder / "take.json", {**said, "frame_start": 11, "ignored_regions": [BOX, STROKE]})
+    take = read_take(folder)
+    assert take.ignored_regions == (
+        IgnoredRegion(box=(1.0, 2.5, 30.0, 40.0)),
+        IgnoredRegion(stroke=((5.0, 5.0), (9.5, 7.0)), radius_px=4.0, frames=(0, 2)),
+    )
+    write_take(take, tmp_path / "copy")
+    written = json.loads((tmp_path / "copy" / "take.json").read_text(encoding="utf-8"))
+    assert written["ignored_regions"] == [BOX, STROKE]
+    assert read_take(tmp_path / "copy").ignored_regions == take.ignored_regions
+
+
+def test_a_take_without_them_is_written_as_ever(folder: Path, tmp_path: Path) -> None:
+    """Not even an empty field."""
+    write_take(read_take(ignoring(folder, None)), tmp_path / "copy")
+    assert "ignored_regions" not in json.loads((tmp_path / "copy" / "take.json").read_text(encoding="utf-8"))
+
+
+def test_a_shoot_says_it_for_all_its_takes(tmp_path: Path) -> None:
+    """A camera that stands sees the same wall in every take; a take may see nothing of it."""
+    shoot = write_shoot(tmp_path / "shoot", takes=2, frames=3)
+    file = shoot / "shoot.json"
+    write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [BOX]})
+    clips = [shoot / "day1" / f"take0{number}.mp4" for number in (1, 2)]
+    write_json(shoot / "day1" / "take02.take.json", {"ignored_regions": None})
+    first, second = (read_take(clip, keyframes_required=False) for clip in clips)
+    assert [len(take.ignored_regions) for take in (first, second)] == [1, 0]
+    write_json(file, {**json.loads(file.read_text(encoding="utf-8")), "ignored_regions": [{"bx": 1}]})
+    with pytest.raises(InputError, match=r"shoot.json: ignored_regions\[0\] has the unknown field 'bx'"):
+        read_take(clips[0], keyframes_required=False)
+
+
+def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
+    """The whole way from the file to the tracks."""
+    plain = run(read_footage(read_take(folder))).tracks
+    center = plain.centroid[0, 0]
+    left, top = (center - 1.0).tolist()
+    box = [0, 0, left + 2.0, SIZE[1]] if left > SIZE[0] / 2 else [left, 0, SIZE[0], SIZE[1]]
+    half = run(read_footage(read_take(ignoring(folder, [{"box": box, "frames": [1, 4]}])))).tracks
+    assert np.nansum(half.area[:4, 0]) < 0.8 * np.nansum(plain.area[:4, 0])
+    np.testing.assert_allclose(half.area[5:, 0], plain.area[5:, 0], rtol=0.05)
+    assert top > 0
+
+
+@pytest.mark.parametrize(
+    ("value", "sentence"),
+    [
+        ({"box": [1, 2, 3, 4]}, "take.json: ignored_regions is .*; it must be a list of regions"),
+        ([[1, 2, 3, 4]], r"ignored_regions\[0\] is \[1, 2, 3, 4\]; it must be an object"),
+        ([BOX, {}], r"ignored_regions\[1\]: box is missing; it must be \[left, top, right, bottom\]"),
+        ([{"box": [1, 2, 3]}], r"box is \[1, 2, 3\]; it must be \[left, top, right, bottom\] in pixels"),
+        ([{"box": [1, 2, 3, "4"]}], "box is"),
+        ([{"box": [3, 2, 1, 4]}], r"box is \[3, 2, 1, 4\], which holds no pixel"),
+        ([{"box": [SIZE[0], 0, SIZE[0] + 9, 9]}], "which lies beside the picture of"),
+        ([{"stroke": [[1, 1]]}], r"ignored_regions\[0\]: radius_px is missing"),
+        ([{"stroke": [], "radius_px": 4}], f"stroke is .*; it must be a list of 1 to {MOST_POINTS} points"),
+        ([{"stroke": [[1, 1, 1]], "radius_px": 4}], "stroke is"),
+        ([{"stroke": [[1, True]], "radius_px": 4}], "stroke is"),
+        ([{"stroke": [[1, 1e300]], "radius_px": 4}], "stroke is"),
+        ([{"stroke": [[1, 1]], "radius_px": 0}], "radius_px is 0; it must be a number from 0.5 to"),
+        (
+            [{**BOX, "stroke": [[1, 1]], "radius_px": 4}],
+            "has a box and a stroke; each region has one of them",
+        ),
+        ([{**BOX, "radius_px": 4}], "has a radius_px without a stroke"),
+        (
+            [{**BOX, "frames": [4, 2]}],
+            r"frames is \[4, 2\]; it must be \[first, last\], scene frames in order",
+        ),
+        ([{**BOX, "frames": [1.5, 2]}], "frames is"),
+        ([{**BOX, "frames": 3}], "frames is 3"),
+        ([{**BOX, "frame": [1, 2]}], r"unknown field 'frame' \(is 'frames' meant\?\)"),
+        ([BOX] * (MOST_REGIONS + 1), f"has {MOST_REGIONS + 1} regions; at most {MOST_REGIONS} are read"),
+    ],
+)
+def test_a_mistake_is_one_sentence(folder: Path, value: Any, sentence: str) -> None:
+    """File, field, value and what would be valid."""
+    with pytest.raises(InputError, match=sentence) as error:
+        read_take(ignoring(folder, value))
+    assert "\n" not in str(error.value) and "take.json" in str(error.value)
