@@ -103,8 +103,8 @@ def read_record(folder: Path) -> ConversionRecord:
         evidence=read_used_evidence(fields.child("evidence", "an object"))
         if fields.has("evidence")
         else None,
-        libraries=record_lines(fields, "libraries", MOST_LIBRARIES) if fields.has("libraries") else {},
-        doubtful=_frames(fields, "doubtful") if fields.has("doubtful") else (),
+        libraries=record_lines(fields, "libraries", MOST_LIBRARIES) if "libraries" in fields.values else {},
+        doubtful=_frames(fields, "doubtful") if "doubtful" in fields.values else (),
     )
 
 

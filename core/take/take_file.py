@@ -133,8 +133,17 @@ def _keypoints(
     if not files:
         return ()
     if frame_count is None:  # detectors that number their files need not write one for every frame
-        frame_count = picture_count(description.clip, fps)
+        frame_count = _counted(description, fps)
     return tuple(read_keypoints(file, frame_count, camera.resolution, fps, frame_start) for file in files)
+
+
+def _counted(description: Description, fps: float) -> int:
+    """Number of pictures of the clip of a take that does not say it."""
+    try:
+        return picture_count(description.clip, fps)
+    except InputError as error:
+        where = description.fields.source_of("frame_count")
+        raise InputError(f"{where}: frame_count is not given, and {error}") from error
 
 
 def _source_of_evidence(description: Description, settings: ConversionSettings) -> str:

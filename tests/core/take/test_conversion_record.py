@@ -100,6 +100,8 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
         lambda v: v.update(files={f"{n}": "ab" * 32 for n in range(200)}),
         "names 200 files",
     ),
+    (lambda v: v.update(doubtful=None), "doubtful is null; it must be a list of"),
+    (lambda v: v.update(libraries=None), "libraries is null; it must be"),
     (lambda v: v.update(doubtful=["5"]), r"doubtful is \['5'\]; it must be a list of"),
     (lambda v: v.update(libraries={"walking": 7}), "libraries: walking is 7; it must be a text"),
     (lambda v: v.update(evidence=[]), "evidence is .*; it must be an object"),

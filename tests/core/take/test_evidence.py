@@ -80,6 +80,16 @@ def test_keypoints_beside_are_found(folder: Path) -> None:
     assert len(people.frames) == FRAMES and people.source == "drawn"
 
 
+def test_a_missing_clip_that_keypoints_need_is_told_with_the_takes_file(folder: Path) -> None:
+    """Where the take does not say how many frames there are, they are those of the clip."""
+    hinted(folder)
+    edit(folder, frame_count=None, clip="elsewhere.mp4")
+    with pytest.raises(
+        InputError, match=r"take.json: frame_count is not given, and .*elsewhere.mp4: no such"
+    ):
+        read_take(folder)
+
+
 def test_keypoints_may_be_several_files(folder: Path) -> None:
     """In their order; one that is named takes the place of the usual one."""
     write_keypoints(folder / "keypoints.json", true_postures(FRAMES))
