@@ -30,15 +30,12 @@ def floor_height_m(
         frames: Frames to choose from.
         states: The library's postures in all headings.
     """
-    chosen = _few(frames)
-    likelihoods = frame_likelihoods(camera, evidence, chosen, 0.0, UNKNOWN_FLOOR_STD_M)
+    likelihoods = frame_likelihoods(camera, evidence, _few(frames), 0.0, UNKNOWN_FLOOR_STD_M)
     emissions = [evaluate_emissions(likelihood, states) for likelihood in likelihoods]
     floor_m = _median_height_m(likelihoods, emissions, states)
     if abs(floor_m) <= WORLD_FLOOR_M:
         return 0.0
-    on_ground = frame_likelihoods(camera, evidence, chosen, 0.0, FLOOR_STD_M)
-    ground_emissions = [evaluate_emissions(likelihood, states) for likelihood in on_ground]
-    added = _mean_cost(ground_emissions) - _mean_cost(emissions)
+    added = single_posture_cost(camera, evidence, frames, states, 0.0) - _mean_cost(emissions)
     return 0.0 if added < FLOOR_COST_MARGIN else floor_m
 
 

@@ -60,9 +60,10 @@ def mean_postures(
 
 def _weights(chance: Array | SingleArray, apart_m: Array | SingleArray) -> tuple[IndexArray, Array]:
     """Which of N parts count, by their probabilities and distances from the likeliest, and their weights."""
-    weight = np.asarray(chance, dtype=float) * np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+    near = np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+    weight = np.asarray(chance, dtype=float) * near
     if not weight.any():  # all that is probable is far away
-        weight = np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+        weight = near
     kept = np.flatnonzero(weight >= LEAST_SHARE * weight.max())
     return kept, weight[kept] / weight[kept].sum()
 

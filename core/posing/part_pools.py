@@ -144,7 +144,7 @@ def content_of(libraries: Sequence[Library], body: Body) -> tuple[object, ...]:
     """What is learned from libraries depends on this, however often their files are read."""
     lengths = tuple(sorted(body.actor.segments_m.items()))
     shapes = tuple(hash(each.posture.to_vector().tobytes()) for one in libraries for each in one.postures)
-    named = tuple((each.name, *one.motions) for one in libraries for each in one.postures)
+    named = tuple((tuple(each.name for each in one.postures), one.motions) for one in libraries)
     return (*lengths, *shapes, *named)
 
 
