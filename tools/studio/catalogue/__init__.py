@@ -1,0 +1,15 @@
+"""All takes: the demonstration, and others that share as little as possible with it."""
+
+from .dances import DANCE, SPIN
+from .demonstration import DEMONSTRATION
+from .exercises import JOG, JUMP, LIFT, STAR_JUMPS
+from .fights import BOX, KICK
+from .throws import THROW
+from .walks import STROLL
+
+TAKES = {
+    described.name: described
+    for described in (
+        DEMONSTRATION, JOG, KICK, BOX, JUMP, SPIN, LIFT, DANCE, STROLL, THROW, STAR_JUMPS
+    )
+}  # fmt: skip
