@@ -1,4 +1,4 @@
-"""Filming: cameras, a shutter that is open for a part of the frame, sensor noise, H.264, and the markers' true masks."""
+"""Filming: cameras, a shutter open part of the frame, sensor noise, H.264, and the markers' true masks."""
 
 import tempfile
 from collections.abc import Iterator

@@ -3,13 +3,14 @@
 from .dances import DANCE, SPIN
 from .demonstration import DEMONSTRATION
 from .exercises import JOG, JUMP, LIFT, STAR_JUMPS
-from .fights import BOX, KICK
+from .fights import BOX, KICK, SPIN_KICK
 from .throws import THROW
 from .walks import STROLL
 
 TAKES = {
     described.name: described
     for described in (
-        DEMONSTRATION, JOG, KICK, BOX, JUMP, SPIN, LIFT, DANCE, STROLL, THROW, STAR_JUMPS
+        DEMONSTRATION, JOG, KICK, BOX, JUMP, SPIN, LIFT, DANCE, STROLL, THROW, STAR_JUMPS,
+        SPIN_KICK,
     )
 }  # fmt: skip
