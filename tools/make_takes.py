@@ -22,7 +22,7 @@ from _boot import load_package  # noqa: E402
 
 load_package()
 
-from keymark.core.arrays import BoolArray  # noqa: E402
+from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.posture_fields import rounded  # noqa: E402
 from keymark.core.files.json_file import write_json  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
@@ -170,15 +170,22 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
     by_hand = [Keyframe(index, noisy[row]) for row, index in enumerate(at)]
     write_keyframes(output / "keyframes_noisy.json", by_hand, body, FRAME_START)
     if not described.postures:
-        for name in ("keyframes.json", "keyframes_noisy.json"):
-            _keep_points_only(output / name)
+        _keep_points_only(output / "keyframes.json", points[list(at)])
+        _keep_points_only(output / "keyframes_noisy.json")
 
 
-def _keep_points_only(path: Path) -> None:
-    """Remove the postures from a keyframe file: thirteen marked points do not determine twists."""
+def _keep_points_only(path: Path, points: Array | None = None) -> None:
+    """Remove the postures from a keyframe file: thirteen marked points do not determine twists.
+
+    Args:
+        path: The file.
+        points: (K, 13, 3) the marked points [m] where they are not the postures' own.
+    """
     keyframes = json.loads(path.read_text(encoding="utf-8"))["keyframes"]
-    for keyframe in keyframes:
+    for row, keyframe in enumerate(keyframes):
         del keyframe["posture"]
+        if points is not None:
+            keyframe["points"] = dict(zip(keyframe["points"], rounded(points[row]), strict=True))
     _write_json(path, {"keyframes": keyframes})
 
 

@@ -9,6 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.footage.camera import Camera
 
+from .build import Build
 from .look import Look
 from .performance import FPS, Choreography, Performance, compose, principal_points, stored_times
 from .surroundings import Room, Thing
@@ -93,6 +94,7 @@ def performed(
     heading_deg: float = 0.0,
     tempo: float = 1.0,
     fps: int = FPS,
+    build: Build | None = None,
 ) -> Callable[[int], Performance]:
     """Map from a seed to an actor's performance of a plan.
 
@@ -103,12 +105,13 @@ def performed(
         heading_deg: Rotation of the whole motion to the left about the world's origin.
         tempo: Speed factor; gravity is right only at 1.
         fps: Frames per second.
+        build: Where the performer's joints lie, if not where the skeleton's do.
     """
 
     def perform(seed: int) -> Performance:
         body, times = Body(actor), stored_times(frame_count)
         planned = plan(body, tempo * times / fps, np.random.default_rng(seed))
-        return compose(body, times, planned.turned(heading_deg), fps)
+        return replace(compose(body, times, planned.turned(heading_deg), fps), build=build)
 
     return perform
 

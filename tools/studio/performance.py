@@ -12,6 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
 from scipy.ndimage import gaussian_filter1d
 
+from .build import Build
 from .limbs import (
     FreeLeg,
     arm_rotations,
@@ -79,6 +80,8 @@ class Performance:
     person's are not."""
     fps: int = FPS
     """Frames per second."""
+    build: Build | None = None
+    """Where the performer's joints lie; None for the skeleton's own."""
 
     def at(self, times: Array) -> IndexArray:
         """Indices of the stored times nearest to `times` [frames]."""
@@ -170,4 +173,5 @@ def _ankle(body: Body, side: str, pelvis_rotation: Array, hip: Array, knee: Arra
 
 def principal_points(performance: Performance, indices: IndexArray) -> Array:
     """The true principal points (N, 13, 3) [m] at stored times."""
-    return performance.body.points(performance.body.pose(performance.postures[indices]))
+    body, pose = performance.body, performance.body.pose(performance.postures[indices])
+    return body.points(pose) if performance.build is None else performance.build.points(body, pose)

@@ -3,7 +3,7 @@
 from .dances import DANCE, FURNITURE, SPIN
 from .demonstration import DEMONSTRATION
 from .exercises import JOG, JUMP, LIFT, STAR_JUMPS
-from .fights import BOX, KICK, SPIN_KICK
+from .fights import BOX, KICK, MARTIAL, SPIN_KICK
 from .throws import THROW
 from .walks import FAR_LEG, STROLL
 
@@ -11,6 +11,6 @@ TAKES = {
     described.name: described
     for described in (
         DEMONSTRATION, JOG, KICK, BOX, JUMP, SPIN, LIFT, DANCE, STROLL, THROW, STAR_JUMPS,
-        SPIN_KICK, FURNITURE, FAR_LEG,
+        SPIN_KICK, FURNITURE, FAR_LEG, MARTIAL,
     )
 }  # fmt: skip

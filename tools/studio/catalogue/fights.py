@@ -1,8 +1,9 @@
 """Kicks and punches."""
 
+from ..build import Build
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import box, kick, spin_kick
+from ..motions import box, kick, martial, spin_kick
 from ..surroundings import Lamp, Room
 from ..viewpoint import look_from
 from .sizes import SMALL, WIDE
@@ -69,3 +70,28 @@ SPIN_KICK = Described(
     samples=1,
 )
 """Nearly a full turn between two keyframes, in a long exposure that blurs forearms and the kicking leg."""
+
+MARTIAL = Described(
+    name="martial",
+    perform=performed(martial.plan, actor(1.76, shin=0.98, hip_width=1.04), 88, -4.0, build=Build()),
+    camera=look_from(-36.0, 4.4, 1.3, (0.0, -0.12, 0.97), 48.0, SMALL, tilt_deg=1.0),
+    look=Look(
+        colors={
+            "trunk": (220, 140, 40),
+            "forearm.L": (70, 70, 200),
+            "forearm.R": (196, 48, 60),
+            "shin.L": (60, 170, 150),
+            "shin.R": (170, 60, 150),
+            "cloth": (66, 74, 60),
+            "skin": (160, 112, 84),
+            "hair": (26, 22, 20),
+        },
+        girths={"thigh": 1.08, "upper_arm": 1.1, "forearm": 1.06},
+        folds=0.6,
+    ),
+    room=Room(wall=(0.50, 0.58, 0.58)),
+    seed=114,
+    moments=4,
+    samples=1,
+)
+"""The performer's joints lie one to two centimeters beside the skeleton's; no posture reaches them all."""
