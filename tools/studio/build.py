@@ -1,10 +1,10 @@
 """A performer's own build: joints that lie beside the skeleton's, as those of every living person do.
 
 The posture of the skeleton decides where limbs point; the performer's joints are moved from the skeleton's by
-a smooth function of that posture, by one to two centimeters. Mesh and truth both follow, so no posture of the
-skeleton reaches all thirteen points. The ankles keep their places, since feet stand on the floor. The amounts
-are of the size in which hip and shoulder centers differ between people and move under the skin, by no
-particular person.
+a smooth function of that posture, by about a centimeter, hips and knees by up to two. Mesh and truth both
+follow, so no posture of the skeleton reaches all thirteen points. The ankles keep their places, since feet
+stand on the floor. The amounts are of the size by which hip and shoulder centers differ between people and
+move under the skin; they are no particular person's.
 """
 
 from dataclasses import dataclass

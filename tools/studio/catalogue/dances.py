@@ -2,7 +2,7 @@
 
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import dance, furniture, spin
+from ..motions import back_spin, dance, furniture, spin
 from ..surroundings import Lamp, Room, Thing
 from ..viewpoint import look_from
 from .sizes import MIDDLE, SMALL
@@ -115,3 +115,28 @@ FURNITURE = Described(
     samples=1,
 )
 """A table and a chair hide the shins and parts of the thighs, after the first steps all the time."""
+
+BACK_SPIN = Described(
+    name="back_spin",
+    perform=performed(back_spin.plan, actor(1.66, trunk=0.99, shin=1.02, shoulder_width=1.04), 88, 8.0),
+    camera=look_from(8.0, 4.2, 1.6, (0.0, 0.0, 0.94), 44.0, SMALL, tilt_deg=-1.0),
+    look=Look(
+        colors={
+            "trunk": (170, 70, 60),
+            "forearm.L": (70, 170, 90),
+            "forearm.R": (70, 100, 210),
+            "shin.L": (220, 170, 40),
+            "shin.R": (190, 60, 170),
+            "cloth": (44, 48, 60),
+            "skin": (84, 58, 44),
+            "hair": (200, 160, 80),
+        },
+        girths={"trunk": 0.95, "thigh": 1.06},
+        cloth_m={"trunk": 0.008, "forearm": 0.010, "shin": 0.012},
+        folds=0.6,
+    ),
+    room=Room(wall=(0.46, 0.48, 0.60)),
+    seed=118,
+    samples=1,
+)
+"""Begins from behind, turns to the front and on to the back, between keyframes spread evenly."""

@@ -94,4 +94,4 @@ MARTIAL = Described(
     moments=4,
     samples=1,
 )
-"""The performer's joints lie one to two centimeters beside the skeleton's; no posture reaches them all."""
+"""The performer's joints lie up to two centimeters beside the skeleton's; no posture reaches them all."""

@@ -2,9 +2,9 @@
 
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import far_leg, stroll
+from ..motions import approach, duck, far_leg, steps, stroll
 from ..surroundings import Room, Thing
-from ..viewpoint import look_from
+from ..viewpoint import look_at, look_from
 from .sizes import SMALL
 
 STROLL = Described(
@@ -63,3 +63,87 @@ FAR_LEG = Described(
     samples=1,
 )
 """Seen exactly from the side; every keyframe is a heel strike, so that all swings happen between them."""
+
+APPROACH = Described(
+    name="approach",
+    perform=performed(approach.plan, actor(1.73, thigh=1.01, upper_arm=1.03, trunk=0.98), 66, 4.0),
+    camera=look_at((0.35, -6.6, 1.25), (-0.02, -1.2, 0.98), 38.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (190, 60, 120),
+            "forearm.L": (50, 150, 180),
+            "forearm.R": (226, 150, 40),
+            "shin.L": (110, 80, 200),
+            "shin.R": (70, 160, 60),
+            "cloth": (60, 56, 60),
+            "skin": (226, 180, 150),
+            "hair": (90, 60, 30),
+        },
+        girths={"thigh": 1.04, "shin": 1.05},
+    ),
+    room=Room(wall=(0.44, 0.50, 0.44)),
+    seed=115,
+    samples=1,
+)
+"""A run toward the camera: feet touch the floor briefly, and the performer more than doubles in size."""
+
+STEPS = Described(
+    name="steps",
+    perform=performed(steps.plan, actor(1.68, shin=0.98, trunk=1.03), 96),
+    camera=look_from(86.0, 4.9, 1.25, (0.0, -0.08, 1.12), 44.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (60, 110, 200),
+            "forearm.L": (220, 90, 40),
+            "forearm.R": (80, 160, 70),
+            "shin.L": (200, 50, 130),
+            "shin.R": (220, 190, 50),
+            "cloth": (70, 60, 56),
+            "skin": (110, 76, 58),
+            "hair": (20, 16, 16),
+        },
+        girths={"trunk": 1.08, "thigh": 1.06},
+        folds=0.7,
+    ),
+    room=Room(
+        wall=(0.58, 0.50, 0.46),
+        things=tuple(
+            Thing((1.0, length, steps.RISE_M), (0.30, 0.31, 0.33), {0: (0.0, middle, height)})
+            for length, middle, height in steps.boxes()
+        ),
+    ),
+    seed=116,
+    samples=1,
+)
+"""Three steps, seen from the side: the near leg hides the far one, and the floor is not level."""
+
+DUCK = Described(
+    name="duck",
+    perform=performed(duck.plan, actor(1.79, forearm=0.97, hip_width=1.05), 88),
+    camera=look_from(22.0, 4.4, 1.35, (0.0, -0.05, 0.92), 38.0, SMALL, tilt_deg=1.5),
+    look=Look(
+        colors={
+            "trunk": (150, 160, 50),
+            "forearm.L": (60, 80, 210),
+            "forearm.R": (210, 60, 50),
+            "shin.L": (170, 70, 180),
+            "shin.R": (40, 160, 150),
+            "cloth": (96, 70, 56),
+            "skin": (190, 138, 108),
+            "hair": (60, 40, 26),
+        },
+        cloth_m={"trunk": 0.011, "forearm": 0.008, "shin": 0.010},
+        folds=0.7,
+    ),
+    room=Room(
+        things=(
+            Thing((0.14, 1.9, 0.14), (0.42, 0.08, 0.06), {0: (-0.15, -0.05, 1.30)}),
+            Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, -0.95, 0.615)}),
+            Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, 0.85, 0.615)}),
+            Thing((0.50, 0.04, 0.34), (0.62, 0.60, 0.20), {0: (0.16, -0.97, 1.18)}),
+        ),
+    ),
+    seed=117,
+    samples=1,
+)
+"""A bar, its post and a sign hide parts of the performer, who ducks under it."""
