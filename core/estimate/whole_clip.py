@@ -34,6 +34,7 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
+from .second_look import find_lost
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
@@ -264,6 +265,10 @@ def _solve_windows(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if contours is not None and album is not None:
+        problem = yield from scaled(
+            find_lost(problem, spans, states, contours, earlier is None), MARKERS_SHARE, MARKERS_SHARE
+        )
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()

@@ -1,0 +1,130 @@
+"""The colors that a performer wears, as unmixing needs them: of each marker, and of all that is no marker."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from .appearance import CELL_VOLUME, LEVELS, UNSEEN_LOG_DENSITY, Appearance
+from .clips.album import Album
+from .segmentation.unmixing import CONTRAST, Surface, contrast, mixed, surface_of
+
+LEARNED_FRAMES = 12
+WHOLE = 0.6
+"""Least quality of regions that a marker's color is learned from, where there are any."""
+INNER = 1.0
+"""Squared distance from a region's center, in its deviations, within which a pixel is clear of the edge."""
+FEWEST_INNER = 3
+LEAST_MASS = 0.07
+"""Least share of a part's pixels that have a color of its own."""
+MOST_COLORS = 4
+"""Of a part."""
+NEAR_CELLS = 2
+"""Cells around a common one that belong to its color."""
+PART_DEVIATION = 5.0
+APART = 12.0
+"""Distance of colors that are two surfaces', in levels of `contrast`."""
+OWN_SHARE = 0.1
+"""Share of a marker's color from which another is a mixture with it: of a sleeve's shaded side, or edge."""
+GRAY = np.array([60.0, 0.0, 0.0])
+"""Middle gray: what markers' edges are mixed with in front of most walls."""
+
+
+def marker_surfaces(
+    album: Album, centroid: Array, second_moment: Array, quality: Array
+) -> list[Surface | None]:
+    """The color of each of M markers in an album; None where it is never seen well enough.
+
+    Args:
+        album: Pictures of the frames.
+        centroid: (F, M, 2) of the markers' regions [px of the clip]; NaN where hidden.
+        second_moment: (F, M, 2, 2).
+        quality: (F, M).
+    """
+    return [
+        _marker_surface(album, centroid[:, m], second_moment[:, m], quality[:, m])
+        for m in range(quality.shape[1])
+    ]
+
+
+def _marker_surface(
+    album: Album, centroid: Array, second_moment: Array, quality: Array
+) -> Surface | None:
+    there = np.array([index in album for index in range(len(quality))])
+    usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
+    if not usual.any():
+        return None
+    good = np.flatnonzero(usual >= min(WHOLE, float(np.median(usual[usual > 0.0]))))
+    chosen = good[np.unique(np.linspace(0, len(good) - 1, LEARNED_FRAMES).round().astype(np.intp))]
+    inside = []
+    for frame in chosen.tolist():
+        picture = album.picture(frame)
+        reach = np.sqrt(np.diagonal(second_moment[frame]).clip(0.0)) / album.factor
+        low, high = (np.floor(centroid[frame] / album.factor + side * reach) for side in (-1.0, 1.0))
+        left, top = np.clip(low, 0, picture.shape[1::-1]).astype(int).tolist()
+        right, bottom = np.clip(high + 1, 0, picture.shape[1::-1]).astype(int).tolist()
+        row, column = np.indices((max(bottom - top, 0), max(right - left, 0)))
+        offset = (np.stack([column + left, row + top], axis=-1) + 0.5) * album.factor - centroid[frame]
+        away = np.einsum("rci,ij,rcj->rc", offset, np.linalg.pinv(second_moment[frame]), offset)
+        pixels = picture[top:bottom, left:right][away < INNER]
+        if len(pixels) >= FEWEST_INNER:
+            inside.append(pixels)
+    return surface_of(np.concatenate(inside)) if inside else None
+
+
+def common_colors(appearance: Appearance) -> Array:
+    """(K, 3) colors, as `contrast` gives them, that the body's parts commonly have, the commonest first."""
+    found = []
+    for log_density in appearance.parts[:-1]:
+        share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
+        share = np.maximum(share, 0.0).reshape(LEVELS, LEVELS, LEVELS) * CELL_VOLUME
+        whole = share.sum()
+        for _ in range(MOST_COLORS):
+            peak = np.unravel_index(int(share.argmax()), share.shape)
+            near = tuple(slice(max(int(at) - NEAR_CELLS, 0), int(at) + NEAR_CELLS + 1) for at in peak)
+            mass = float(share[near].sum())
+            if mass < LEAST_MASS * whole or mass == 0.0:
+                break
+            cells = np.moveaxis(np.indices(share.shape)[(slice(None), *near)], 0, -1)
+            color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
+            found.append((mass / whole, color))
+            share[near] = 0.0
+    found.sort(key=lambda one: -one[0])
+    return contrast(np.array([color for _, color in found]).reshape(-1, 3))
+
+
+def other_surfaces(own: Surface, markers: Sequence[Surface | None], common: Array) -> list[Surface]:
+    """All surfaces of a performer that are not a marker's own, nor mixtures with it.
+
+    Args:
+        own: The marker's color.
+        markers: The markers' colors, its own included.
+        common: (K, 3) as `common_colors` gives them.
+    """
+    others = [one for one in markers if one is not None and not is_alike(own, one)]
+    black = np.zeros(3)
+    for color in common:
+        if any(np.linalg.norm(color - other.color) < APART for other in others):
+            continue
+        blends = [
+            mixed(color[None], end, PART_DEVIATION, own.color, PART_DEVIATION)[0][0]
+            for end in (black, GRAY, *(other.color for other in others))
+        ]
+        ends = [black, GRAY, *(other.color for other in others)]
+        between = [end + share * (own.color - end) for end, share in zip(ends, blends, strict=True)]
+        if not any(
+            share > OWN_SHARE and np.linalg.norm(color - at) < APART
+            for share, at in zip(blends, between, strict=True)
+        ):
+            others.append(Surface(color, PART_DEVIATION))
+    return others
+
+
+def is_alike(one: Surface, other: Surface) -> bool:
+    """Whether two surfaces' colors cannot be told apart."""
+    return bool(np.linalg.norm(one.color - other.color) < 3.0 * max(one.deviation, other.deviation))
+
+
+def in_contrast(appearance: Appearance) -> Array:
+    """(rows, columns, 3) the background's colors as `contrast` gives them; NaN where unknown."""
+    return np.where(appearance.known[..., None], appearance.color @ CONTRAST.T, np.nan)
