@@ -32,6 +32,7 @@ from .window_problem import WindowProblem
 from .windows import Window
 from .terms.regions import FEATURES, ObservedRegions
 
+ROUNDS = 3
 LOST = 0.5
 """Quality of a tracked region below which there is a second look."""
 LEAST_AREA_PX = 6.0
@@ -79,17 +80,24 @@ def find_lost(
         contours: The look of performer and background, and the clip's pictures.
         anew: Whether all frames are looked at.
     """
-    frame = np.concatenate([np.arange(one.keep_first, one.keep_last) for one in spans])
-    posture = Posture.concatenate([s.posture[w.kept] for s, w in zip(states, spans, strict=True)])
-    looking = look_again(problem, posture, frame, contours.appearance, contours.album)
-    found = yield from progress(looking, 0.0, 0.5)
-    changed = (found.observed.area != problem.observed.area) & np.isfinite(found.observed.area)
-    for number, window in enumerate(spans):
-        if changed[window.frames].any():
-            part = WindowProblem(found, window, states[number])
-            yield from progress(part.follow_markers(), 0.5, 1.0)
-            states[number] = part.state.without_cache()
-    return found
+    left = list(range(len(spans)))
+    for number in range(ROUNDS):
+        begun = number / ROUNDS
+        kept = [(spans[one], states[one].posture[spans[one].kept]) for one in left]
+        frame = np.concatenate([np.arange(window.keep_first, window.keep_last) for window, _ in kept])
+        posture = Posture.concatenate([posture for _, posture in kept])
+        looking = look_again(problem, posture, frame, contours.appearance, contours.album)
+        found = yield from progress(looking, begun, begun)
+        changed = (found.observed.area != problem.observed.area) & np.isfinite(found.observed.area)
+        left = [one for one in range(len(spans)) if changed[spans[one].frames].any()]
+        problem = found
+        for one in left:
+            part = WindowProblem(problem, spans[one], states[one])
+            yield from progress(part.follow_markers(), begun, (number + 1) / ROUNDS)
+            states[one] = part.state.without_cache()
+        if not left:
+            break
+    return problem
 
 
 def look_again(
