@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array, BoolArray, Image, IndexArray, chunks
+from ..body.body_volume import body_pieces
+from ..body.limbs import limb_of
 from ..body.posture import Posture
 from ..footage.appearance import Appearance
 from ..footage.clips.album import Album
@@ -114,10 +116,13 @@ def look_again(
     """
     observed = problem.observed
     surfaces = marker_surfaces(album, observed.centroid, observed.second_moment, observed.quality)
-    common, background = common_colors(appearance), in_contrast(appearance)
+    (common, part), background = common_colors(appearance), in_contrast(appearance)
     deviation = appearance.deviation.astype(np.float64)
+    limbs = np.array([limb_of(one.segment) for one in body_pieces(problem.body)])[part]
+    placements = problem.evidence.model.placements
     palettes = [
-        None if own is None else Palette(own, tuple(other_surfaces(own, surfaces, common))) for own in surfaces
+        None if own is None else Palette(own, other_surfaces(own, surfaces, common, limbs == limb_of(worn.segment)))
+        for own, worn in zip(surfaces, placements, strict=True)
     ]
     look = _Look(album, background, deviation, palettes)
     expected = _Expected.of(problem, posture, frame)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, BoolArray, IndexArray
 from .appearance import CELL_VOLUME, LEVELS, UNSEEN_LOG_DENSITY, Appearance
 from .clips.album import Album
 from .segmentation.unmixing import CONTRAST, Surface, contrast, mixed, surface_of
@@ -72,10 +72,14 @@ def _marker_surface(
     return surface_of(np.concatenate(inside)) if inside else None
 
 
-def common_colors(appearance: Appearance) -> Array:
-    """(K, 3) colors, as `contrast` gives them, that the body's parts commonly have, the commonest first."""
-    found = []
-    for log_density in appearance.parts[:-1]:
+def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
+    """Colors that the body's parts commonly have, the commonest first.
+
+    Returns:
+        Colors (K, 3) as `contrast` gives them, and the part (K,) that each was seen on.
+    """
+    found: list[tuple[float, int, Array]] = []
+    for part, log_density in enumerate(appearance.parts[:-1]):
         share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
         share = np.maximum(share, 0.0).reshape(LEVELS, LEVELS, LEVELS) * CELL_VOLUME
         whole = share.sum()
@@ -85,39 +89,39 @@ def common_colors(appearance: Appearance) -> Array:
             mass = float(share[near].sum())
             if mass < LEAST_MASS * whole or mass == 0.0:
                 break
-            cells = np.moveaxis(np.indices(share.shape)[(slice(None), *near)], 0, -1)
+            cells = np.stack(np.indices(share[near].shape), axis=-1) + [one.start for one in near]
             color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
-            found.append((mass / whole, color))
+            found.append((mass / whole, part, color))
             share[near] = 0.0
     found.sort(key=lambda one: -one[0])
-    return contrast(np.array([color for _, color in found]).reshape(-1, 3))
+    color = contrast(np.array([color for *_, color in found]).reshape(-1, 3))
+    return color, np.array([part for _, part, _ in found], dtype=np.intp)
 
 
-def other_surfaces(own: Surface, markers: Sequence[Surface | None], common: Array) -> list[Surface]:
-    """All surfaces of a performer that are not a marker's own, nor mixtures with it.
+def other_surfaces(
+    own: Surface, markers: Sequence[Surface | None], common: Array, beside: BoolArray
+) -> tuple[Surface, ...]:
+    """All surfaces of a performer that are not a marker's own.
 
     Args:
         own: The marker's color.
         markers: The markers' colors, its own included.
-        common: (K, 3) as `common_colors` gives them.
+        common: (K, 3) colors of the body as `common_colors` gives them.
+        beside: (K,) whether they were seen beside the marker, where mixtures with its color are its edges.
     """
     others = [one for one in markers if one is not None and not is_alike(own, one)]
-    black = np.zeros(3)
-    for color in common:
-        if any(np.linalg.norm(color - other.color) < APART for other in others):
+    for color, near in zip(common, beside.tolist(), strict=True):
+        ends = np.array([np.zeros(3), GRAY, *(other.color for other in others)])
+        if (np.linalg.norm(ends[2:] - color, axis=-1) < APART).any():
             continue
-        blends = [
-            mixed(color[None], end, PART_DEVIATION, own.color, PART_DEVIATION)[0][0]
-            for end in (black, GRAY, *(other.color for other in others))
-        ]
-        ends = [black, GRAY, *(other.color for other in others)]
-        between = [end + share * (own.color - end) for end, share in zip(ends, blends, strict=True)]
-        if not any(
-            share > OWN_SHARE and np.linalg.norm(color - at) < APART
-            for share, at in zip(blends, between, strict=True)
-        ):
-            others.append(Surface(color, PART_DEVIATION))
-    return others
+        surface = Surface(color, PART_DEVIATION)
+        if is_alike(own, surface):
+            continue
+        share, _ = mixed(color, ends, PART_DEVIATION, own.color, PART_DEVIATION)
+        away = np.linalg.norm(ends + share[:, None] * (own.color - ends) - color, axis=-1)
+        if not (near and ((share > OWN_SHARE) & (away < APART)).any()):
+            others.append(surface)
+    return tuple(others)
 
 
 def is_alike(one: Surface, other: Surface) -> bool:
