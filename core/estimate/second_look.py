@@ -20,11 +20,11 @@ from ..footage.clips.album import Album
 from ..footage.segmentation.moments import centroid_and_second_moment
 from ..footage.segmentation.unmixing import Palette, Surface, Unmixed, contrast, scaled, traces
 from ..footage.surface_colors import (
+    bare_surfaces,
     common_colors,
     in_contrast,
     is_alike,
     marker_surfaces,
-    other_surfaces,
 )
 from ..progress import Part, scaled as progress
 from .clip_problem import ClipProblem
@@ -119,10 +119,11 @@ def look_again(
     (common, part), background = common_colors(appearance), in_contrast(appearance)
     deviation = appearance.deviation.astype(np.float64)
     limbs = np.array([limb_of(one.segment) for one in body_pieces(problem.body)])[part]
-    placements = problem.evidence.model.placements
+    worn = [limb_of(one.segment) for one in problem.evidence.model.placements]
+    bare = bare_surfaces(common, surfaces, limbs[:, None] == np.array(worn))
     palettes = [
-        None if own is None else Palette(own, other_surfaces(own, surfaces, common, limbs == limb_of(worn.segment)))
-        for own, worn in zip(surfaces, placements, strict=True)
+        None if own is None else Palette(own, tuple(one for one in [*surfaces, *bare] if one and not is_alike(own, one)))
+        for own in surfaces
     ]
     look = _Look(album, background, deviation, palettes)
     expected = _Expected.of(problem, posture, frame)

@@ -98,30 +98,37 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
     return color, np.array([part for _, part, _ in found], dtype=np.intp)
 
 
-def other_surfaces(
-    own: Surface, markers: Sequence[Surface | None], common: Array, beside: BoolArray
-) -> tuple[Surface, ...]:
-    """All surfaces of a performer that are not a marker's own.
+def bare_surfaces(common: Array, markers: Sequence[Surface | None], beside: BoolArray) -> list[Surface]:
+    """The body's surfaces that no marker covers: its common colors without the markers' own and their edges'.
 
     Args:
-        own: The marker's color.
-        markers: The markers' colors, its own included.
         common: (K, 3) colors of the body as `common_colors` gives them.
-        beside: (K,) whether they were seen beside the marker, where mixtures with its color are its edges.
+        markers: The M markers' colors.
+        beside: (K, M) whether a color was seen on the limb that a marker is worn on.
     """
-    others = [one for one in markers if one is not None and not is_alike(own, one)]
-    for color, near in zip(common, beside.tolist(), strict=True):
-        ends = np.array([np.zeros(3), GRAY, *(other.color for other in others)])
-        if (np.linalg.norm(ends[2:] - color, axis=-1) < APART).any():
-            continue
+    worn = [one for one in markers if one is not None]
+    bare: list[Surface] = []
+    for color, near in zip(common, beside, strict=True):
         surface = Surface(color, PART_DEVIATION)
-        if is_alike(own, surface):
+        known = np.array([one.color for one in (*worn, *bare)]).reshape(-1, 3)
+        if any(is_alike(surface, one) for one in worn) or _is_near(color, known):
             continue
-        share, _ = mixed(color, ends, PART_DEVIATION, own.color, PART_DEVIATION)
-        away = np.linalg.norm(ends + share[:, None] * (own.color - ends) - color, axis=-1)
-        if not (near and ((share > OWN_SHARE) & (away < APART)).any()):
-            others.append(surface)
-    return tuple(others)
+        neighbors = [one for one, there in zip(markers, near, strict=True) if there and one is not None]
+        if not any(_is_blend(color, one, known) for one in neighbors):
+            bare.append(surface)
+    return bare
+
+
+def _is_near(color: Array, known: Array) -> bool:
+    return bool((np.linalg.norm(known - color, axis=-1) < APART).any())
+
+
+def _is_blend(color: Array, marker: Surface, known: Array) -> bool:
+    """Whether a color is a mixture of a marker's with black, gray or a known one (K, 3)."""
+    ends = np.concatenate([np.zeros((1, 3)), GRAY[None], known])
+    share, _ = mixed(color, ends, PART_DEVIATION, marker.color, PART_DEVIATION)
+    at = ends + share[:, None] * (marker.color - ends)
+    return bool(((share > OWN_SHARE) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
 
 
 def is_alike(one: Surface, other: Surface) -> bool:

@@ -34,6 +34,8 @@ ODD = 26.0
 BESIDE = 3.0
 NEIGHBORS = np.ones((7, 7), dtype=np.uint8)
 """Where another surface is seen beside a pixel: within blurred edges and halved chroma."""
+RIM = np.ones((5, 5), dtype=np.uint8)
+"""How far a region's rim, of smaller gain, reaches."""
 SMALLEST_DEVIATION = 3.0
 """Of a color, in levels: compression and the smoothing of what lies beside it."""
 MOST_GAIN = 12.0
@@ -136,7 +138,7 @@ class Palette:
         if self.others:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))
             own, cost = np.where(cost_over < cost, over, own), np.minimum(cost_over, cost)
-        left = np.flatnonzero((own > LEAST_SHARE) & (without - cost > 2.0 * LEAST_GAIN))
+        left = np.flatnonzero((own > LEAST_SHARE) & (without > cost))
         without = np.minimum(without[left], self._without(seen[left], behind[left], noise[left]))
         share, gain = np.zeros(odd.shape), np.zeros(odd.shape)
         share.ravel()[where[left]] = own[left]
@@ -234,7 +236,8 @@ def traces(share: Array, gain: Array, origin: tuple[int, int], size: tuple[int, 
         origin: The window's left and top in the image.
         size: The image's columns and rows.
     """
-    shown = (gain > LEAST_GAIN) & (share > LEAST_SHARE)
+    core = ((gain > LEAST_GAIN) & (share > LEAST_SHARE)).astype(np.uint8)
+    shown = (gain > 0.0) & (share > LEAST_SHARE) & (cv2.dilate(core, RIM) > 0)
     count, number, stats, _ = cv2.connectedComponentsWithStats(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
