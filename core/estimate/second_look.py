@@ -10,6 +10,7 @@ from collections.abc import Generator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 from ..arrays import Array, BoolArray, Image, IndexArray, chunks
 from ..body.body_volume import body_pieces
@@ -37,6 +38,8 @@ from .terms.regions import FEATURES, ObservedRegions
 ROUNDS = 3
 LOST = 0.5
 """Quality of a tracked region below which there is a second look."""
+BESIDE = 2
+"""Frames from hidden ones within which what little is tracked of a marker is looked at again."""
 LEAST_AREA_PX = 6.0
 """Least predicted area, in pixels of the album."""
 LEAST_GAIN = 10.0
@@ -170,8 +173,10 @@ class _Expected:
         """(N, M) which are looked for."""
         there = np.array([int(index) in album for index in frame])[:, None]
         large = self.area >= LEAST_AREA_PX * album.factor**2
-        missing = ~(observed.area * MORE > self.area)
-        return np.asarray(there & large & missing & (self.visible > 0.15) & (observed.quality < LOST))
+        missing = ~(observed.area * MORE > self.area) & (observed.quality < LOST)
+        hidden = np.isnan(observed.centroid[..., 0])
+        beside = binary_dilation(hidden, np.ones((2 * BESIDE + 1, 1), dtype=bool))
+        return np.asarray(there & large & missing & beside & (self.visible > 0.15))
 
 
 def _frames_away(seen: BoolArray) -> Array:
