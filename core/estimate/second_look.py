@@ -1,9 +1,9 @@
-"""A second look for markers that were lost, blurred or half hidden, now that it is known where they should be.
+"""A second look for markers that were lost, blurred or half hidden, once it is known where they should be.
 
 Tracking knows colors and paths; by now postures and the look of background and body are known too. Where the
-estimate predicts a marker in sight and none was tracked, or little of it, the album's picture around is unmixed
-(`unmixing`). What is found there must be too much for chance, about as large as predicted and, the farther off
-the prediction, in line with frames beside it.
+estimate predicts a marker in sight and none was tracked, the album's picture around is unmixed (`unmixing`).
+What is found there must be more than chance can make, about as large as predicted and, the farther off the
+prediction, in line with what is seen in the frames beside it.
 """
 
 from collections.abc import Generator
@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from ..arrays import Array, BoolArray, Image, IndexArray, chunks
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import body_pieces
 from ..body.limbs import limb_of
 from ..body.posture import Posture
-from ..footage.appearance import Appearance
-from ..footage.clips.album import Album
+from ..footage.ignored_regions import is_ignored
 from ..footage.segmentation.moments import centroid_and_second_moment
-from ..footage.segmentation.unmixing import Palette, Surface, Unmixed, contrast, scaled, traces
+from ..footage.segmentation.unmixing import Palette, contrast, traces
 from ..footage.surface_colors import (
     bare_surfaces,
     common_colors,
@@ -27,287 +26,300 @@ from ..footage.surface_colors import (
     is_alike,
     marker_surfaces,
 )
-from ..progress import Part, scaled as progress
+from ..progress import Part, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
+from .terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from .window_problem import WindowProblem
 from .windows import Window
-from .terms.regions import FEATURES, ObservedRegions
 
 ROUNDS = 3
+"""Looks at most: what is found moves the body, and with it where the rest is looked for."""
 LOST = 0.5
-"""Quality of a tracked region below which there is a second look."""
+"""Quality below which a tracked region beside lost ones is looked at again."""
 BESIDE = 2
-"""Frames from hidden ones within which what little is tracked of a marker is looked at again."""
+"""Frames from lost ones within which it is: a blur comes and goes."""
+MORE = 1.3
+"""How much larger than such a region a find must be to replace it, and the prediction to look for it."""
 LEAST_AREA_PX = 6.0
 """Least predicted area, in pixels of the album."""
 LEAST_GAIN = 10.0
-"""Log likelihood ratio of a find: a window has e^8 places, and e^2 is for all the frames."""
+"""Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance."""
+LEAST_REST_GAIN = 3.0
+"""Of what an occluder cuts off from a find."""
 LEAST_PEAK = 0.3
-"""Least of a find's largest shares; skin and other colors never learned pass for less."""
+"""Least of a find's largest shares; colors that were never learned pass for less."""
+LEAST_SIZE, MOST_SIZE = 0.15, 2.0
+"""Area of a find relative to the predicted one."""
+SIZE_DEVIATION = 1.2
+"""Standard deviation of its logarithm, as for tracking."""
 NEAR = 1.0
-"""Distance from the prediction, in lengths of the marker, within which a find stands alone."""
-STEP = 1.0
-"""Distance between successive frames: a limb moves less than its own length in one, else it is a smear."""
+"""Distance from the prediction, in the marker's lengths, within which a find stands alone."""
+WIDENING = 0.5
+"""Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
 FARTHEST = 3.0
-LEAST_AREA_SHARE, MOST_AREA_SHARE = 0.15, 2.0
-"""Of the area predicted."""
-AREA_DEVIATION = 1.2
-MORE = 1.3
-"""How much larger than the tracked region a find must be to replace it."""
+STEP = 1.0
+"""Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear."""
+REST_REACH = 0.7
+"""Distance of such a rest from the find, in the marker's lengths."""
 PLACE_STD = 0.5
-"""Standard deviation of a find's centroid beyond a tracked region's, in pixels of the album."""
+"""Standard deviation of a find's features beyond a tracked region's, in pixels of the album."""
 SHUTTER = 0.5
-"""Share of the time between frames in which the shutter is open: usual, between a quarter and all of it."""
-CHUNK_FRAMES = 100
+"""Share of the time between frames in which the shutter is open: between nothing and all of it."""
 
 
-@dataclass(eq=False)
-class _Finds:
-    """What was found of M markers in F frames."""
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What is looked for, and before what: the colors of M markers, of the bare body and the background."""
 
-    moments: Array
-    """(F, M, 6), NaN where nothing."""
-    sure: Array
-    """(F, M) gain a pixel over the largest."""
+    contours: ContourEvidence
+    """The clip's pictures, and the look of performer and background."""
+    palettes: tuple[Palette | None, ...]
+    """(M,) None for a marker whose color was never seen well."""
+    background: Array
+    """(rows, columns, 3) as `contrast` gives it; NaN where unknown."""
+    deviation: Array
+    """(rows, columns) its standard deviation."""
+
+    @classmethod
+    def of(cls, problem: ClipProblem, contours: ContourEvidence) -> "Search":
+        """Learn the colors from the tracked regions and the appearance."""
+        tracked, appearance = problem.tracked, contours.appearance
+        surfaces = marker_surfaces(contours.album, tracked.centroid, tracked.second_moment, tracked.quality)
+        common, part = common_colors(appearance)
+        limbs = np.array([limb_of(piece.segment) for piece in body_pieces(problem.body)])[part]
+        worn = np.array([limb_of(one.segment) for one in problem.evidence.model.placements])
+        bare = bare_surfaces(common, surfaces, limbs[:, None] == worn)
+        every = [one for one in (*surfaces, *bare) if one is not None]
+        palettes = [
+            None if own is None else Palette(own, tuple(one for one in every if not is_alike(own, one)))
+            for own in surfaces
+        ]
+        return cls(
+            contours, tuple(palettes), in_contrast(appearance), appearance.deviation.astype(np.float64)
+        )
+
+    def look(
+        self, problem: ClipProblem, posture: Posture, frame: IndexArray
+    ) -> Generator[float, None, ObservedRegions]:
+        """The observed regions, with those found at a second look; yields the fraction done.
+
+        Args:
+            problem: The clip's problem.
+            posture: Postures of the frames, by what was observed so far.
+            frame: (N,) ascending frames that are looked at; in others nothing changes.
+        """
+        album, observed = self.contours.album, problem.observed[frame]
+        expected = _Expected.of(problem, posture, frame)
+        there = np.array([int(index) in album for index in frame], dtype=np.bool_)[:, None]
+        wanted = there & expected.missed(observed, LEAST_AREA_PX * album.factor**2)
+        wanted &= np.array([palette is not None for palette in self.palettes])
+        moments, certainty = np.full((*wanted.shape, 6), np.nan), np.zeros(wanted.shape)
+        rows = np.flatnonzero(wanted.any(axis=1))
+        for number, row in enumerate(rows.tolist()):
+            picture = album.picture(int(frame[row]))
+            mask = None if problem.ignored is None else problem.ignored.mask(int(frame[row]))
+            for marker in np.flatnonzero(wanted[row]).tolist():
+                window = expected.window(row, marker, album.factor, self.background.shape)
+                if window is None:
+                    continue
+                palette, at = self.palettes[marker], (slice(*window[0]), slice(*window[1]))
+                assert palette is not None
+                seen = palette.unmix(contrast(picture[at]), self.background[at], self.deviation[at])
+                if mask is not None:
+                    step = mask.shape[0] // picture.shape[0]
+                    small = mask[step // 2 :: step, step // 2 :: step]
+                    seen.gain[is_ignored(small)[: picture.shape[0], : picture.shape[1]][at]] = 0.0
+                found = traces(seen, (window[1][0], window[0][0])).scaled(album.factor)
+                best = expected.best(row, marker, found.moments, found.gain, found.peak)
+                if best is not None:
+                    moments[row, marker] = found.moments[best].sum(axis=0)
+                    certainty[row, marker] = found.certainty[best].mean()
+            yield (number + 1) / len(rows)
+        alike = [
+            (one, other)
+            for one, first in enumerate(self.palettes)
+            for other, second in enumerate(self.palettes[:one])
+            if first is not None and second is not None and is_alike(first.surface, second.surface)
+        ]
+        found_regions, kept = expected.held(observed, moments, certainty, alike, album.factor)
+        row, marker = np.nonzero(kept)
+        return problem.observed.replaced((frame[row], marker), found_regions[row, marker])
 
 
 def find_lost(
-    problem: ClipProblem, spans: list[Window], states: list[ClipState], contours: ContourEvidence, anew: bool
+    problem: ClipProblem,
+    spans: list[Window],
+    states: list[ClipState],
+    contours: ContourEvidence,
+    among: BoolArray,
 ) -> Part[ClipProblem]:
-    """The problem with lost markers found in the frames that windows keep; states follow them where any are.
+    """The problem with lost markers observed where they are found; states of windows with finds follow them.
 
     Args:
         problem: The clip's problem.
         spans: The windows.
-        states: The state of each by the markers so far; those of windows with finds are replaced.
+        states: The state of each by the markers so far; those with finds are replaced.
         contours: The look of performer and background, and the clip's pictures.
-        anew: Whether all frames are looked at.
+        among: (F,) frames that are looked at; the others keep what is observed in them.
     """
-    left = list(range(len(spans)))
+    search, left = Search.of(problem, contours), list(range(len(spans)))
     for number in range(ROUNDS):
-        begun = number / ROUNDS
-        kept = [(spans[one], states[one].posture[spans[one].kept]) for one in left]
-        frame = np.concatenate([np.arange(window.keep_first, window.keep_last) for window, _ in kept])
-        posture = Posture.concatenate([posture for _, posture in kept])
-        looking = look_again(problem, posture, frame, contours.appearance, contours.album)
-        found = yield from progress(looking, begun, begun)
-        changed = (found.observed.area != problem.observed.area) & np.isfinite(found.observed.area)
-        left = [one for one in range(len(spans)) if changed[spans[one].frames].any()]
-        problem = found
+        begun, ended = number / ROUNDS, (number + 1) / ROUNDS
+        inside = [np.arange(spans[one].keep_first, spans[one].keep_last) for one in left]
+        kept = [states[one].posture[spans[one].kept][among[at]] for one, at in zip(left, inside, strict=True)]
+        frame = np.concatenate([at[among[at]] for at in inside])
+        if not len(frame):
+            break
+        observed = yield from scaled(search.look(problem, Posture.concatenate(kept), frame), begun, begun)
+        new = (observed.area != problem.observed.area) & np.isfinite(observed.area)
+        problem = replace(problem, observed=observed)
+        left = [one for one in left if new[spans[one].frames].any()]
         for one in left:
             part = WindowProblem(problem, spans[one], states[one])
-            yield from progress(part.follow_markers(), begun, (number + 1) / ROUNDS)
+            yield from scaled(part.follow_markers(), begun, begun)
             states[one] = part.state.without_cache()
+        yield ended
         if not left:
             break
     return problem
 
 
-def look_again(
-    problem: ClipProblem, posture: Posture, frame: IndexArray, appearance: Appearance, album: Album
-) -> Generator[float, None, ClipProblem]:
-    """The problem with lost markers observed where they are found at a second look; yields the fraction done.
-
-    Args:
-        problem: The clip's problem.
-        posture: Postures of the frames, by what was observed so far.
-        frame: (N,) ascending frames that are looked at; others keep what is observed.
-        appearance: The look of performer and background.
-        album: Pictures of the clip.
-    """
-    observed = problem.observed
-    surfaces = marker_surfaces(album, observed.centroid, observed.second_moment, observed.quality)
-    (common, part), background = common_colors(appearance), in_contrast(appearance)
-    deviation = appearance.deviation.astype(np.float64)
-    limbs = np.array([limb_of(one.segment) for one in body_pieces(problem.body)])[part]
-    worn = [limb_of(one.segment) for one in problem.evidence.model.placements]
-    bare = bare_surfaces(common, surfaces, limbs[:, None] == np.array(worn))
-    palettes = [
-        None if own is None else Palette(own, tuple(one for one in [*surfaces, *bare] if one and not is_alike(own, one)))
-        for own in surfaces
-    ]
-    look = _Look(album, background, deviation, palettes)
-    expected = _Expected.of(problem, posture, frame)
-    finds = np.full((*expected.area.shape, 6), np.nan)
-    sure = np.zeros(expected.area.shape)
-    wanted = expected.wanted(observed[frame], album, frame)
-    for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-        for row in chunk[wanted[chunk].any(axis=1)].tolist():
-            picture = album.picture(int(frame[row]))
-            for marker in np.flatnonzero(wanted[row]).tolist():
-                found = look.at(picture, marker, expected, row)
-                if found is not None:
-                    finds[row, marker], sure[row, marker] = found
-        yield (chunk[-1] + 1) / len(frame) if len(chunk) else 1.0
-    return replace(problem, observed=_with_finds(problem, expected, frame, finds, sure, surfaces))
-
-
 @dataclass(frozen=True, eq=False)
 class _Expected:
-    """The prediction for N frames and M markers, in pixels of the clip."""
+    """What is predicted of M markers in N frames, in pixels of the clip."""
 
+    frame: IndexArray
+    """(N,)."""
     centroid: Array
     """(N, M, 2)."""
     area: Array
     """(N, M)."""
+    seen: BoolArray
+    """(N, M) whether enough of it is predicted in sight to be compared."""
     length: Array
-    """(M,) the marker's length where it is not foreshortened."""
+    """(M,) the marker's length where it is hardly foreshortened."""
     reach: Array
-    """(N, M) how far from it is looked."""
-    visible: Array
+    """(N, M) how far around is searched."""
+    sweep: Array
+    """(N, M, 2) motion while the shutter is open."""
 
     @classmethod
     def of(cls, problem: ClipProblem, posture: Posture, frame: IndexArray) -> "_Expected":
         evidence = problem.evidence
         predicted = evidence.model.evaluate(problem.body.pose(posture), frame)
-        longest = np.linalg.eigvalsh(predicted.second_moment)[..., 1]
-        length = np.percentile(np.sqrt(12.0 * longest), 80, axis=0)
-        seen = problem.observed.quality >= LOST
-        away = _frames_away(seen)[frame]
-        reach = length * np.minimum(NEAR + STEP * 0.5 * away, FARTHEST)
-        return cls(predicted.centroid, predicted.area * evidence.area_ratio, length, reach, predicted.visible)
+        longest = np.sqrt(12.0 * np.linalg.eigvalsh(predicted.second_moment)[..., 1])
+        length = np.percentile(longest, 80, axis=0)
+        away = _frames_away(problem.observed.quality >= LOST)[frame]
+        reach = length * np.minimum(NEAR + WIDENING * away, FARTHEST)
+        seen = predicted.visible > problem.noise.least_visible
+        sweep = np.zeros_like(predicted.centroid)
+        if len(frame) > 1:
+            sweep = SHUTTER * np.gradient(predicted.centroid, frame.astype(np.float64), axis=0)
+        area = predicted.area * evidence.area_ratio
+        return cls(frame, predicted.centroid, area, seen, length, reach, sweep)
 
-    def wanted(self, observed: ObservedRegions, album: Album, frame: IndexArray) -> BoolArray:
-        """(N, M) which are looked for."""
-        there = np.array([int(index) in album for index in frame])[:, None]
-        large = self.area >= LEAST_AREA_PX * album.factor**2
-        missing = ~(observed.area * MORE > self.area) & (observed.quality < LOST)
+    def missed(self, observed: ObservedRegions, least_area: float) -> BoolArray:
+        """(N, M) which markers should be seen by more than they are."""
         hidden = np.isnan(observed.centroid[..., 0])
-        beside = binary_dilation(hidden, np.ones((2 * BESIDE + 1, 1), dtype=bool))
-        return np.asarray(there & large & missing & beside & (self.visible > 0.15))
+        beside = binary_dilation(hidden, np.ones((2 * BESIDE + 1, 1), dtype=np.bool_))
+        small = ~(observed.area * MORE > self.area) & (observed.quality < LOST)
+        return np.asarray(self.seen & (self.area >= least_area) & beside & small)
+
+    def window(
+        self, row: int, marker: int, factor: int, shape: tuple[int, ...]
+    ) -> tuple[tuple[int, int], tuple[int, int]] | None:
+        """First and last row, and column, that are searched in a picture of a shape; None without any."""
+        center, reach = self.centroid[row, marker] / factor, self.reach[row, marker] / factor
+        size = np.array([shape[1], shape[0]])
+        left, top = np.clip(np.floor(center - reach), 0, size).astype(np.intp).tolist()
+        right, bottom = np.clip(np.ceil(center + reach) + 1, 0, size).astype(np.intp).tolist()
+        return ((top, bottom), (left, right)) if right > left and bottom > top else None
+
+    def best(self, row: int, marker: int, moments: Array, gain: Array, peak: Array) -> IndexArray | None:
+        """Those of R traces that are the marker: the likeliest, and what is cut off from it; None for none."""
+        centroid, _ = centroid_and_second_moment(moments)
+        away = np.linalg.norm(centroid - self.centroid[row, marker], axis=-1) / self.reach[row, marker]
+        size = moments[:, 0] / self.area[row, marker]
+        likely = (gain >= LEAST_GAIN) & (peak >= LEAST_PEAK) & (away <= 1.0)
+        likely &= (size >= LEAST_SIZE) & (size <= MOST_SIZE)
+        if not likely.any():
+            return None
+        cost = 0.5 * (np.log(np.maximum(size, LEAST_SIZE)) / SIZE_DEVIATION) ** 2 + 0.5 * (2.0 * away) ** 2
+        main = int(np.where(likely, cost, np.inf).argmin())
+        apart = np.linalg.norm(centroid - centroid[main], axis=-1)
+        own = np.flatnonzero((gain >= LEAST_REST_GAIN) & (apart <= REST_REACH * self.length[marker]))
+        return own if size[own].sum() <= MOST_SIZE else np.array([main])
+
+    def held(
+        self,
+        observed: ObservedRegions,
+        moments: Array,
+        certainty: Array,
+        alike: list[tuple[int, int]],
+        factor: int,
+    ) -> tuple[ObservedRegions, BoolArray]:
+        """Finds (N, M), and which of them hold against the frames beside them and against markers alike.
+
+        Args:
+            observed: What is observed already, in the N frames.
+            moments: (N, M, 6) raw moments of the finds, NaN for none.
+            certainty: (N, M).
+            alike: Pairs of markers of one color.
+            factor: Pixels of the clip to one of the album.
+        """
+        centroid, second = centroid_and_second_moment(moments)
+        area, known = moments[..., 0], np.isfinite(observed.centroid[..., 0])
+        kept = np.isfinite(area)
+        same = np.linalg.norm(centroid - observed.centroid, axis=-1) < self.length
+        kept &= ~known | (same & (area > MORE * observed.area))
+        place = np.where(kept[..., None], centroid, observed.centroid)
+        kept &= self._in_line(place)
+        away = np.linalg.norm(centroid - self.centroid, axis=-1)
+        for one, other in alike:
+            shared = np.linalg.norm(place[:, one] - place[:, other], axis=-1) < 0.5 * self.length[one]
+            nearer = away[:, one] < away[:, other]
+            both = kept[:, one] & kept[:, other]
+            kept[shared & ~(both & nearer), one] = False
+            kept[shared & ~(both & ~nearer), other] = False
+        ratio = area / np.maximum(self.area, 1e-6)
+        whole = np.clip(np.minimum(ratio, 1.5 / np.maximum(ratio, 1e-6)), 0.0, 1.0)
+        second = np.where(kept[..., None, None], second, np.eye(2))
+        found = ObservedRegions.found(
+            centroid, second, area, whole * certainty, self._variance(second, PLACE_STD * factor)
+        )
+        return found, kept
+
+    def _in_line(self, place: Array) -> BoolArray:
+        """(N, M) whether a place is near the predicted one, or within a step of that in a frame beside it."""
+        step = np.linalg.norm(np.diff(place, axis=0), axis=-1)
+        step = np.where((np.diff(self.frame) == 1)[:, None] & np.isfinite(step), step, np.inf)
+        nothing = np.full((1, place.shape[1]), np.inf)
+        least = np.minimum(np.concatenate([nothing, step]), np.concatenate([step, nothing]))
+        away = np.linalg.norm(place - self.centroid, axis=-1)
+        return np.asarray((away <= NEAR * self.length) | (least <= STEP * self.length))
+
+    def _variance(self, second: Array, place_std: float) -> Array:
+        """(N, M, 5) variance of finds' features beyond that of tracked regions [px²].
+
+        A region swept by s while the shutter is open gains s sᵀ / 12 in its second moment; for how long it is
+        open is not known, so that all of it is noise.
+        """
+        values, axes = np.linalg.eigh(second)
+        deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+        swept = np.einsum("nmij,nmi->nmj", axes, self.sweep)  # along the region's own axes
+        variance = np.full((*swept.shape[:2], FEATURES), place_std**2)
+        for row, (a, b) in enumerate(((0, 0), (0, 1), (1, 1)), start=2):
+            gained = swept[..., a] * swept[..., b] / 12.0
+            variance[..., row] += (gained / (deviation[..., a] + deviation[..., b])) ** 2
+        return variance
 
 
 def _frames_away(seen: BoolArray) -> Array:
-    """(F, M) number of frames to the nearest one in which a marker is seen, at least one."""
-    index = np.arange(len(seen))[:, None]
-    before = np.maximum.accumulate(np.where(seen, index, -len(seen)), axis=0)
-    after = np.minimum.accumulate(np.where(seen, index, 2 * len(seen))[::-1], axis=0)[::-1]
-    return np.asarray(np.maximum(np.minimum(index - before, after - index), 1), dtype=np.float64)
-
-
-@dataclass(frozen=True, eq=False)
-class _Look:
-    """Looks for markers in pictures."""
-
-    album: Album
-    background: Array
-    deviation: Array
-    palettes: list[Palette | None]
-
-    def at(
-        self, picture: Image, marker: int, expected: _Expected, row: int
-    ) -> tuple[Array, float] | None:
-        """Raw moments (6,) of a marker's trace in pixels of the clip, and how sure it is; None without any."""
-        factor, (rows, columns) = self.album.factor, picture.shape[:2]
-        center, reach = expected.centroid[row, marker] / factor, expected.reach[row, marker] / factor
-        if not (np.isfinite(center).all() and np.isfinite(reach)):
-            return None
-        left, top = np.clip(np.floor(center - reach), 0, (columns, rows)).astype(int).tolist()
-        right, bottom = np.clip(np.ceil(center + reach) + 1, 0, (columns, rows)).astype(int).tolist()
-        if right - left < 3 or bottom - top < 3:
-            return None
-        where = slice(top, bottom), slice(left, right)
-        palette = self.palettes[marker]
-        if palette is None:
-            return None
-        seen = palette.unmix(contrast(picture[where]), self.background[where], self.deviation[where])
-        return self._best(seen, (left, top), expected, row, marker)
-
-    def _best(
-        self, seen: Unmixed, origin: tuple[int, int], expected: _Expected, row: int, marker: int
-    ) -> tuple[Array, float] | None:
-        found = traces(seen.share, seen.gain, origin, self.background.shape[1::-1])
-        moments = scaled(found.moments, self.album.factor)
-        if not len(moments):
-            return None
-        centroid, _ = centroid_and_second_moment(moments)
-        away = np.linalg.norm(centroid - expected.centroid[row, marker], axis=-1)
-        likely = (found.gain >= LEAST_GAIN) & (found.peak >= LEAST_PEAK) & (away <= expected.reach[row, marker])
-        size = moments[:, 0] / expected.area[row, marker]
-        likely &= (size > LEAST_AREA_SHARE) & (size < MOST_AREA_SHARE)
-        if not likely.any():
-            return None
-        cost = 0.5 * (np.log(size) / AREA_DEVIATION) ** 2
-        cost = np.where(likely, cost + 0.5 * (2.0 * away / expected.reach[row, marker]) ** 2, np.inf)
-        main = int(cost.argmin())
-        joined = (found.gain >= 0.3 * LEAST_GAIN) & (
-            np.linalg.norm(centroid - centroid[main], axis=-1) < 0.7 * expected.length[marker]
-        )
-        joined[main] = True
-        total = moments[joined].sum(axis=0)
-        if total[0] > MOST_AREA_SHARE * expected.area[row, marker]:
-            joined[:] = False
-            joined[main] = True
-            total = moments[main]
-        return total, float(found.certainty[main])
-
-
-def _with_finds(
-    problem: ClipProblem,
-    expected: _Expected,
-    frame: IndexArray,
-    moments: Array,
-    sure: Array,
-    surfaces: list[Surface | None],
-) -> ObservedRegions:
-    """The observed regions, with those finds that hold against the frames beside them."""
-    observed = problem.observed
-    centroid, second = centroid_and_second_moment(moments)
-    area = moments[..., 0]
-    tracked = observed[frame]
-    # A larger find of the same region, or of one that was not tracked.
-    place = np.where(np.isnan(centroid), tracked.centroid, centroid)
-    kept = np.isfinite(area)
-    known = np.isfinite(tracked.centroid[..., 0])
-    kept &= ~known | (
-        (area > MORE * np.nan_to_num(tracked.area))
-        & (np.linalg.norm(centroid - tracked.centroid, axis=-1) < expected.length)
-    )
-    kept &= _in_line(expected, frame, centroid, place)
-    for one, surface in enumerate(surfaces):
-        for other in range(one):
-            rival = surfaces[other]
-            if surface is not None and rival is not None and is_alike(surface, rival):
-                _only_one(kept, expected, centroid, place, one, other)
-    ratio = area / np.maximum(expected.area, 1e-6)
-    quality = np.clip(np.minimum(ratio, 1.5 / ratio), 0.0, 1.0) * sure
-    variance = _variance(problem, expected, second, place)
-    row, marker = np.nonzero(kept)
-    found = ObservedRegions.found(*(one[row, marker] for one in (centroid, second, area, quality, variance)))
-    return observed.replaced((frame[row], marker), found)
-
-
-def _in_line(expected: _Expected, frame: IndexArray, centroid: Array, place: Array) -> BoolArray:
-    away = np.linalg.norm(centroid - expected.centroid, axis=-1)
-    fine = away < NEAR * expected.length
-    step = np.full(away.shape, np.inf)
-    apart = np.linalg.norm(np.diff(place, axis=0), axis=-1)
-    apart[np.diff(frame) != 1] = np.inf
-    apart = np.where(np.isnan(apart), np.inf, apart)
-    step[1:] = apart
-    step[:-1] = np.minimum(step[:-1], apart)
-    return np.asarray(fine | (step < STEP * expected.length))
-
-
-def _only_one(
-    kept: BoolArray, expected: _Expected, centroid: Array, place: Array, one: int, other: int
-) -> None:
-    """Of two markers alike, a find that is the other's region is none."""
-    same = np.linalg.norm(place[:, one] - place[:, other], axis=-1) < 0.5 * expected.length[one]
-    away = [np.linalg.norm(centroid[:, m] - expected.centroid[:, m], axis=-1) for m in (one, other)]
-    both = kept[:, one] & kept[:, other]
-    first = same & np.where(both, away[0] > away[1], True)
-    second = same & np.where(both, away[0] <= away[1], True)
-    kept[first, one] = False
-    kept[second, other] = False
-
-
-def _variance(problem: ClipProblem, expected: _Expected, second: Array, place: Array) -> Array:
-    """(N, M, 5) variance of finds beyond that of tracked regions [px²].
-
-    A region that moves by s while the shutter is open gains s sᵀ / 12 in its second moment, of which the
-    shutter's time is not known.
-    """
-    return np.zeros((*second.shape[:2], FEATURES))
+    """(F, M) number of frames to the nearest one in which a marker is seen well, at least one."""
+    count = len(seen)
+    index = np.arange(count)[:, None]
+    before = np.maximum.accumulate(np.where(seen, index, -count), axis=0)
+    after = np.minimum.accumulate(np.where(seen, index, 2 * count)[::-1], axis=0)[::-1]
+    return np.asarray(np.clip(np.minimum(index - before, after - index), 1, count), dtype=np.float64)

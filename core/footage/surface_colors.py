@@ -47,9 +47,7 @@ def marker_surfaces(
     ]
 
 
-def _marker_surface(
-    album: Album, centroid: Array, second_moment: Array, quality: Array
-) -> Surface | None:
+def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality: Array) -> Surface | None:
     there = np.array([index in album for index in range(len(quality))])
     usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
     if not usual.any():
@@ -89,7 +87,7 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
             mass = float(share[near].sum())
             if mass < LEAST_MASS * whole or mass == 0.0:
                 break
-            cells = np.stack(np.indices(share[near].shape), axis=-1) + [one.start for one in near]
+            cells = np.moveaxis(np.indices(share[near].shape), 0, -1) + [one.start for one in near]
             color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
             found.append((mass / whole, part, color))
             share[near] = 0.0

@@ -103,8 +103,10 @@ class ObservedRegions:
         """Regions (...) that were measured otherwise than by tracking."""
         return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
 
-    def __getitem__(self, index: slice | IndexArray | tuple[slice, IndexArray]) -> "ObservedRegions":
-        """Some of the frames, or of the frames and markers."""
+    def __getitem__(
+        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
+    ) -> "ObservedRegions":
+        """Some of the frames, of the frames and markers, or of the pairs of both."""
         return ObservedRegions(
             self.centroid[index],
             self.second_moment[index],

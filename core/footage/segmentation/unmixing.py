@@ -77,8 +77,10 @@ class Traces(NamedTuple):
     """(R,) largest share."""
     certainty: Array
     """(R,) mean gain of a pixel, relative to the largest."""
-    clipped: BoolArray
-    """(R,) whether it touches the image's border."""
+
+    def scaled(self, factor: int) -> "Traces":
+        """The same in pixels that are `factor` times as small."""
+        return self._replace(moments=self.moments * float(factor) ** MOMENT_POWERS)
 
 
 def contrast(pixels: Image | Array) -> Array:
@@ -181,7 +183,11 @@ class Palette:
 
 
 def mixed(
-    pixels: Array, first: Array, first_deviation: Array | float, second: Array, second_deviation: Array | float
+    pixels: Array,
+    first: Array,
+    first_deviation: Array | float,
+    second: Array,
+    second_deviation: Array | float,
 ) -> tuple[Array, Array]:
     """Share of the second color in pixels (..., 3), and -2 log density of all mixtures, (...).
 
@@ -222,42 +228,28 @@ def _lines(
 
 def _dot(one: Array, other: Array) -> Array:
     # Written out: sums over an axis of three are slow.
-    return np.asarray(
-        one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1] + one[..., 2] * other[..., 2]
-    )
+    return np.asarray(one[..., 0] * other[..., 0] + one[..., 1] * other[..., 1] + one[..., 2] * other[..., 2])
 
 
-def traces(share: Array, gain: Array, origin: tuple[int, int], size: tuple[int, int]) -> Traces:
+def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     """Connected regions of a window in which a surface shows.
 
     Args:
-        share: (rows, columns) as in `Unmixed`.
-        gain: (rows, columns).
-        origin: The window's left and top in the image.
-        size: The image's columns and rows.
+        seen: The window's pixels.
+        origin: The window's left and top in the picture.
     """
-    core = ((gain > LEAST_GAIN) & (share > LEAST_SHARE)).astype(np.uint8)
-    shown = (gain > 0.0) & (share > LEAST_SHARE) & (cv2.dilate(core, RIM) > 0)
-    count, number, stats, _ = cv2.connectedComponentsWithStats(shown.astype(np.uint8), connectivity=8)
+    core = ((seen.gain > LEAST_GAIN) & (seen.share > LEAST_SHARE)).astype(np.uint8)
+    shown = (seen.gain > 0.0) & (seen.share > LEAST_SHARE) & (cv2.dilate(core, RIM) > 0)
+    count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
-    weight, x, y = share[row, column], column + origin[0] + 0.5, row + origin[1] + 0.5
-    terms = (weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y)
-    moments = np.stack([np.bincount(owner, term, minlength=count - 1) for term in terms], axis=-1).astype(float)
-    widened = PIXEL_VARIANCE - SMOOTHING_VARIANCE
-    moments[:, 3] += widened * moments[:, 0]
-    moments[:, 5] += widened * moments[:, 0]
-    total = np.bincount(owner, gain[row, column], minlength=count - 1) / ALIKE_PIXELS
+    weight, gain = seen.share[row, column], seen.gain[row, column]
+    x, y = column + origin[0] + 0.5, row + origin[1] + 0.5
+    terms = (weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y, gain)
+    sums = np.array([np.bincount(owner, term, minlength=count - 1) for term in terms], dtype=np.float64)
+    moments = sums[:6].T.copy()
+    moments[:, [3, 5]] += (PIXEL_VARIANCE - SMOOTHING_VARIANCE) * moments[:, :1]
     peak = np.zeros(count - 1)
     np.maximum.at(peak, owner, weight)
-    pixels = np.maximum(stats[1:, cv2.CC_STAT_AREA], 1)
-    certainty = total * ALIKE_PIXELS / pixels / MOST_GAIN
-    left, top, columns, rows, _ = stats[1:].T
-    left, top = left + origin[0], top + origin[1]
-    border = (left <= 0) | (top <= 0) | (left + columns >= size[0]) | (top + rows >= size[1])
-    return Traces(moments, total, peak, certainty, border)
-
-
-def scaled(moments: Array, factor: float) -> Array:
-    """Raw moments (R, 6) in pixels that are `factor` times as small."""
-    return np.asarray(moments * factor**MOMENT_POWERS)
+    pixels = np.bincount(owner, minlength=count - 1)
+    return Traces(moments, sums[6] / ALIKE_PIXELS, peak, sums[6] / (MOST_GAIN * pixels))
