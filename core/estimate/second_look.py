@@ -238,7 +238,7 @@ class _Expected:
         return ((top, bottom), (left, right)) if right > left and bottom > top else None
 
     def best(self, row: int, marker: int, moments: Array, gain: Array, peak: Array) -> IndexArray | None:
-        """Those of R traces that are the marker: the likeliest, and what is cut off from it; None for none."""
+        """Those of R traces that are the marker: the likeliest, and what is cut off from it; else None."""
         centroid, _ = centroid_and_second_moment(moments)
         away = np.linalg.norm(centroid - self.centroid[row, marker], axis=-1) / self.reach[row, marker]
         size = moments[:, 0] / self.area[row, marker]
