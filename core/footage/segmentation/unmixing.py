@@ -29,19 +29,19 @@ CONTRAST = np.array(
 """Turns blue, green, red into luma and chroma of like noise."""
 DARKEST, BRIGHTEST = 0.5, 1.15
 """Range of the light on the background, relative to its usual light: shadows are no surface."""
-ODD = 26.0
-"""-2 log density above which a pixel is no background: four of the smallest deviations."""
+ODD = 6.0
+"""Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
 BESIDE = 3.0
 NEIGHBORS = np.ones((7, 7), dtype=np.uint8)
 """Where another surface is seen beside a pixel: within blurred edges and halved chroma."""
-RIM = np.ones((5, 5), dtype=np.uint8)
-"""How far a region's rim, of smaller gain, reaches."""
+RIM = np.ones((9, 9), dtype=np.uint8)
+"""How far a region's rim reaches, where its color fits no worse than others: near it that is its blur."""
 SMALLEST_DEVIATION = 3.0
 """Of a color, in levels: compression and the smoothing of what lies beside it."""
 MOST_GAIN = 12.0
 """Largest gain of a pixel: models of color are wrong once in so many (e^12)."""
 LEAST_GAIN = 2.0
-LEAST_SHARE = 0.1
+LEAST_SHARE = 0.05
 ALIKE_PIXELS = 9.0
 """Pixels that err together: those of halved chroma, smoothed over one pixel to each side."""
 SMOOTHING_VARIANCE = 0.5
@@ -63,7 +63,8 @@ class Unmixed(NamedTuple):
     share: Array
     """(rows, columns) share of the surface, 0 to 1."""
     gain: Array
-    """(rows, columns) log likelihood with the surface less that without it, from 0 to MOST_GAIN."""
+    """(rows, columns) log likelihood with the surface less that without it, within ±MOST_GAIN;
+    zero where the pixel is clearly something else."""
 
 
 class Traces(NamedTuple):
@@ -125,14 +126,16 @@ class Palette:
         """
         usual, spread = np.nan_to_num(background), np.maximum(deviation, SMALLEST_DEVIATION)
         _, empty = mixed(pixels, DARKEST * usual, spread, BRIGHTEST * usual, spread)
-        odd = np.isfinite(background[..., 0]) & (empty > ODD)
+        lit = ((BRIGHTEST - DARKEST) ** 2) * _dot(usual, usual)
+        usually = 4.0 * np.log(spread) + np.log(np.maximum(lit, spread**2))
+        odd = np.isfinite(background[..., 0]) & (empty > usually + ODD)
         seen, without = pixels[odd], empty[odd]
         away = self._away(seen)
         variance = self._deviations**2
         pure = (away / variance + 3.0 * np.log(variance)).min(axis=1, initial=np.inf)
         without = np.minimum(without, pure)
         # Most pixels of the performer are one surface's alone.
-        mixture = np.flatnonzero(without > ODD)
+        mixture = np.flatnonzero((away / variance).min(axis=1, initial=np.inf) > ODD)
         where = np.flatnonzero(odd)[mixture]
         seen, without = seen[mixture], without[mixture]
         behind, noise = usual.reshape(-1, 3)[where], spread.ravel()[where]
@@ -140,11 +143,11 @@ class Palette:
         if self.others:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))
             own, cost = np.where(cost_over < cost, over, own), np.minimum(cost_over, cost)
-        left = np.flatnonzero((own > LEAST_SHARE) & (without > cost))
+        left = np.flatnonzero((own > LEAST_SHARE) & (without - cost > -2.0 * LEAST_GAIN))
         without = np.minimum(without[left], self._without(seen[left], behind[left], noise[left]))
         share, gain = np.zeros(odd.shape), np.zeros(odd.shape)
         share.ravel()[where[left]] = own[left]
-        gain.ravel()[where[left]] = np.clip(0.5 * (without - cost[left]), 0.0, MOST_GAIN)
+        gain.ravel()[where[left]] = np.clip(0.5 * (without - cost[left]), -MOST_GAIN, MOST_GAIN)
         return Unmixed(share, gain)
 
     def _away(self, seen: Array) -> Array:
@@ -238,8 +241,8 @@ def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
         seen: The window's pixels.
         origin: The window's left and top in the picture.
     """
-    core = ((seen.gain > LEAST_GAIN) & (seen.share > LEAST_SHARE)).astype(np.uint8)
-    shown = (seen.gain > 0.0) & (seen.share > LEAST_SHARE) & (cv2.dilate(core, RIM) > 0)
+    core = (seen.gain > LEAST_GAIN).astype(np.uint8)
+    shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & (cv2.dilate(core, RIM) > 0)
     count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
