@@ -11,13 +11,14 @@ from keymark.core.body.posture import Posture
 from keymark.core.footage.clips.album import Album
 from keymark.core.observation.contours import ContourModel
 from keymark.core.observation.part_map import part_map
+from numpy.typing import ArrayLike
 
 FRAMES = 46
 FRAME = np.arange(FRAMES)
 POSED = np.array([0, 15, 30, 45])
 """The frames of the keyframes."""
 TRUTH = exercise(FRAMES)
-NOTHING: Mapping[int, int] = MappingProxyType({})
+NOTHING: Mapping[str, ArrayLike] = MappingProxyType({})
 NOISE_LEVELS = 3.0
 FINER = 3
 
@@ -35,11 +36,11 @@ def background(rng: np.random.Generator) -> np.ndarray:
 
 
 def photograph(
-    posture: Posture, shake_px: int = 0, seed: int = 3, recolored: Mapping[int, int] = NOTHING
+    posture: Posture, shake_px: int = 0, seed: int = 3, painted: Mapping[str, ArrayLike] = NOTHING
 ) -> Album:
     """An album of F postures.
 
-    `shake_px` moves the background about as a hand-held camera does; `recolored` parts have another's color.
+    `shake_px` moves the background about as a hand-held camera does; `painted` segments have own colors.
     """
     rng = np.random.default_rng(seed)
     frames = posture.batch[0]
@@ -47,8 +48,8 @@ def photograph(
     model = ContourModel.average(BODY, CAMERA)
     parts = model.part_outlines(BODY.pose(posture), np.arange(frames))
     colors = part_colors(len(model.parts.segments))
-    for part, other in recolored.items():
-        colors[part] = colors[other]
+    for segment, color in painted.items():
+        colors[model.parts.segments.index(segment)] = color
     album = Album()
     for frame in range(frames):
         shift = tuple(rng.integers(-shake_px, shake_px + 1, size=2))

@@ -18,7 +18,7 @@ from ..body.limbs import limb_of
 from ..body.posture import Posture
 from ..footage.ignored_regions import is_ignored
 from ..footage.segmentation.moments import centroid_and_second_moment
-from ..footage.segmentation.unmixing import Palette, contrast, traces
+from ..footage.segmentation.unmixing import Palette, Traces, contrast, traces
 from ..footage.surface_colors import (
     bare_surfaces,
     common_colors,
@@ -50,6 +50,8 @@ LEAST_REST_GAIN = 3.0
 """Of what an occluder cuts off from a find."""
 LEAST_PEAK = 0.3
 """Least of a find's largest shares; colors that were never learned pass for less."""
+LEAST_CERTAINTY = 0.25
+"""Least mean gain of its pixels, relative to the largest: what others explain as well tells no place."""
 LEAST_SIZE, MOST_SIZE = 0.15, 2.0
 """Area of a find relative to the predicted one."""
 SIZE_DEVIATION = 1.2
@@ -132,7 +134,7 @@ class Search:
                     small = mask[step // 2 :: step, step // 2 :: step]
                     seen.gain[is_ignored(small)[: picture.shape[0], : picture.shape[1]][at]] = 0.0
                 found = traces(seen, (window[1][0], window[0][0])).scaled(album.factor)
-                best = expected.best(row, marker, found.moments, found.gain, found.peak)
+                best = expected.best(row, marker, found)
                 if best is not None:
                     moments[row, marker] = found.moments[best].sum(axis=0)
                     certainty[row, marker] = found.certainty[best].mean()
@@ -237,13 +239,14 @@ class _Expected:
         right, bottom = np.clip(np.ceil(center + reach) + 1, 0, size).astype(np.intp).tolist()
         return ((top, bottom), (left, right)) if right > left and bottom > top else None
 
-    def best(self, row: int, marker: int, moments: Array, gain: Array, peak: Array) -> IndexArray | None:
+    def best(self, row: int, marker: int, found: Traces) -> IndexArray | None:
         """Those of R traces that are the marker: the likeliest, and what is cut off from it; else None."""
+        moments, gain = found.moments, found.gain
         centroid, _ = centroid_and_second_moment(moments)
         away = np.linalg.norm(centroid - self.centroid[row, marker], axis=-1) / self.reach[row, marker]
         size = moments[:, 0] / self.area[row, marker]
-        likely = (gain >= LEAST_GAIN) & (peak >= LEAST_PEAK) & (away <= 1.0)
-        likely &= (size >= LEAST_SIZE) & (size <= MOST_SIZE)
+        likely = (gain >= LEAST_GAIN) & (found.peak >= LEAST_PEAK) & (away <= 1.0)
+        likely &= (found.certainty >= LEAST_CERTAINTY) & (size >= LEAST_SIZE) & (size <= MOST_SIZE)
         if not likely.any():
             return None
         cost = 0.5 * (np.log(np.maximum(size, LEAST_SIZE)) / SIZE_DEVIATION) ** 2 + 0.5 * (2.0 * away) ** 2

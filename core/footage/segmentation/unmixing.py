@@ -77,7 +77,7 @@ class Traces(NamedTuple):
     peak: Array
     """(R,) largest share."""
     certainty: Array
-    """(R,) mean gain of a pixel, relative to the largest."""
+    """(R,) mean gain where it shows, relative to the largest."""
 
     def scaled(self, factor: int) -> "Traces":
         """The same in pixels that are `factor` times as small."""
@@ -254,5 +254,5 @@ def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     moments[:, [3, 5]] += (PIXEL_VARIANCE - SMOOTHING_VARIANCE) * moments[:, :1]
     peak = np.zeros(count - 1)
     np.maximum.at(peak, owner, weight)
-    pixels = np.bincount(owner, minlength=count - 1)
-    return Traces(moments, sums[6] / ALIKE_PIXELS, peak, sums[6] / (MOST_GAIN * pixels))
+    sure = np.bincount(owner, weight * np.maximum(gain, 0.0), minlength=count - 1)
+    return Traces(moments, sums[6] / ALIKE_PIXELS, peak, sure / (MOST_GAIN * sums[0]))
