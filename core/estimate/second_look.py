@@ -61,6 +61,9 @@ NEAR = 1.0
 WIDENING = 0.5
 """Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
 FARTHEST = 3.0
+MOVING = 0.3
+"""Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
+what is nearer is taken in by the steps that follow with contours."""
 STEP = 1.0
 """Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear."""
 REST_REACH = 0.7
@@ -104,13 +107,16 @@ class Search:
 
     def look(
         self, problem: ClipProblem, posture: Posture, frame: IndexArray
-    ) -> Generator[float, None, ObservedRegions]:
-        """The observed regions, with those found at a second look; yields the fraction done.
+    ) -> Generator[float, None, tuple[ObservedRegions, IndexArray]]:
+        """Look for what is missed; yields the fraction done.
 
         Args:
             problem: The clip's problem.
             posture: Postures of the frames, by what was observed so far.
             frame: (N,) ascending frames that are looked at; in others nothing changes.
+
+        Returns:
+            The observed regions with those found, and the frames of finds that are far from the prediction.
         """
         album, observed = self.contours.album, problem.observed[frame]
         expected = _Expected.of(problem, posture, frame)
@@ -147,7 +153,9 @@ class Search:
         ]
         found_regions, kept = expected.held(observed, moments, certainty, alike, album.factor)
         row, marker = np.nonzero(kept)
-        return problem.observed.replaced((frame[row], marker), found_regions[row, marker])
+        off = np.linalg.norm(found_regions.centroid - expected.centroid, axis=-1) > MOVING * expected.length
+        far = frame[(kept & off).any(axis=1)]
+        return problem.observed.replaced((frame[row], marker), found_regions[row, marker]), far
 
 
 def find_lost(
@@ -157,12 +165,12 @@ def find_lost(
     contours: ContourEvidence,
     among: BoolArray,
 ) -> Part[ClipProblem]:
-    """The problem with lost markers observed where they are found; states of windows with finds follow them.
+    """The problem with lost markers observed where they are found; states follow those that are far off.
 
     Args:
         problem: The clip's problem.
         spans: The windows.
-        states: The state of each by the markers so far; those with finds are replaced.
+        states: The state of each by the markers so far; those with far finds are replaced.
         contours: The look of performer and background, and the clip's pictures.
         among: (F,) frames that are looked at; the others keep what is observed in them.
     """
@@ -174,10 +182,10 @@ def find_lost(
         frame = np.concatenate([at[among[at]] for at in inside])
         if not len(frame):
             break
-        observed = yield from scaled(search.look(problem, Posture.concatenate(kept), frame), begun, begun)
-        new = (observed.area != problem.observed.area) & np.isfinite(observed.area)
+        looking = search.look(problem, Posture.concatenate(kept), frame)
+        observed, far = yield from scaled(looking, begun, begun)
         problem = replace(problem, observed=observed)
-        left = [one for one in left if new[spans[one].frames].any()]
+        left = [one for one in left if ((far >= spans[one].first) & (far < spans[one].last)).any()]
         for one in left:
             part = WindowProblem(problem, spans[one], states[one])
             yield from scaled(part.follow_markers(), begun, begun)
