@@ -60,7 +60,8 @@ NEAR = 1.0
 """Distance from the prediction, in the marker's lengths, within which a find stands alone."""
 WIDENING = 0.5
 """Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
-FARTHEST = 3.0
+FARTHEST = 5.0
+"""Largest such distance: that from one side of the body to the other, two arms long."""
 MOVING = 0.3
 """Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
 what is nearer is taken in by the steps that follow with contours."""
