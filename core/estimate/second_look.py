@@ -62,6 +62,8 @@ WIDENING = 0.5
 """Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
 FARTHEST = 5.0
 """Largest such distance: that from one side of the body to the other, two arms long."""
+HALF = 0.6
+"""Half of the marker's length, and its blur."""
 MOVING = 0.3
 """Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
 what is nearer is taken in by the steps that follow with contours."""
@@ -242,7 +244,9 @@ class _Expected:
         self, row: int, marker: int, factor: int, shape: tuple[int, ...]
     ) -> tuple[tuple[int, int], tuple[int, int]] | None:
         """First and last row, and column, that are searched in a picture of a shape; None without any."""
-        center, reach = self.centroid[row, marker] / factor, self.reach[row, marker] / factor
+        # So wide that what has its center within reach lies in it as a whole.
+        reach = (self.reach[row, marker] + HALF * self.length[marker]) / factor
+        center = self.centroid[row, marker] / factor
         size = np.array([shape[1], shape[0]])
         left, top = np.clip(np.floor(center - reach), 0, size).astype(np.intp).tolist()
         right, bottom = np.clip(np.ceil(center + reach) + 1, 0, size).astype(np.intp).tolist()
