@@ -12,19 +12,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import binary_dilation
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
 from ..body.limbs import limb_of
 from ..body.posture import Posture
 from ..footage.ignored_regions import is_ignored
 from ..footage.segmentation.moments import centroid_and_second_moment
-from ..footage.segmentation.unmixing import Palette, Traces, contrast, traces
+from ..footage.segmentation.unmixing import Palette, Traces, traces
 from ..footage.surface_colors import (
     bare_surfaces,
     common_colors,
-    in_contrast,
     is_alike,
     marker_surfaces,
+    usual_background,
 )
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
@@ -85,9 +85,9 @@ class Search:
     """The clip's pictures, and the look of performer and background."""
     palettes: tuple[Palette | None, ...]
     """(M,) None for a marker whose color was never seen well."""
-    background: Array
-    """(rows, columns, 3) as `contrast` gives it; NaN where unknown."""
-    deviation: Array
+    background: SingleArray
+    """(rows, columns, 3) blue, green, red; NaN where unknown."""
+    deviation: SingleArray
     """(rows, columns) its standard deviation."""
 
     @classmethod
@@ -105,7 +105,7 @@ class Search:
             for own in surfaces
         ]
         return cls(
-            contours, tuple(palettes), in_contrast(appearance), appearance.deviation.astype(np.float64)
+            contours, tuple(palettes), usual_background(appearance), appearance.deviation.astype(np.float64)
         )
 
     def look(
@@ -137,7 +137,7 @@ class Search:
                     continue
                 palette, at = self.palettes[marker], (slice(*window[0]), slice(*window[1]))
                 assert palette is not None
-                seen = palette.unmix(contrast(picture[at]), self.background[at], self.deviation[at])
+                seen = palette.unmix(picture[at], self.background[at], self.deviation[at])
                 if mask is not None:
                     step = mask.shape[0] // picture.shape[0]
                     small = mask[step // 2 :: step, step // 2 :: step]

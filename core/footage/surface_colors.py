@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from .appearance import CELL_VOLUME, LEVELS, UNSEEN_LOG_DENSITY, Appearance
 from .clips.album import Album
-from .segmentation.unmixing import CONTRAST, Surface, contrast, mixed, surface_of
+from .segmentation.unmixing import Surface, contrast, mixed, surface_of
 
-LEARNED_FRAMES = 12
+LEARNED_FRAMES = 8
 WHOLE = 0.6
 """Least quality of regions that a marker's color is learned from, where there are any."""
 INNER = 1.0
@@ -134,6 +134,7 @@ def is_alike(one: Surface, other: Surface) -> bool:
     return bool(np.linalg.norm(one.color - other.color) < 3.0 * max(one.deviation, other.deviation))
 
 
-def in_contrast(appearance: Appearance) -> Array:
-    """(rows, columns, 3) the background's colors as `contrast` gives them; NaN where unknown."""
-    return np.where(appearance.known[..., None], appearance.color @ CONTRAST.T, np.nan)
+def usual_background(appearance: Appearance) -> SingleArray:
+    """(rows, columns, 3) the background's colors; NaN where unknown."""
+    known = appearance.known[..., None]
+    return np.where(known, appearance.color, np.nan).astype(np.float32)

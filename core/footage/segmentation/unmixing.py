@@ -13,7 +13,7 @@ from typing import NamedTuple
 import cv2
 import numpy as np
 
-from ...arrays import Array, BoolArray, Image, IndexArray
+from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
 from ..colors.color_space import BLUE_SCALE, LUMA_BGR, RED_SCALE
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 
@@ -29,6 +29,8 @@ CONTRAST = np.array(
 """Turns blue, green, red into luma and chroma of like noise."""
 DARKEST, BRIGHTEST = 0.5, 1.15
 """Range of the light on the background, relative to its usual light: shadows are no surface."""
+UNCHANGED = 5.0
+"""Difference of levels up to which no pixel can be odd: a fast bound."""
 ODD = 6.0
 """Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
 BESIDE = 3.0
@@ -114,22 +116,25 @@ class Palette:
         """(K,)."""
         return np.array([other.deviation for other in self.others])
 
-    def unmix(self, pixels: Array, background: Array, deviation: Array) -> Unmixed:
+    def unmix(self, picture: Image, background: SingleArray, deviation: SingleArray) -> Unmixed:
         """The share of the surface in the pixels of a window.
 
         It may lie before the background, and before another surface where that one is seen beside it.
 
         Args:
-            pixels: (rows, columns, 3) as `contrast` gives them, like all colors here.
-            background: (rows, columns, 3) usual color of each pixel; NaN where unknown, which tells nothing.
-            deviation: (rows, columns) the background's.
+            picture: (rows, columns, 3) blue, green, red.
+            background: (rows, columns, 3) its usual colors; NaN where unknown, which tells nothing.
+            deviation: (rows, columns) theirs.
         """
-        usual, spread = np.nan_to_num(background), np.maximum(deviation, SMALLEST_DEVIATION)
-        _, empty = mixed(pixels, DARKEST * usual, spread, BRIGHTEST * usual, spread)
-        lit = ((BRIGHTEST - DARKEST) ** 2) * _dot(usual, usual)
-        usually = 4.0 * np.log(spread) + np.log(np.maximum(lit, spread**2))
-        odd = np.isfinite(background[..., 0]) & (empty > usually + ODD)
-        seen, without = pixels[odd], empty[odd]
+        differs = np.abs(picture - background) > UNCHANGED
+        odd = differs[..., 0] | differs[..., 1] | differs[..., 2]
+        seen, usual = contrast(picture[odd]), contrast(background[odd])
+        spread = np.maximum(deviation[odd].astype(np.float64), SMALLEST_DEVIATION)
+        _, empty = mixed(seen, DARKEST * usual, spread, BRIGHTEST * usual, spread)
+        lit = (BRIGHTEST - DARKEST) ** 2 * _dot(usual, usual)
+        unlit = empty > 4.0 * np.log(spread) + np.log(np.maximum(lit, spread**2)) + ODD
+        odd[odd] = unlit
+        seen, usual, spread, without = seen[unlit], usual[unlit], spread[unlit], empty[unlit]
         away = self._away(seen)
         variance = self._deviations**2
         pure = (away / variance + 3.0 * np.log(variance)).min(axis=1, initial=np.inf)
@@ -138,7 +143,7 @@ class Palette:
         mixture = np.flatnonzero((away / variance).min(axis=1, initial=np.inf) > ODD)
         where = np.flatnonzero(odd)[mixture]
         seen, without = seen[mixture], without[mixture]
-        behind, noise = usual.reshape(-1, 3)[where], spread.ravel()[where]
+        behind, noise = usual[mixture], spread[mixture]
         own, cost = mixed(seen, behind, noise, self.surface.color, self.surface.deviation)
         if self.others:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))

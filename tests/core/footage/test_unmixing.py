@@ -18,6 +18,7 @@ WALL = np.array([150.0, 165.0, 160.0])
 RED, GREEN, SKIN = (np.array(color, dtype=float) for color in ((45, 40, 215), (60, 140, 50), (140, 165, 215)))
 SIZE, NOISE, FINER = 60, 2.0, 4
 SIGNIFICANT = 10.0
+DEVIATION = np.full((SIZE, SIZE), NOISE, dtype=np.float32)
 
 
 def surface(color: np.ndarray) -> Surface:
@@ -44,8 +45,7 @@ def look(image: np.ndarray, seed: int = 0, palette: Palette = PALETTE) -> Traces
     """What is found in a noisy, smoothed picture before the known wall."""
     noisy = image + np.random.default_rng(seed).normal(0.0, NOISE, image.shape)
     seen = cv2.GaussianBlur(np.clip(np.round(noisy), 0, 255).astype(np.uint8), (3, 3), 0.0)
-    deviation = np.full((SIZE, SIZE), NOISE)
-    return traces(palette.unmix(contrast(seen), contrast(wall()), deviation), (0, 0))
+    return traces(palette.unmix(seen, wall().astype(np.float32), DEVIATION), (0, 0))
 
 
 def swept(first: float, last: float, color: np.ndarray) -> np.ndarray:
@@ -109,9 +109,10 @@ def test_a_sliver_before_another_surface_is_found() -> None:
 
 def test_an_unknown_background_tells_nothing() -> None:
     """Where it was never seen free, not even a sharp bar is found."""
-    seen = contrast(bar(26.0, RED, wall()))
-    nothing = np.full_like(seen, np.nan)
-    assert not PALETTE.unmix(seen, nothing, np.full((SIZE, SIZE), NOISE)).gain.any()
+    seen = bar(26.0, RED, wall()).astype(np.uint8)
+    assert PALETTE.unmix(seen, wall().astype(np.float32), DEVIATION).gain.any()
+    nothing = np.full(seen.shape, np.nan, dtype=np.float32)
+    assert not PALETTE.unmix(seen, nothing, DEVIATION).gain.any()
 
 
 def test_a_surface_is_the_usual_color_of_its_pixels() -> None:
