@@ -62,6 +62,8 @@ WIDENING = 0.5
 """Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
 FARTHEST = 5.0
 """Largest such distance: that from one side of the body to the other, two arms long."""
+STRETCHED = 80.0
+"""Percentile of its predicted lengths that is a marker's own, hardly foreshortened."""
 HALF = 0.6
 """Half of the marker's length, and its blur."""
 MOVING = 0.3
@@ -223,7 +225,7 @@ class _Expected:
         evidence = problem.evidence
         predicted = evidence.model.evaluate(problem.body.pose(posture), frame)
         longest = np.sqrt(12.0 * np.linalg.eigvalsh(predicted.second_moment)[..., 1])
-        length = np.percentile(longest, 80, axis=0)
+        length = np.percentile(longest, STRETCHED, axis=0)
         away = _frames_away(problem.observed.quality >= LOST)[frame]
         reach = length * np.minimum(NEAR + WIDENING * away, FARTHEST)
         seen = predicted.visible > problem.noise.least_visible
