@@ -179,6 +179,8 @@ def find_lost(
         contours: The look of performer and background, and the clip's pictures.
         among: (F,) frames that are looked at; the others keep what is observed in them.
     """
+    if not spans or not among.any():
+        return problem
     search, left = Search.of(problem, contours), list(range(len(spans)))
     for number in range(ROUNDS):
         begun, ended = number / ROUNDS, (number + 1) / ROUNDS

@@ -156,6 +156,13 @@ def test_finds_are_kept_where_nothing_changed() -> None:
     np.testing.assert_array_equal(after.tracked.area, before.tracked.area)
 
 
+def test_nothing_changed_looks_at_nothing() -> None:
+    """The same estimate again is the earlier one, finds included."""
+    again = estimate(pictures(), earlier=found())
+    np.testing.assert_array_equal(again.problem.observed.area, found().problem.observed.area)
+    np.testing.assert_array_equal(again.posture.translation, found().posture.translation)
+
+
 def test_a_result_shows_what_was_found() -> None:
     """The tracks of a result hold the finds, with their quality; what was tracked stays."""
     tracks, observed = tracked(), found().problem.observed
