@@ -8,6 +8,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
+from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
@@ -31,6 +32,11 @@ class ClipProblem:
     keyframes: IndexArray
     """(K,) frames of the keyframes."""
     observed: ObservedRegions
+    """The markers' regions: as tracked, and those found at a second look."""
+    tracked: ObservedRegions
+    """As tracked."""
+    ignored: IgnoredPixels | None
+    """What is never a marker, in all frames; None for nothing."""
     width_px: Array
     """(F, M) half-width of each marker's limb [px]."""
     step_s: Array

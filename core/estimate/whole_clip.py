@@ -17,6 +17,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
+from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..observation.keypoints import KeypointModel
@@ -34,10 +35,18 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
+from .second_look import find_lost
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
+from .warm_start import (
+    blend_weight,
+    changed_frames,
+    revised_windows,
+    same_setup,
+    with_earlier_evidence,
+    with_earlier_finds,
+)
 from .window_problem import WindowProblem
 from .windows import Window, windows
 
@@ -99,6 +108,7 @@ def estimate_whole_clip(
     match_scale: Array | None = None,
     keypoints: Keypoints | None = None,
     lower_ankle: Array | None = None,
+    ignored: IgnoredPixels | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -118,6 +128,7 @@ def estimate_whole_clip(
         keypoints: The performer's keypoints in the F frames; None for none.
         lower_ankle: (F,) height of the lower ankle where all keyframes are matched [m]; by their soles where
             None.
+        ignored: What of the pictures is never a marker; None for nothing.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
@@ -169,6 +180,8 @@ def estimate_whole_clip(
         prior,
         index,
         observed,
+        observed,
+        ignored,
         width_px,
         step_s,
         options.regions,
@@ -216,19 +229,22 @@ def _solve(
         same = with_earlier_evidence(earlier.problem, problem)
         if same is not None:
             changed = changed_frames(earlier.problem, same)
+            same = with_earlier_finds(earlier.problem, same, changed)
             spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, album, earlier)
+            result = yield from _solve_windows(same, spans, album, changed, earlier)
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
             return replace(result, posture=earlier.posture.plus(step))
     every = list(windows(problem.frames, length, margin))
-    return (yield from _solve_windows(problem, every, album, None, contours))
+    among = np.ones(problem.frames, dtype=bool)
+    return (yield from _solve_windows(problem, every, album, among, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
     album: Album | None,
+    among: BoolArray,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
 ) -> Part[WholeClipResult]:
@@ -238,6 +254,7 @@ def _solve_windows(
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
         album: Pictures of all frames.
+        among: (F,) frames in which lost markers are looked for.
         earlier: An estimate of all other frames.
         contours: What was learned of them already; None to learn it once the markers are followed.
     """
@@ -264,6 +281,9 @@ def _solve_windows(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if contours is not None and len(problem.evidence.model.placements):
+        looking = find_lost(problem, spans, states, contours, among)
+        problem = yield from scaled(looking, MARKERS_SHARE, MARKERS_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()

@@ -18,6 +18,7 @@ from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
 from .occlusion import part_outlines, visible_share
+from .picture_edge import edge_cut, near_edge
 from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
@@ -179,6 +180,10 @@ class RegionModel:
         scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
         parts = part_outlines(self._parts, pose, self.camera, frame)
         seen = scale * visible_share(pixels, depth, parts, self._own)
+        cell, size = samples.area * scale, self.camera.resolution
+        edge = np.nonzero(near_edge(pixels, cell, size))
+        cut = edge_cut(pixels[edge], cell[edge], size)
+        seen[edge] *= cut.share
         visible_area = self._per_marker((samples.area * seen).sum(2))
         whole_area = self._per_marker((samples.area * scale).sum(2))
         visible = visible_area / np.maximum(whole_area, TINY)
@@ -197,7 +202,10 @@ class RegionModel:
         prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
-        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment))
+        cutting = edge, cut.slope
+        return replace(
+            prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment, cutting)
+        )
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
@@ -216,11 +224,13 @@ class RegionModel:
         weighted: Array,
         centered: Array,
         moment: Array,
+        cutting: tuple[tuple[IndexArray, ...], Array],
     ) -> dict[str, Array]:
         """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
         `factor` (F, Q, S) turns a sample's area into its weight; `weighted` (F, Q, 3, S) holds the weights,
-        alone and times `centered`.
+        alone and times `centered`; `cutting` are the pieces at the picture's edge, and how fast it cuts their
+        samples.
         """
         count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
@@ -228,15 +238,20 @@ class RegionModel:
         summed = (weighted @ np.swapaxes(flat, -1, -2)).reshape(*weighted.shape[:3], 2, 6)
         mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
-        rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
-        # Rotation also changes the share of the silhouette that each sample stands for.
         middle = moment[:, self._marker_of]
-        effect = np.empty((*rows.shape[:3], count))
+        moving = np.concatenate([summed[:, :, 0], second], axis=2)  # (F, Q, 5, 6)
+        effect = np.empty((*moving.shape[:3], count))
         effect[:, :, :2] = centered
         for row, (a, b) in enumerate(MOMENTS, start=2):
             np.multiply(centered[:, :, a], centered[:, :, b], out=effect[:, :, row])
             effect[:, :, row] -= middle[..., a, b, None]
         effect *= factor[:, :, None]
+        # What moves out of the picture is seen no more.
+        edge, slope = cutting
+        lost = effect[edge] * samples.area[edge][:, None]  # (E, 5, S)
+        moving[edge] += np.einsum("eks,esa,esab->ekb", lost, slope, rates[edge], optimize=True)
+        rows = self._to_world(moving, frame)
+        # Rotation also changes the share of the silhouette that each sample stands for.
         rows[..., 3:] += effect @ samples.area_rate
         moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])
