@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray, Image, IndexArray, SingleArray
 from ..body.posture import Posture
@@ -45,7 +46,7 @@ STATIC_DEVIATION = 8.3
 neither of two surfaces of the same color is preferred."""
 UNLIKE = -16.0
 """Log density [per level³] of colors that the background at a pixel does not have: some 3.7 deviations off."""
-ALIKE = 2.0
+ALIKE = 1.0
 """Log odds for the background that gray trousers before a gray floor have as well."""
 OTHER_PART = 2.0
 """Log odds against another part of the body at a pixel than the predicted one."""
@@ -56,6 +57,10 @@ REACH_M = 0.2
 """Distance at which a body that is not where it is predicted is seen instead of it."""
 SMALLEST_AREA = 16
 """Pixels of the smallest occluder."""
+GROWTH_M = 0.1
+"""Distance over which an occluder is believed to go on where its color does, and no body is seen before it."""
+SAME_COLOR = 16.0
+"""Difference of colors [levels in any channel] within an occluder's surface."""
 SMOOTH_PX = 1.0
 GAP_PX = 2
 """Gaps of twice as many pixels in an occluder are closed."""
@@ -120,7 +125,9 @@ def learn_occluders(
         odds[bin_of[look.part[look.inside]], look.pixel[look.inside]] += look.weight * says
         hidden.append(look.pixel[look.inside][says > 1.0])
         yield
-    found = _hidden_from(odds.reshape(-1, *shape), hidden, weight, first, width)
+    color = np.where(appearance.known[..., None], appearance.color, np.nan)
+    growth = round(GROWTH_M * scale)
+    found = _hidden_from(odds.reshape(-1, *shape), hidden, weight, first, width, color, growth)
     return StaticOccluders(found, album.factor) if np.isfinite(found).any() else None
 
 
@@ -196,7 +203,13 @@ def _around(mask: BoolArray, pixel: IndexArray, shape: tuple[int, ...], reach: i
 
 
 def _hidden_from(
-    evidence: SingleArray, shown: list[IndexArray], weight: Array, first: float, width: float
+    evidence: SingleArray,
+    shown: list[IndexArray],
+    weight: Array,
+    first: float,
+    width: float,
+    color: Array,
+    growth: int,
 ) -> SingleArray:
     """(rows, columns) depth from which on a body is hidden [m], by the evidence in each bin of depth."""
     smooth = np.stack([cv2.GaussianBlur(one, (0, 0), SMOOTH_PX) for one in evidence])
@@ -207,12 +220,27 @@ def _hidden_from(
     looks = np.zeros(count)
     for one, pixels in zip(weight, shown, strict=True):
         looks[np.bincount(parts.ravel()[pixels], minlength=count) >= SHOWN_PX] += one
+    kept = (stats[:, cv2.CC_STAT_AREA] >= SMALLEST_AREA) & (looks >= LEAST_LOOKS)
+    kept[0] = False
+    sure = kept[parts]
     hidden = np.full(mask.shape, np.inf, dtype=np.float32)
-    for part in range(1, count):
-        if stats[part, cv2.CC_STAT_AREA] < SMALLEST_AREA or looks[part] < LEAST_LOOKS:
-            continue
+    if not sure.any():
+        return hidden
+    nearest = np.where(likely, first + (best - 1) * width, np.nan)
+    for part in np.flatnonzero(kept):
         here = parts == part
-        nearest = first + width * best[here & likely]
-        hidden[here] = float(np.median(nearest)) - width
-        hidden[here & likely] = nearest - width
-    return hidden
+        hidden[here] = np.nanmedian(nearest[here])
+    hidden[sure & likely] = nearest[sure & likely]
+    return _grown(hidden, color, odds[0] > -LEAST_EVIDENCE, growth)
+
+
+def _grown(hidden: SingleArray, color: Array, allowed: BoolArray, growth: int) -> SingleArray:
+    """The map grown over pixels of the same color that no body was seen before."""
+    sure = np.isfinite(hidden)
+    row, column = distance_transform_edt(~sure, return_distances=False, return_indices=True)
+    difference = np.abs(color - color[row, column]).max(axis=-1)
+    alike = sure | (allowed & (difference < SAME_COLOR))  # NaN is not
+    mask = sure.astype(np.uint8)
+    for _ in range(growth):
+        mask = cv2.dilate(mask, _disc(1)) & alike.astype(np.uint8)
+    return np.where(mask > 0, hidden[row, column], np.inf).astype(np.float32)
