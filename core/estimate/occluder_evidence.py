@@ -240,7 +240,7 @@ def _grown(hidden: SingleArray, color: Array, allowed: BoolArray, growth: int) -
     row, column = distance_transform_edt(~sure, return_distances=False, return_indices=True)
     difference = np.abs(color - color[row, column]).max(axis=-1)
     alike = sure | (allowed & (difference < SAME_COLOR))  # NaN is not
-    mask = sure.astype(np.uint8)
+    mask = cv2.morphologyEx(sure.astype(np.uint8), cv2.MORPH_OPEN, _disc(GAP_PX))
     for _ in range(growth):
         mask = cv2.dilate(mask, _disc(1)) & alike.astype(np.uint8)
-    return np.where(mask > 0, hidden[row, column], np.inf).astype(np.float32)
+    return np.where((mask > 0) | sure, hidden[row, column], np.inf).astype(np.float32)

@@ -33,6 +33,7 @@ from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
+from .occluder_evidence import learn_occluders
 from .match_error import depth_std_m
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
@@ -264,6 +265,18 @@ def _solve_windows(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if earlier is None and contours is not None and contours.along is None:
+        kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+        learned = learn_occluders(
+            contours, Posture.concatenate(kept), problem.keyframes, problem.step_s
+        )
+        occluders = yield from scaled(learned, MARKERS_SHARE, MARKERS_SHARE)
+        if occluders is not None:
+            problem, contours = problem.before(occluders), contours.before(occluders)
+            for i, window in enumerate(spans):
+                part = WindowProblem(problem, window, states[i])
+                yield from scaled(part.settle(), MARKERS_SHARE, MARKERS_SHARE)
+                states[i] = part.state.without_cache()
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()

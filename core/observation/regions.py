@@ -17,6 +17,7 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
+from .occluders import StaticOccluders
 from .occlusion import part_outlines, visible_share
 from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
 
@@ -113,6 +114,8 @@ class RegionModel:
     body: Body
     camera: Camera
     placements: tuple[MarkerPlacement, ...]
+    occluders: StaticOccluders | None = None
+    """What stands before the performer; None where nothing is known to."""
 
     @cached_property
     def _pieces(self) -> PieceStack:
@@ -179,6 +182,8 @@ class RegionModel:
         scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
         parts = part_outlines(self._parts, pose, self.camera, frame)
         seen = scale * visible_share(pixels, depth, parts, self._own)
+        if self.occluders is not None:
+            seen *= self.occluders.visible_share(pixels, depth)
         visible_area = self._per_marker((samples.area * seen).sum(2))
         whole_area = self._per_marker((samples.area * scale).sum(2))
         visible = visible_area / np.maximum(whole_area, TINY)
