@@ -57,7 +57,7 @@ REACH_M = 0.2
 """Distance at which a body that is not where it is predicted is seen instead of it."""
 SMALLEST_AREA = 16
 """Pixels of the smallest occluder."""
-GROWTH_M = 0.1
+GROWTH_M = 0.3
 """Distance over which an occluder is believed to go on where its color does, and no body is seen before it."""
 SAME_COLOR = 16.0
 """Difference of colors [levels in any channel] within an occluder's surface."""
