@@ -40,12 +40,14 @@ LEAST_EVIDENCE = 2.0
 LEAST_LOOKS = 4.0
 """Looks that must show an occluder, a keyframe counting twice."""
 SHOWN_PX = 6
-"""Pixels of an occluder that a look must show to count."""
+"""Pixels of an occluder that a look must show clearly to count."""
+CLEARLY = 1.0
+"""Log odds of a pixel that a look shows clearly to be hidden, or not."""
 STATIC_DEVIATION = 8.3
 """Least deviation of a background pixel's colors [levels], as coarse as the histograms of parts, so that
 neither of two surfaces of the same color is preferred."""
 UNLIKE = -16.0
-"""Log density [per level³] of colors that the background at a pixel does not have: some 3.7 deviations off."""
+"""Log density [per level³] of colors that a pixel's background does not have: some 3.7 deviations off."""
 ALIKE = 1.0
 """Log odds for the background that gray trousers before a gray floor have as well."""
 OTHER_PART = 2.0
@@ -58,7 +60,7 @@ REACH_M = 0.2
 SMALLEST_AREA = 16
 """Pixels of the smallest occluder."""
 GROWTH_M = 0.3
-"""Distance over which an occluder is believed to go on where its color does, and no body is seen before it."""
+"""Distance over which an occluder is believed to go on where its color does and no body is seen."""
 SAME_COLOR = 16.0
 """Difference of colors [levels in any channel] within an occluder's surface."""
 SMOOTH_PX = 1.0
@@ -115,20 +117,47 @@ def learn_occluders(
         looks.append(_look(contours.appearance, picture, labels, margin[row], weight[row], reach))
         yield
     appearance = contours.appearance.with_colors(_own_colors(looks), len(model.parts.segments))
-    first = float(depth.min())
-    width = max(BIN_M, (float(depth.max()) - first) / MOST_BINS)
-    bins = np.minimum(((depth - first) / width).astype(np.intp), MOST_BINS - 1)
-    odds = np.zeros((int(bins.max()) + 1, shape[0] * shape[1]), dtype=np.float32)
-    hidden = []
-    for look, bin_of in zip(looks, bins, strict=True):
+    bins = _Bins.of(depth)
+    odds = np.zeros((bins.count, shape[0] * shape[1]), dtype=np.float32)
+    shown = []
+    for row, look in enumerate(looks):
         says = _says(look, appearance, shape, reach)
-        odds[bin_of[look.part[look.inside]], look.pixel[look.inside]] += look.weight * says
-        hidden.append(look.pixel[look.inside][says > 1.0])
+        within = look.pixel[look.inside]
+        odds[bins.index[row][look.part[look.inside]], within] += look.weight * says
+        shown.append(within[says > CLEARLY])
         yield
+    hidden = _hidden_from(odds.reshape(-1, *shape), shown, weight, bins)
+    if not np.isfinite(hidden).any():
+        return None
     color = np.where(appearance.known[..., None], appearance.color, np.nan)
-    growth = round(GROWTH_M * scale)
-    found = _hidden_from(odds.reshape(-1, *shape), hidden, weight, first, width, color, growth)
-    return StaticOccluders(found, album.factor) if np.isfinite(found).any() else None
+    free = odds.sum(axis=0).reshape(shape) > -LEAST_EVIDENCE
+    return StaticOccluders(_grown(hidden, color, free, round(GROWTH_M * scale)), album.factor)
+
+
+@dataclass(frozen=True, eq=False)
+class _Bins:
+    """Bins of depth, the nearest first."""
+
+    first_m: float
+    width_m: float
+    index: IndexArray
+    """(L, O) bin of each part in each look."""
+
+    @classmethod
+    def of(cls, depth: Array) -> "_Bins":
+        """Bins for the parts' depths (L, O) [m]."""
+        first = float(depth.min())
+        width = max(BIN_M, (float(depth.max()) - first) / MOST_BINS)
+        return cls(first, width, np.minimum(((depth - first) / width).astype(np.intp), MOST_BINS - 1))
+
+    @property
+    def count(self) -> int:
+        """Number of bins."""
+        return int(self.index.max()) + 1
+
+    def hidden_from(self, bins: IndexArray) -> Array:
+        """Depths [m] from which on bodies are hidden that were so in these bins, but not in nearer ones."""
+        return np.asarray(self.first_m + (bins - 1) * self.width_m)
 
 
 def _chosen(
@@ -155,7 +184,7 @@ def _look(
     """What a picture shows near the body."""
     body = (labels != NO_PART).astype(np.uint8)
     side = 2 * reach + 1
-    around = cv2.dilate(body, np.ones((side, side), np.uint8)) & appearance.known
+    around = (cv2.dilate(body, np.ones((side, side), np.uint8)) > 0) & appearance.known
     pixel = np.flatnonzero(around)
     row, column = np.divmod(pixel, labels.shape[1])
     part = labels.ravel()[pixel].astype(np.intp)
@@ -183,14 +212,16 @@ def _says(look: _Look, appearance: Appearance, shape: tuple[int, ...], reach: in
     ratio = look.static - np.where(look.part >= 0, np.maximum(own, other - OTHER_PART), other)
     ratio = np.clip(ratio - np.clip(ratio, 0.0, ALIKE), -LARGEST_LOG_RATIO, LARGEST_LOG_RATIO)
     # A limb that is missing here and seen beside is misplaced, not hidden.
-    missing = _around(look.inside & (ratio > 1.0), look.pixel, shape, reach)
-    elsewhere = _around(look.beside & (ratio < -1.0), look.pixel, shape, reach)
+    missing = _around(look.inside & (ratio > CLEARLY), look.pixel, shape, reach)
+    elsewhere = _around(look.beside & (ratio < -CLEARLY), look.pixel, shape, reach)
     believed = np.clip(1.0 - elsewhere / np.maximum(missing, 0.5), 0.0, 1.0)
     return np.asarray(np.where(ratio > 0.0, believed * ratio, ratio)[look.inside])
 
 
 def _disc(radius: int) -> Image:
-    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1)), np.uint8)
+    return np.asarray(
+        cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1)), np.uint8
+    )
 
 
 def _around(mask: BoolArray, pixel: IndexArray, shape: tuple[int, ...], reach: int) -> SingleArray:
@@ -202,18 +233,18 @@ def _around(mask: BoolArray, pixel: IndexArray, shape: tuple[int, ...], reach: i
     return np.asarray(counts.ravel()[pixel])
 
 
-def _hidden_from(
-    evidence: SingleArray,
-    shown: list[IndexArray],
-    weight: Array,
-    first: float,
-    width: float,
-    color: Array,
-    growth: int,
-) -> SingleArray:
-    """(rows, columns) depth from which on a body is hidden [m], by the evidence in each bin of depth."""
-    smooth = np.stack([cv2.GaussianBlur(one, (0, 0), SMOOTH_PX) for one in evidence])
-    odds = np.cumsum(smooth[::-1], axis=0)[::-1]  # of an occluder before this bin, and none nearer
+def _hidden_from(evidence: SingleArray, shown: list[IndexArray], weight: Array, bins: _Bins) -> SingleArray:
+    """(rows, columns) depth from which on a body is hidden [m]; infinite where nothing hides it.
+
+    Args:
+        evidence: (B, rows, columns) log odds of an occluder before bodies in each bin of depth.
+        shown: Of each look, the flat pixels where it shows one.
+        weight: (L,) of the looks.
+        bins: The bins.
+    """
+    odds = np.stack([cv2.GaussianBlur(one, (0, 0), SMOOTH_PX) for one in evidence])
+    for nearer in range(len(odds) - 2, -1, -1):
+        odds[nearer] += odds[nearer + 1]  # of an occluder before this bin, and none before nearer ones
     best, likely = odds.argmax(axis=0), odds.max(axis=0) > LEAST_EVIDENCE
     mask = cv2.morphologyEx(likely.astype(np.uint8), cv2.MORPH_CLOSE, _disc(GAP_PX))
     count, parts, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
@@ -221,17 +252,12 @@ def _hidden_from(
     for one, pixels in zip(weight, shown, strict=True):
         looks[np.bincount(parts.ravel()[pixels], minlength=count) >= SHOWN_PX] += one
     kept = (stats[:, cv2.CC_STAT_AREA] >= SMALLEST_AREA) & (looks >= LEAST_LOOKS)
-    kept[0] = False
-    sure = kept[parts]
     hidden = np.full(mask.shape, np.inf, dtype=np.float32)
-    if not sure.any():
-        return hidden
-    nearest = np.where(likely, first + (best - 1) * width, np.nan)
-    for part in np.flatnonzero(kept):
+    for part in np.flatnonzero(kept[1:]) + 1:
         here = parts == part
-        hidden[here] = np.nanmedian(nearest[here])
-    hidden[sure & likely] = nearest[sure & likely]
-    return _grown(hidden, color, odds[0] > -LEAST_EVIDENCE, growth)
+        hidden[here] = bins.hidden_from(np.sort(best[here & likely])[np.count_nonzero(here & likely) // 2])
+        hidden[here & likely] = bins.hidden_from(best[here & likely])
+    return hidden
 
 
 def _grown(hidden: SingleArray, color: Array, allowed: BoolArray, growth: int) -> SingleArray:

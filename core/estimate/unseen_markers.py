@@ -1,7 +1,7 @@
 """Negative evidence: a marker that should be seen and is not.
 
-Visibility has no useful slope by a posture, so this is a cost by which whole hypotheses are compared, such as a
-limb on either side of another in depth. What static occluders hide is not expected to be seen.
+Visibility has no useful slope by a posture, so this is a cost by which whole hypotheses are compared, such as
+a limb on either side of another in depth. What static occluders hide is not expected to be seen.
 """
 
 import numpy as np
@@ -16,8 +16,8 @@ from .clip_state import ClipState
 from .terms.regions import ObservedRegions
 
 HALF_FOUND, FOUND_SLOPE = 0.27, 11.0
-"""Visible share of which a region is found as often as not, and the slope of the log odds: of 6,800 regions of
-true postures, 2 in 100 below a share of 0.05 were found, 58 at 0.25, 86 at 0.45, 97 at 0.65, all but 3 of
+"""Visible share of which a region is found as often as not, and the slope of the log odds: of 6,800 regions
+of true postures, 2 in 100 below a share of 0.05 were found, 58 at 0.25, 86 at 0.45, 97 at 0.65, all but 4 of
 1,000 above 0.7."""
 USUAL_MISSES, SURE_OF_IT = 0.01, 20.0
 """Share of wholly visible regions that are missed, and the keyframes that this belief is worth."""

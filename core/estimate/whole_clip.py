@@ -33,8 +33,8 @@ from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
-from .occluder_evidence import learn_occluders
 from .match_error import depth_std_m
+from .occluder_evidence import learn_occluders
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
@@ -267,9 +267,7 @@ def _solve_windows(
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
     if earlier is None and contours is not None and contours.along is None:
         kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-        learned = learn_occluders(
-            contours, Posture.concatenate(kept), problem.keyframes, problem.step_s
-        )
+        learned = learn_occluders(contours, Posture.concatenate(kept), problem.keyframes, problem.step_s)
         occluders = yield from scaled(learned, MARKERS_SHARE, MARKERS_SHARE)
         if occluders is not None:
             problem, contours = problem.before(occluders), contours.before(occluders)

@@ -159,7 +159,7 @@ class Appearance:
         return np.asarray(self.parts[:-1].max(axis=0))
 
     def unmoving(self, row: IndexArray, column: IndexArray, pixels: Image, least_deviation: float) -> Array:
-        """Log likelihood of pixels (..., 3) under what stands still at rows and columns (...), without shadows.
+        """Log likelihood of pixels (..., 3) under what stands still at rows and columns (...), unshadowed.
 
         Args:
             row: Their rows.
@@ -168,11 +168,12 @@ class Appearance:
             least_deviation: Least standard deviation of the colors of a background pixel [levels].
         """
         deviation = np.maximum(self.deviation[row, column].astype(np.float64), least_deviation)
-        usual = self.color[row, column].astype(np.float64)
-        off = [pixels[..., channel] - usual[..., channel] for channel in range(3)]
-        squared = (off[0] * off[0] + off[1] * off[1] + off[2] * off[2]) / deviation**2
-        here = np.exp(-0.5 * squared) / (deviation**3 * (2.0 * np.pi) ** 1.5)
-        return np.asarray(np.log((1.0 - UNSEEN) * here + np.exp(UNSEEN_LOG_DENSITY)))
+        squared = np.zeros(deviation.shape)
+        for channel in range(3):  # sums over an axis of three are slow
+            off = pixels[..., channel] - self.color[..., channel][row, column].astype(np.float64)
+            squared += off * off
+        here = -0.5 * squared / deviation**2 - 3.0 * np.log(deviation) - 1.5 * np.log(2.0 * np.pi)
+        return np.maximum(here, UNSEEN_LOG_DENSITY)
 
     def background(self, row: IndexArray, column: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the background at rows and columns (...).

@@ -1,7 +1,7 @@
 """Static occluders: what stands before the performer and hides it, whatever it does (a table, a pillar).
 
-A map on the grid of the album's pictures says from which depth on a body is hidden there. Its edge is soft, so
-that the prediction changes smoothly with the posture.
+A map on the grid of the album's pictures says from which depth on a body is hidden there. Its edge is soft,
+so that the prediction changes smoothly with the posture.
 """
 
 from dataclasses import dataclass
@@ -35,11 +35,12 @@ class StaticOccluders:
     @cached_property
     def _soft(self) -> tuple[SingleArray, SingleArray]:
         """The map with a border of one pixel, flat: the share covered, and the depth, also just outside."""
-        covered = self.covered.astype(np.float32)
-        share = cv2.GaussianBlur(covered, (0, 0), EDGE_SOFTNESS_PX)
-        inverse = np.where(self.covered, 1.0 / np.maximum(self.hidden_from, 1e-3), 0.0).astype(np.float32)
-        depth = share / np.maximum(cv2.GaussianBlur(inverse, (0, 0), EDGE_SOFTNESS_PX), 1e-6)
-        return np.pad(share, 1).ravel(), np.pad(depth, 1).ravel()
+        inverse = np.where(self.covered, 1.0 / np.maximum(self.hidden_from, 1e-3), 0.0)
+        share, mean = (
+            np.pad(cv2.GaussianBlur(one.astype(np.float32), (0, 0), EDGE_SOFTNESS_PX), 1).ravel()
+            for one in (self.covered, inverse)
+        )
+        return np.asarray(share), np.asarray(share / np.maximum(mean, 1e-6), dtype=np.float32)
 
     def visible_share(self, pixels: Array, depth: Array) -> Array:
         """Visible share (...) of image points (..., 2) [px] at camera depths (...) [m], 0 to 1."""
@@ -52,7 +53,7 @@ class StaticOccluders:
         return 1.0 - hidden
 
     def _cells(self, pixels: Array) -> IndexArray:
-        """Flat index of the bordered map's pixel that image points (..., 2) lie in; NaN lies in the border."""
+        """Flat index of the bordered map's pixel that image points (..., 2) lie in; outside and NaN, its border."""
         rows, columns = self.hidden_from.shape
         largest = np.array([columns, rows]) + 1.0
         place = np.clip(np.nan_to_num(pixels / self.factor, nan=-1.0) + 1.0, 0.0, largest).astype(np.intp)
