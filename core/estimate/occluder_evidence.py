@@ -61,7 +61,7 @@ SMALLEST_AREA = 16
 """Pixels of the smallest occluder."""
 GROWTH_M = 0.3
 """Distance over which an occluder is believed to go on where its color does and no body is seen."""
-SAME_COLOR = 16.0
+SAME_COLOR = 12.0
 """Difference of colors [levels in any channel] within an occluder's surface."""
 SMOOTH_PX = 1.0
 GAP_PX = 2
@@ -247,6 +247,7 @@ def _hidden_from(evidence: SingleArray, shown: list[IndexArray], weight: Array, 
         odds[nearer] += odds[nearer + 1]  # of an occluder before this bin, and none before nearer ones
     best, likely = odds.argmax(axis=0), odds.max(axis=0) > LEAST_EVIDENCE
     mask = cv2.morphologyEx(likely.astype(np.uint8), cv2.MORPH_CLOSE, _disc(GAP_PX))
+    mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, _disc(1))  # what hangs by a thread is a thing of its own
     count, parts, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
     looks = np.zeros(count)
     for one, pixels in zip(weight, shown, strict=True):
