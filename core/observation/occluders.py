@@ -53,7 +53,7 @@ class StaticOccluders:
         return 1.0 - hidden
 
     def _cells(self, pixels: Array) -> IndexArray:
-        """Flat index of the bordered map's pixel in which image points (..., 2) lie; of NaN, in its border."""
+        """Flat index of the bordered map's pixel in which points (..., 2) lie; NaN lies in its border."""
         rows, columns = self.hidden_from.shape
         largest = np.array([columns, rows]) + 1.0
         place = np.clip(np.nan_to_num(pixels / self.factor, nan=-1.0) + 1.0, 0.0, largest).astype(np.intp)

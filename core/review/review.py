@@ -79,7 +79,7 @@ class Review:
     keypoints: ComparedKeypoints
     """Of the performer, N of them; none in a review that was kept before there were any."""
     occluders: BoolArray
-    """(rows, columns) of the whole picture, coarsely: what stands before the performer; none of it is (0, 0)."""
+    """(rows, columns) of the whole picture, coarsely: what stands before the performer; (0, 0) for none."""
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`; none needs pickling."""

@@ -50,8 +50,8 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_occluders: bpy.props.BoolProperty(
         name="Occluders",
-        description="Tint what stands before the performer, a table or a pillar, as far as the reconstruction "
-        "found it out: markers are not expected there",
+        description="Tint what the reconstruction takes to stand before the performer, such as a table: no "
+        "marker is expected to be seen there",
         default=True,
         update=_changed,
     )
