@@ -57,8 +57,8 @@ BIN_M = 0.25
 MOST_BINS = 12
 REACH_M = 0.2
 """Distance at which a body that is not where it is predicted is seen instead of it."""
-SMALLEST_AREA = 16
-"""Pixels of the smallest occluder."""
+SMALLEST_M = 0.12
+"""Side of the smallest occluder, a square: less hides hardly anything of a limb."""
 GROWTH_M = 0.3
 """Distance over which an occluder is believed to go on where its color does and no body is seen."""
 SAME_COLOR = 12.0
@@ -126,7 +126,7 @@ def learn_occluders(
         odds[bins.index[row][look.part[look.inside]], within] += look.weight * says
         shown.append(within[says > CLEARLY])
         yield
-    hidden = _hidden_from(odds.reshape(-1, *shape), shown, weight, bins)
+    hidden = _hidden_from(odds.reshape(-1, *shape), shown, weight, bins, (SMALLEST_M * scale) ** 2)
     if not np.isfinite(hidden).any():
         return None
     color = np.where(appearance.known[..., None], appearance.color, np.nan)
@@ -233,7 +233,9 @@ def _around(mask: BoolArray, pixel: IndexArray, shape: tuple[int, ...], reach: i
     return np.asarray(counts.ravel()[pixel])
 
 
-def _hidden_from(evidence: SingleArray, shown: list[IndexArray], weight: Array, bins: _Bins) -> SingleArray:
+def _hidden_from(
+    evidence: SingleArray, shown: list[IndexArray], weight: Array, bins: _Bins, smallest: float
+) -> SingleArray:
     """(rows, columns) depth from which on a body is hidden [m]; infinite where nothing hides it.
 
     Args:
@@ -241,6 +243,7 @@ def _hidden_from(evidence: SingleArray, shown: list[IndexArray], weight: Array, 
         shown: Of each look, the flat pixels where it shows one.
         weight: (L,) of the looks.
         bins: The bins.
+        smallest: Pixels of the smallest occluder.
     """
     odds = np.stack([cv2.GaussianBlur(one, (0, 0), SMOOTH_PX) for one in evidence])
     for nearer in range(len(odds) - 2, -1, -1):
@@ -252,7 +255,7 @@ def _hidden_from(evidence: SingleArray, shown: list[IndexArray], weight: Array, 
     looks = np.zeros(count)
     for one, pixels in zip(weight, shown, strict=True):
         looks[np.bincount(parts.ravel()[pixels], minlength=count) >= SHOWN_PX] += one
-    kept = (stats[:, cv2.CC_STAT_AREA] >= SMALLEST_AREA) & (looks >= LEAST_LOOKS)
+    kept = (stats[:, cv2.CC_STAT_AREA] >= smallest) & (looks >= LEAST_LOOKS)
     hidden = np.full(mask.shape, np.inf, dtype=np.float32)
     for part in np.flatnonzero(kept[1:]) + 1:
         here = parts == part
