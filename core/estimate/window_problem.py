@@ -20,7 +20,7 @@ from .windows import Window
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-SETTLING_TEMPERATURES = (2.0, *(1.0 for _ in range(5)))
+SETTLING_TEMPERATURES = (2.0, 1.0, 1.0)
 """Of the steps from postures that were found with less knowledge."""
 CONTOUR_TEMPERATURES = (1.0, 1.0)
 """Of the steps with contours, once the markers have brought these within reach of their edges."""
