@@ -25,6 +25,7 @@ from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
+from .clip_state import ClipState
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_keyframes import contour_rows
 from .contour_schedule import all_located, contour_schedule
@@ -265,16 +266,9 @@ def _solve_windows(
             problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
         )
         contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
-    if earlier is None and contours is not None and contours.along is None:
-        kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-        learned = learn_occluders(contours, Posture.concatenate(kept), problem.keyframes, problem.step_s)
-        occluders = yield from scaled(learned, MARKERS_SHARE, MARKERS_SHARE)
-        if occluders is not None:
-            problem, contours = problem.before(occluders), contours.before(occluders)
-            for i, window in enumerate(spans):
-                part = WindowProblem(problem, window, states[i])
-                yield from scaled(part.settle(), MARKERS_SHARE, MARKERS_SHARE)
-                states[i] = part.state.without_cache()
+    if earlier is None and contours is not None:
+        found = yield from _before_occluders(problem, spans, states, contours)
+        problem, states, contours = found
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
@@ -295,6 +289,29 @@ def _solve_windows(
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
     return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
+
+
+def _before_occluders(
+    problem: ClipProblem, spans: list[Window], states: list[ClipState], contours: ContourEvidence
+) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence]]:
+    """Problem, states and contours that know what stands before the performer; the same where nothing does.
+
+    Only posed keyframes, and limbs that markers locate, can tell it from a posture that is wrong.
+    """
+    posed = problem.keyframes[~problem.matched]
+    if not len(posed) or contours.along is not None:
+        return problem, states, contours
+    kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+    learning = learn_occluders(contours, Posture.concatenate(kept), posed, problem.step_s)
+    occluders = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if occluders is None:
+        return problem, states, contours
+    problem, contours, settled = problem.before(occluders), contours.before(occluders), []
+    for window, state in zip(spans, states, strict=True):
+        part = WindowProblem(problem, window, state)
+        yield from scaled(part.settle(), MARKERS_SHARE, MARKERS_SHARE)
+        settled.append(part.state.without_cache())
+    return problem, settled, contours
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

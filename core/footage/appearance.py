@@ -102,8 +102,9 @@ class Appearance:
         part, color = seen
         cells = np.bincount(part * CELLS + _cells(color), minlength=parts * CELLS).reshape(parts, CELLS)
         enough = cells.sum(axis=1) >= FEWEST_COLORS
-        own = np.where(enough[:, None], _log_densities(cells), self.parts[:-1])
-        return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
+        colors = self.parts.copy()
+        colors[:-1][enough] = _log_densities(cells[enough])
+        return replace(self, parts=colors)
 
     def where_steady(self) -> "Appearance":
         """This appearance with only those pixels of the background known that stand still.
