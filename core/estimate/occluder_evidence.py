@@ -57,6 +57,10 @@ BIN_M = 0.25
 MOST_BINS = 12
 REACH_M = 0.2
 """Distance at which a body that is not where it is predicted is seen instead of it."""
+SAME_EVIDENCE = 0.5
+"""Log odds that tell nothing about the bin of depth."""
+NEAREST_SHARE = 0.1
+"""Share of an occluder's pixels that may be wrong about the nearest body that it hides."""
 SMALLEST_M = 0.12
 """Side of the smallest occluder, a square: less hides hardly anything of a limb."""
 GROWTH_M = 0.3
@@ -248,7 +252,9 @@ def _hidden_from(
     odds = np.stack([cv2.GaussianBlur(one, (0, 0), SMOOTH_PX) for one in evidence])
     for nearer in range(len(odds) - 2, -1, -1):
         odds[nearer] += odds[nearer + 1]  # of an occluder before this bin, and none before nearer ones
-    best, likely = odds.argmax(axis=0), odds.max(axis=0) > LEAST_EVIDENCE
+    most = odds.max(axis=0)
+    likely, best = most > LEAST_EVIDENCE, odds > most - SAME_EVIDENCE
+    nearest, farthest = best.argmax(axis=0), len(odds) - 1 - best[::-1].argmax(axis=0)
     mask = cv2.morphologyEx(likely.astype(np.uint8), cv2.MORPH_CLOSE, _disc(GAP_PX))
     mask = cv2.morphologyEx(mask, cv2.MORPH_OPEN, _disc(1))  # what hangs by a thread is a thing of its own
     count, parts, stats, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
@@ -259,8 +265,11 @@ def _hidden_from(
     hidden = np.full(mask.shape, np.inf, dtype=np.float32)
     for part in np.flatnonzero(kept[1:]) + 1:
         here = parts == part
-        hidden[here] = bins.hidden_from(np.sort(best[here & likely])[np.count_nonzero(here & likely) // 2])
-        hidden[here & likely] = bins.hidden_from(best[here & likely])
+        # One thing: hidden by it anywhere, hidden by it everywhere, but for what was seen before it.
+        seen = here & likely
+        common = np.sort(farthest[seen])[int(NEAREST_SHARE * np.count_nonzero(seen))]
+        hidden[here] = bins.hidden_from(common)
+        hidden[seen] = bins.hidden_from(np.clip(common, nearest[seen], farthest[seen]))
     return hidden
 
 

@@ -13,7 +13,9 @@ from keymark.core.estimate.contour_evidence import ContourEvidence, learn_contou
 from keymark.core.estimate.occluder_evidence import learn_occluders
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
+from keymark.core.observation.contours import ContourModel
 from keymark.core.observation.occluders import StaticOccluders
+from keymark.core.observation.part_map import part_map
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import run
@@ -81,6 +83,32 @@ def test_what_moves_is_no_static_occluder() -> None:
     """A box that goes about before the performer hides it now here, now there."""
     found = learn(furnished(moving=True))
     assert found is None or np.count_nonzero(found.covered) < 50
+
+
+def test_the_body_may_go_before_it() -> None:
+    """Seen before the table at 3 m and behind it at 4.2 m, it is hidden from a depth between them."""
+    step = np.zeros((FRAMES, HUMAN.dof_count))
+    near = FRAME >= FRAMES // 2
+    step[near, HUMAN.dof_names.index("pelvis.location_y")] = -1.2
+    posture = TRUTH.plus(step)
+    drawn, shown = photograph(posture), furnished()
+    model = ContourModel.average(BODY, CAMERA)
+    parts = model.part_outlines(BODY.pose(posture), FRAME)
+    pictures = Album()
+    for frame in range(FRAMES):
+        image = drawn.picture(frame).copy()
+        free = part_map(parts, frame, (320, 240), 1.0) < 0 if near[frame] else np.ones((240, 320), dtype=bool)
+        table = np.zeros_like(free)
+        table[TABLE] = True
+        image[free & table] = shown.picture(frame)[free & table]
+        pictures.add(frame, image)
+    found = learn(pictures, posture)
+    assert found is not None
+    depth = found.hidden_from[found.covered]
+    assert 2.9 < np.median(depth) < 4.1
+    pixel = np.argwhere(found.covered)[len(depth) // 2][::-1] + 0.5
+    share = found.visible_share(np.array([pixel, pixel]), np.array([2.7, 4.3]))
+    assert share[0] > 0.9 and share[1] < 0.2
 
 
 def solved(pictures: Album, hidden: np.ndarray, earlier: WholeClipResult | None = None) -> WholeClipResult:
