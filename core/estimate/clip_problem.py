@@ -1,6 +1,6 @@
 """The estimation problem of a whole clip, without its pictures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
+from ..observation.occluders import StaticOccluders
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
 from .terms.keypoints import ObservedKeypoints
@@ -59,6 +60,11 @@ class ClipProblem:
     def frames(self) -> int:
         """Number of frames F."""
         return self.prior.batch[0]
+
+    def before(self, occluders: StaticOccluders) -> "ClipProblem":
+        """This problem with what is known to stand before the performer."""
+        model = replace(self.evidence.model, occluders=occluders)
+        return replace(self, evidence=replace(self.evidence, model=model))
 
     def start(self, window: Window) -> ClipState:
         """The state of a window to begin with: its prior, without biases."""

@@ -26,6 +26,7 @@ from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
 from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
+from .clip_state import ClipState
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_keyframes import contour_rows
 from .contour_schedule import all_located, contour_schedule
@@ -35,6 +36,7 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
+from .occluder_evidence import learn_occluders
 from .second_look import find_lost
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
@@ -284,6 +286,9 @@ def _solve_windows(
     if contours is not None and len(problem.evidence.model.placements):
         looking = find_lost(problem, spans, states, contours, among)
         problem = yield from scaled(looking, MARKERS_SHARE, MARKERS_SHARE)
+    if earlier is None and contours is not None:
+        found = yield from _before_occluders(problem, spans, states, contours)
+        problem, states, contours = found
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
@@ -304,6 +309,29 @@ def _solve_windows(
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
     return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
+
+
+def _before_occluders(
+    problem: ClipProblem, spans: list[Window], states: list[ClipState], contours: ContourEvidence
+) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence]]:
+    """Problem, states and contours that know what stands before the performer; the same where nothing does.
+
+    Only posed keyframes, and limbs that markers locate, can tell it from a posture that is wrong.
+    """
+    posed = problem.keyframes[~problem.matched]
+    if not len(posed) or contours.along is not None:
+        return problem, states, contours
+    kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
+    learning = learn_occluders(contours, Posture.concatenate(kept), posed, problem.step_s)
+    occluders = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if occluders is None:
+        return problem, states, contours
+    problem, contours, settled = problem.before(occluders), contours.before(occluders), []
+    for window, state in zip(spans, states, strict=True):
+        part = WindowProblem(problem, window, state)
+        yield from scaled(part.settle(), MARKERS_SHARE, MARKERS_SHARE)
+        settled.append(part.state.without_cache())
+    return problem, settled, contours
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

@@ -167,13 +167,13 @@ def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
 def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
     """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
 
-    A table or a door may hide a part of a marker, of which the body's model knows nothing. A share f that is
-    cut off a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
+    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
 
     Args:
         area: (F, M) area of the regions seen [px].
         area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, occlusion by the body itself included.
+        predicted: The regions' prediction, occlusion by the body itself and by known occluders included.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
