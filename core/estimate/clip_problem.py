@@ -1,6 +1,6 @@
 """The estimation problem of a whole clip, without its pictures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
+from ..prior.turns import with_turns
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
 from .terms.keypoints import ObservedKeypoints
@@ -48,11 +49,20 @@ class ClipProblem:
     """The same, as they are compared."""
     swapped: BoolArray
     """(F, N) which of them were exchanged."""
+    interpolated: Posture
+    """F postures: the prior as the keyframes are interpolated, which turns the short way round."""
+    turns: IndexArray
+    """(K - 1,) whole turns about the vertical that the prior adds to that in each gap; see `prior/turns`."""
 
     @property
     def frames(self) -> int:
         """Number of frames F."""
         return self.prior.batch[0]
+
+    def with_turns(self, turns: IndexArray) -> "ClipProblem":
+        """The same with these whole turns (K - 1,) in the gaps between the keyframes."""
+        prior = with_turns(self.interpolated, self.keyframes, turns)
+        return replace(self, prior=prior, turns=turns)
 
     def start(self, window: Window) -> ClipState:
         """The state of a window to begin with: its prior, without biases."""

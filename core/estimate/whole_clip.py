@@ -37,6 +37,7 @@ from .match_error import depth_std_m
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
+from .turn_choice import choose_turns
 from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
 from .window_problem import WindowProblem
 from .windows import Window, windows
@@ -179,6 +180,8 @@ def estimate_whole_clip(
         keypoints,
         points,
         swapped,
+        prior,
+        np.zeros(max(len(index) - 1, 0), dtype=np.intp),
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
@@ -250,6 +253,10 @@ def _solve_windows(
         part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
+    if problem.observed.quality.any() or problem.points.seen.any():
+        problem, states = yield from scaled(
+            choose_turns(problem, states, _gaps_within(problem, spans)), MARKERS_SHARE, MARKERS_SHARE
+        )
     contours = contours if earlier is None else earlier.contours
     if contours is not None and earlier is None:
         contours = contours.with_camera(problem.evidence.model.camera)
@@ -284,6 +291,15 @@ def _solve_windows(
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
     return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
+
+
+def _gaps_within(problem: ClipProblem, spans: list[Window]) -> BoolArray:
+    """(K - 1,) gaps between keyframes that lie within the frames which windows keep."""
+    kept = np.zeros(problem.frames, dtype=bool)
+    for window in spans:
+        kept[window.keep_first : window.keep_last] = True
+    ends = zip(problem.keyframes[:-1], problem.keyframes[1:], strict=True)
+    return np.array([kept[first : last + 1].all() for first, last in ends], dtype=bool)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

@@ -13,8 +13,10 @@ from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
 from .terms.assembly import window_terms, with_contours
 from .terms.contours import ContourTerm
+from .terms.keypoints import KeypointTerm
 from .terms.limb_axes import AxialTerm
-from .terms.term import NormalEquations
+from .terms.regions import RegionTerm
+from .terms.term import NormalEquations, total_cost
 from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
@@ -52,6 +54,19 @@ class WindowProblem:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
         matched = bool(self.clip.matched.any())
         yield from self._gauss_newton(MATCHED_TEMPERATURES if matched else TEMPERATURES, 0.0, 1.0)
+
+    def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
+        """Gauss-Newton steps with the terms there are; it yields now and then.
+
+        Args:
+            temperatures: Factor of the image's variance in each step.
+
+        Returns:
+            (F,) negative logarithm of the probability of each frame where the steps end, up to a constant.
+        """
+        for _ in self._gauss_newton(temperatures, 0.0, 1.0):
+            yield
+        return total_cost(self.terms, self.state)
 
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
@@ -123,3 +138,19 @@ class WindowProblem:
             doubt = contours_doubt if isinstance(term, ContourTerm | AxialTerm) else 1.0
             term.add_to(equations, self.state, temperature * doubt)
         yield
+
+
+def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
+    """(F,) what markers and keypoints cost in each frame of a clip; zero where no window has been solved.
+
+    Args:
+        clip: The clip's problem.
+        states: Of windows, in order; where two overlap, the later one counts.
+    """
+    cost = np.zeros(clip.frames)
+    for state in states:
+        first, last = int(state.frame[0]), int(state.frame[-1]) + 1
+        part = WindowProblem(clip, Window(first, last, first, last), state)
+        seen = [term.cost(state) for term in part.terms if isinstance(term, RegionTerm | KeypointTerm)]
+        cost[first:last] = np.sum(seen, axis=0)
+    return cost
