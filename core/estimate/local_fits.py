@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 from .clip_problem import ClipProblem
 from .clip_state import ClipState
 from .window_problem import WindowProblem
@@ -16,16 +16,13 @@ from .windows import Window
 
 BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)
 """Factors of the image's variance in an alternative's first steps: enough to tell a hopeless one."""
-HOPELESS = 1.5
-"""An alternative that costs so many times the estimate after these is given up; what ended up cheaper cost at
-most 1.2 times as much by then, what did not 1.3 to 5 times."""
+HOPELESS_SHARE, HOPELESS_COST = 0.3, 50.0
+"""An alternative that costs more than the estimate by more than this share of it and this much besides is
+given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth."""
 GONE_ON = tuple(1.0 for _ in range(10))
-"""Its other steps: where it differs from the prior by as much as it does in long gaps, these are needed."""
+"""An alternative's other steps, which are needed where it departs as far from the prior as in long gaps."""
 SETTLED = tuple(1.0 for _ in range(4))
 """Steps of the estimate in the meantime, whose window was solved already."""
-TEMPERATURE = 10.0
-"""Costs are divided by this where they weigh two solutions: errors of the image last for some ten frames
-(`RegionNoise.bias_time_s` is 20), and rows count as if each frame erred anew but for those biases."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +66,7 @@ def contest(
     """
     known = yield from _fit(problem, state, ())
     begun = yield from _fit(other, start, BEGUN)
-    if begun.cost > HOPELESS * known.cost:
+    if begun.cost > (1.0 + HOPELESS_SHARE) * known.cost + HOPELESS_COST:
         return None
     settled = yield from _fit(problem, state, SETTLED)
     ended = yield from _fit(other, begun.state, GONE_ON)
@@ -118,7 +115,7 @@ def blended(state: ClipState, fit: LocalFit, share: Array) -> ClipState:
     return state.about(prior, state.posture.plus(step), bias).without_cache()
 
 
-def inside(frame: Array, first: int, last: int) -> Array:
+def inside(frame: IndexArray, first: int, last: int) -> Array:
     """(F,) share of a local solution in its frames: all from `first` to `last`, less in its margins.
 
     Args:

@@ -6,31 +6,35 @@ as well, and the footage decides by the whole cost of both.
 """
 
 from collections.abc import Generator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray
 from ..prior.turns import FULL_TURN, heading_steps_rad
+from ..progress import Part, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState
 from .local_fits import Contest, blended, contest, cut, inside
-from .window_problem import image_cost
+from .undecided import Undecided, undecided
+from .window_problem import WindowProblem, image_cost
 from .windows import Window
 
 LARGE_STEP_RAD = np.radians(60.0)
 """A turn between keyframes from which on the other way round is tried."""
 FASTEST_RAD_PER_S = 3.0 * FULL_TURN
-"""Nobody turns faster between two keyframes: dancers and skaters on the floor make two to three turns a
-second."""
+"""Nobody turns faster between two keyframes: dancers make two to three turns a second."""
 LONG_S = 0.3
 """Gaps of this time and longer ..."""
-DOUBTED = 2.0
-"""... in which what is seen costs so many times as much as usual are tried both ways round."""
+DOUBTED_COST = 0.5
+"""... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
+would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well."""
 MARGIN_S = 0.2
 """How far beyond its keyframes, which hold it, a stretch is solved."""
 CHEAPER = 3.0
 """Another turn is taken where it costs less by so much: it is twenty times as probable."""
+SETTLED = (1.0, 1.0)
+"""Steps of a window in which a turn was taken."""
 
 
 @dataclass(frozen=True)
@@ -44,66 +48,103 @@ class DoubtedTurn:
     """By which the most doubtful gap comes first."""
 
 
-def doubted_turns(problem: ClipProblem, misfit: Array, among: BoolArray) -> list[DoubtedTurn]:
+@dataclass(frozen=True, eq=False)
+class ChosenTurns:
+    """A clip's problem with the turns that were chosen."""
+
+    problem: ClipProblem
+    states: list[ClipState]
+    """Windows of it, about the problem's prior."""
+    undecided: tuple[Undecided, ...]
+    """Where another turn is nearly as probable."""
+
+
+def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
     Args:
         problem: The clip's problem.
-        misfit: (F,) what the image costs in each frame, followed the short way round.
+        cost: (F,) what each marker seen costs on average in each frame, the short way round.
         among: (K - 1,) the gaps that are asked for.
     """
     keyframes = problem.keyframes
     step = heading_steps_rad(problem.interpolated[keyframes])
-    usual = max(float(np.median(misfit)), 1e-9)
     found = []
     for gap in np.flatnonzero(among).tolist():
         first, last = int(keyframes[gap]), int(keyframes[gap + 1])
         if last - first < 2:
             continue
         time_s = float(problem.step_s[first:last].sum())
-        misfits = float(misfit[first + 1 : last].mean()) / usual
-        doubted = time_s >= LONG_S and misfits > DOUBTED
+        misfit = float(cost[first + 1 : last].mean())
+        doubted = time_s >= LONG_S and misfit > DOUBTED_COST
         if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
             continue
         other = -1 if step[gap] > 0.0 else 1
         ways = (other, -other) if doubted else (other,)
         possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= FASTEST_RAD_PER_S * time_s]
         if possible:
-            found.append(DoubtedTurn(gap, tuple(possible), misfits + abs(step[gap]) / np.pi))
+            found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
     return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
-LOG=[]
 
-def choose_turns(
-    problem: ClipProblem, states: list[ClipState], among: BoolArray
-) -> Generator[None, None, tuple[ClipProblem, list[ClipState]]]:
+
+def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray) -> Part[ChosenTurns]:
     """Turn the other way round where that costs less.
 
     Args:
-        problem: The clip's problem.
+        problem: The clip's problem, with the short way round in the gaps that are asked for.
         states: Windows of it, solved; they may overlap.
         among: (K - 1,) the gaps that are asked for.
 
-    Returns:
-        The problem with the turns that were chosen, and the windows' states about its prior.
+    Yields:
+        The fraction done, from 0 to 1.
     """
     margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0
-    for doubt in doubted_turns(problem, image_cost(problem, states), among):
+    before, open_still = problem, []
+    seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
+    doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
+    for number, doubt in enumerate(doubts):
         first, last = (int(frame) for frame in problem.keyframes[doubt.gap : doubt.gap + 2])
         state = cut(states, first, last + 1, margin)
         if state is None:
             continue
-        best: Contest | None = None
-        for way in doubt.turns:
-            turns = problem.turns.copy()
-            turns[doubt.gap] += way
-            other = problem.with_turns(turns)
-            start = other.start(Window(int(state.frame[0]), int(state.frame[-1]) + 1, first, last))
-            tried = yield from contest(problem, state, other, start)
-            LOG.append(((first,last), doubt, way, tried, problem, other))
-            if tried is not None and (best is None or tried.gain > best.gain):
-                best = tried
-        if best is not None and best.gain > CHEAPER:
+        tries = _tries(problem, state, doubt)
+        best = yield from scaled(tries, number / len(doubts), (number + 1) / len(doubts))
+        if best is None:
+            continue
+        taken = best.gain > CHEAPER
+        if taken:
             problem = best.other.problem
             share = inside(best.other.state.frame, first, last)
             states = [blended(one, best.other, share) for one in states]
-    return problem, states
+        other = undecided(best, taken, first, last)
+        if other is not None:
+            open_still.append(other)
+    turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
+    settled = []
+    for state in states:
+        part = WindowProblem(problem, _whole(state), state)
+        if turned[part.window.frames].any():
+            yield from scaled(part.descend(SETTLED), 1.0, 1.0)
+        settled.append(part.state.without_cache())
+    return ChosenTurns(problem, settled, tuple(open_still))
+
+
+def _tries(
+    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn
+) -> Generator[None, None, Contest | None]:
+    """The contest that another turn wins most clearly, or loses least; None where all are hopeless."""
+    best: Contest | None = None
+    for way in doubt.turns:
+        turns = problem.turns.copy()
+        turns[doubt.gap] += way
+        other = problem.with_turns(turns)
+        tried = yield from contest(problem, state, other, other.start(_whole(state)))
+        if tried is not None and (best is None or tried.gain > best.gain):
+            best = tried
+    return best
+
+
+def _whole(state: ClipState) -> Window:
+    """The window of a state's frames, which keeps them all."""
+    first, last = int(state.frame[0]), int(state.frame[-1]) + 1
+    return Window(first, last, first, last)

@@ -38,7 +38,15 @@ from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .turn_choice import choose_turns
-from .warm_start import blend_weight, changed_frames, revised_windows, same_setup, with_earlier_evidence
+from .undecided import Undecided
+from .warm_start import (
+    blend_weight,
+    changed_frames,
+    revised_windows,
+    same_setup,
+    with_earlier_evidence,
+    with_earlier_turns,
+)
 from .window_problem import WindowProblem
 from .windows import Window, windows
 
@@ -73,6 +81,8 @@ class WholeClipResult:
     """The look of performer and background; None where no background can be trusted."""
     outlined: BoolArray | None = None
     """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
+    undecided: tuple[Undecided, ...] = ()
+    """Stretches in which the body may have turned another way."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -218,19 +228,23 @@ def _solve(
     if earlier is not None and same_setup(earlier.problem, problem):
         same = with_earlier_evidence(earlier.problem, problem)
         if same is not None:
+            same, anew = with_earlier_turns(earlier.problem, same)
             changed = changed_frames(earlier.problem, same)
             spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, album, earlier)
+            result = yield from _solve_windows(same, spans, anew, album, earlier)
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
-            return replace(result, posture=earlier.posture.plus(step))
+            still = tuple(one for one in earlier.undecided if not changed[one.frame].any())
+            return replace(result, posture=earlier.posture.plus(step), undecided=(*still, *result.undecided))
     every = list(windows(problem.frames, length, margin))
-    return (yield from _solve_windows(problem, every, album, None, contours))
+    all_gaps = np.ones(len(problem.turns), dtype=bool)
+    return (yield from _solve_windows(problem, every, all_gaps, album, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
+    turning: BoolArray,
     album: Album | None,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
@@ -240,6 +254,7 @@ def _solve_windows(
     Args:
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
+        turning: (K - 1,) gaps between keyframes in which the body may turn another way.
         album: Pictures of all frames.
         earlier: An estimate of all other frames.
         contours: What was learned of them already; None to learn it once the markers are followed.
@@ -253,10 +268,8 @@ def _solve_windows(
         part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
-    if problem.observed.quality.any() or problem.points.seen.any():
-        problem, states = yield from scaled(
-            choose_turns(problem, states, _gaps_within(problem, spans)), MARKERS_SHARE, MARKERS_SHARE
-        )
+    turns = yield from scaled(choose_turns(problem, states, turning), MARKERS_SHARE, MARKERS_SHARE)
+    problem, states = turns.problem, turns.states
     contours = contours if earlier is None else earlier.contours
     if contours is not None and earlier is None:
         contours = contours.with_camera(problem.evidence.model.camera)
@@ -290,16 +303,7 @@ def _solve_windows(
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
-
-
-def _gaps_within(problem: ClipProblem, spans: list[Window]) -> BoolArray:
-    """(K - 1,) gaps between keyframes that lie within the frames which windows keep."""
-    kept = np.zeros(problem.frames, dtype=bool)
-    for window in spans:
-        kept[window.keep_first : window.keep_last] = True
-    ends = zip(problem.keyframes[:-1], problem.keyframes[1:], strict=True)
-    return np.array([kept[first : last + 1].all() for first, last in ends], dtype=bool)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, turns.undecided)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

@@ -15,7 +15,7 @@ from .terms.assembly import window_terms, with_contours
 from .terms.contours import ContourTerm
 from .terms.keypoints import KeypointTerm
 from .terms.limb_axes import AxialTerm
-from .terms.regions import RegionTerm
+from .terms.regions import FEATURES, RegionTerm
 from .terms.term import NormalEquations, total_cost
 from .windows import Window
 
@@ -141,7 +141,9 @@ class WindowProblem:
 
 
 def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
-    """(F,) what markers and keypoints cost in each frame of a clip; zero where no window has been solved.
+    """(F,) what each marker seen costs on average in each frame of a clip; zero where nothing was solved.
+
+    A keypoint has two of a marker's five rows and counts as much less.
 
     Args:
         clip: The clip's problem.
@@ -153,4 +155,5 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
         part = WindowProblem(clip, Window(first, last, first, last), state)
         seen = [term.cost(state) for term in part.terms if isinstance(term, RegionTerm | KeypointTerm)]
         cost[first:last] = np.sum(seen, axis=0)
-    return cost
+    count = (clip.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.points.seen.sum(axis=1)
+    return cost / np.maximum(count, 1.0)
