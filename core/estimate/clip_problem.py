@@ -11,6 +11,7 @@ from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..observation.occluders import StaticOccluders
+from ..prior.turns import with_turns
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
 from .terms.keypoints import ObservedKeypoints
@@ -55,6 +56,10 @@ class ClipProblem:
     """The same, as they are compared."""
     swapped: BoolArray
     """(F, N) which of them were exchanged."""
+    interpolated: Posture
+    """F postures: the prior as the keyframes are interpolated, which turns the short way round."""
+    turns: IndexArray
+    """(K - 1,) whole turns about the vertical that the prior adds to that in each gap; see `prior/turns`."""
 
     @property
     def frames(self) -> int:
@@ -65,6 +70,11 @@ class ClipProblem:
         """This problem with what is known to stand before the performer."""
         model = replace(self.evidence.model, occluders=occluders)
         return replace(self, evidence=replace(self.evidence, model=model))
+
+    def with_turns(self, turns: IndexArray) -> "ClipProblem":
+        """The same with these whole turns (K - 1,) in the gaps between the keyframes."""
+        prior = with_turns(self.interpolated, self.keyframes, turns)
+        return replace(self, prior=prior, turns=turns)
 
     def start(self, window: Window) -> ClipState:
         """The state of a window to begin with: its prior, without biases."""

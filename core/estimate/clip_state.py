@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
@@ -64,6 +65,22 @@ class ClipState:
     def without_cache(self) -> "ClipState":
         """The same state without its cached properties, for which a long clip has no room."""
         return replace(self)
+
+    def of_frames(self, frames: slice) -> "ClipState":
+        """The state of some of its frames."""
+        return replace(
+            self,
+            prior=self.prior[frames],
+            frame=self.frame[frames],
+            variation=self.variation[frames],
+            bias=self.bias[frames],
+        )
+
+    def about(self, prior: Posture, posture: Posture, bias: Array) -> "ClipState":
+        """Other postures and biases (F, B) of the same frames, as deviations from another prior."""
+        deviation = posture.minus(prior)
+        variation = solve_triangular(self.factor, deviation.T, lower=True).T
+        return replace(self, prior=prior, variation=variation, bias=bias)
 
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and the largest change of its postures.

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arrays import Array
 from .clip_state import ClipState
-from .terms.term import CostTerm, NormalEquations, total_cost
+from .terms.term import NormalEquations, Term, total_cost
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 """From a start that may be far off; image noise is widened by these factors."""
@@ -17,7 +17,7 @@ CONVERGED = 2e-3
 
 
 def descend(
-    state: ClipState, terms: Sequence[CostTerm], temperatures: Sequence[float] = TEMPERATURES
+    state: ClipState, terms: Sequence[Term], temperatures: Sequence[float] = TEMPERATURES
 ) -> tuple[ClipState, Array]:
     """Descend from every start of a state.
 

@@ -7,6 +7,7 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
+from .undecided import Undecided
 
 DOUBTED_LENS = 0.03
 """Difference of the calibrated from the stated lens, as a share, that gets a note."""
@@ -15,6 +16,8 @@ DOUBTED_POSING = 2.0
 """Size of the posing error, in usual ones, that gets a note."""
 DOUBTED_MARKER = 3.0
 """Distrust of a marker that gets a note."""
+DOUBTED_TURN = 0.1
+"""Probability of another turn than the one taken that gets a note."""
 MOST_NAMED = 3
 """Largest number of frames that a note names."""
 
@@ -74,6 +77,21 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
         "contours were not followed: too little of the background stands still; between keyframes the motion "
         "is their interpolation alone; hold the camera still, or add keypoints or markers",
     )
+
+
+def turn_notes(take: Take, stretches: Sequence[Undecided]) -> tuple[str, ...]:
+    """Notes on stretches in which the footage hardly tells which way round the body turns."""
+    notes = []
+    for one in sorted(stretches, key=lambda one: int(one.frame[0])):
+        if one.share >= DOUBTED_TURN:
+            first, last, telling = (
+                index + take.frame_start for index in (one.frame[0], one.frame[-1], one.telling_frame)
+            )
+            notes.append(
+                f"from frame {first} to {last} the body may turn the other way round; "
+                f"a keyframe at frame {telling} decides"
+            )
+    return tuple(notes)
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:

@@ -34,8 +34,17 @@ from .keyframe_selection import select_keyframes
 from .keypoint_fit import KeypointFit, observed_joints
 from .keypoint_notes import keypoint_notes
 from .match_error import place_depth_std_m, undetermined_covariance
-from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
+from .notes import (
+    contour_notes,
+    evidence_notes,
+    filter_notes,
+    found_notes,
+    left_out_notes,
+    marker_notes,
+    turn_notes,
+)
 from .seen_tracks import seen_tracks
+from .undecided import undecided_covariance
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
@@ -164,7 +173,7 @@ def _reconstruct(
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None)
+        notes += contour_notes(take, solution.contours is not None) + turn_notes(take, solution.undecided)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -254,6 +263,8 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         tracks.time_s,
     )
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
+    other_turns = undecided_covariance(result.undecided, *motion.points.shape[:2])
+    motion = replace(motion, point_covariance=motion.point_covariance + other_turns)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0
@@ -262,8 +273,8 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         lower = motion.points[:, ankles, 2].min(axis=1)
         place_std_m = place_depth_std_m(motion.points, lower, take.camera)
     sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
-    undecided = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
-    return replace(motion, point_covariance=motion.point_covariance + undecided)
+    open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
+    return replace(motion, point_covariance=motion.point_covariance + open_depth)
 
 
 def _keypoint_diagnostics(result: WholeClipResult) -> dict[str, Array]:

@@ -80,6 +80,24 @@ def with_earlier_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem
     return replace(now, evidence=evidence, factor=earlier.factor)
 
 
+def with_earlier_turns(earlier: ClipProblem, now: ClipProblem) -> tuple[ClipProblem, BoolArray]:
+    """The problem with the earlier one's turns, and the gaps (K - 1,) whose turns are to be chosen anew.
+
+    These are the gaps between other keyframes, and those in which anything changed; they turn the short way.
+    """
+    known = dict(zip(_gaps(earlier), earlier.turns.tolist(), strict=True))
+    turns = np.array([known.get(gap, 0) for gap in _gaps(now)], dtype=np.intp)
+    changed = changed_frames(earlier, now.with_turns(turns))
+    anew = [gap not in known or bool(changed[gap[0] : gap[1] + 1].any()) for gap in _gaps(now)]
+    chosen = np.array(anew, dtype=bool)
+    return now.with_turns(np.where(chosen, 0, turns)), chosen
+
+
+def _gaps(problem: ClipProblem) -> list[tuple[int, int]]:
+    keyframes = problem.keyframes.tolist()
+    return list(zip(keyframes[:-1], keyframes[1:], strict=True))
+
+
 def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
     placed = placement_values(one.model.placements) - placement_values(other.model.placements)
     sizes = np.log([one.posing_scale, *one.distrust, *one.area_ratio])

@@ -41,6 +41,8 @@ from .second_look import find_lost
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
+from .turn_choice import choose_turns
+from .undecided import Undecided
 from .warm_start import (
     blend_weight,
     changed_frames,
@@ -48,6 +50,7 @@ from .warm_start import (
     same_setup,
     with_earlier_evidence,
     with_earlier_finds,
+    with_earlier_turns,
 )
 from .window_problem import WindowProblem
 from .windows import Window, windows
@@ -83,6 +86,8 @@ class WholeClipResult:
     """The look of performer and background; None where no background can be trusted."""
     outlined: BoolArray | None = None
     """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
+    undecided: tuple[Undecided, ...] = ()
+    """Stretches in which the body may have turned another way."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -194,6 +199,8 @@ def estimate_whole_clip(
         keypoints,
         points,
         swapped,
+        prior,
+        np.zeros(max(len(index) - 1, 0), dtype=np.intp),
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
@@ -230,21 +237,25 @@ def _solve(
     if earlier is not None and same_setup(earlier.problem, problem):
         same = with_earlier_evidence(earlier.problem, problem)
         if same is not None:
+            same, anew = with_earlier_turns(earlier.problem, same)
             changed = changed_frames(earlier.problem, same)
             same = with_earlier_finds(earlier.problem, same, changed)
             spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, album, changed, earlier)
+            result = yield from _solve_windows(same, spans, anew, album, changed, earlier)
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
-            return replace(result, posture=earlier.posture.plus(step))
+            still = tuple(one for one in earlier.undecided if not changed[one.frame].any())
+            return replace(result, posture=earlier.posture.plus(step), undecided=(*still, *result.undecided))
     every = list(windows(problem.frames, length, margin))
+    all_gaps = np.ones(len(problem.turns), dtype=bool)
     among = np.ones(problem.frames, dtype=bool)
-    return (yield from _solve_windows(problem, every, album, among, None, contours))
+    return (yield from _solve_windows(problem, every, all_gaps, album, among, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
+    turning: BoolArray,
     album: Album | None,
     among: BoolArray,
     earlier: WholeClipResult | None,
@@ -255,6 +266,7 @@ def _solve_windows(
     Args:
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
+        turning: (K - 1,) gaps between keyframes in which the body may turn another way.
         album: Pictures of all frames.
         among: (F,) frames in which lost markers are looked for.
         earlier: An estimate of all other frames.
@@ -269,6 +281,8 @@ def _solve_windows(
         part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
+    turns = yield from scaled(choose_turns(problem, states, turning), MARKERS_SHARE, MARKERS_SHARE)
+    problem, states = turns.problem, turns.states
     contours = contours if earlier is None else earlier.contours
     if contours is not None and earlier is None:
         contours = contours.with_camera(problem.evidence.model.camera)
@@ -308,7 +322,7 @@ def _solve_windows(
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, turns.undecided)
 
 
 def _before_occluders(

@@ -13,8 +13,10 @@ from .clip_state import ClipState
 from .contour_evidence import ContourEvidence
 from .terms.assembly import window_terms, with_contours
 from .terms.contours import ContourTerm
+from .terms.keypoints import KeypointTerm
 from .terms.limb_axes import AxialTerm
-from .terms.term import NormalEquations
+from .terms.regions import FEATURES, RegionTerm
+from .terms.term import NormalEquations, total_cost
 from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
@@ -58,6 +60,19 @@ class WindowProblem:
     def settle(self) -> Part[None]:
         """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
         yield from self._gauss_newton(SETTLING_TEMPERATURES, 0.0, 1.0)
+
+    def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
+        """Gauss-Newton steps with the terms there are; it yields now and then.
+
+        Args:
+            temperatures: Factor of the image's variance in each step.
+
+        Returns:
+            (F,) negative logarithm of the probability of each frame where the steps end, up to a constant.
+        """
+        for _ in self._gauss_newton(temperatures, 0.0, 1.0):
+            yield
+        return total_cost(self.terms, self.state)
 
     def follow_contours(self, contours: ContourEvidence) -> Part[None]:
         """Go on with the contours, whose edges are measured anew each round; yields like `follow_markers`."""
@@ -129,3 +144,22 @@ class WindowProblem:
             doubt = contours_doubt if isinstance(term, ContourTerm | AxialTerm) else 1.0
             term.add_to(equations, self.state, temperature * doubt)
         yield
+
+
+def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
+    """(F,) what each marker seen costs on average in each frame of a clip; zero where nothing was solved.
+
+    A keypoint has two of a marker's five rows and counts as much less.
+
+    Args:
+        clip: The clip's problem.
+        states: Of windows, in order; where two overlap, the later one counts.
+    """
+    cost = np.zeros(clip.frames)
+    for state in states:
+        first, last = int(state.frame[0]), int(state.frame[-1]) + 1
+        part = WindowProblem(clip, Window(first, last, first, last), state)
+        seen = [term.cost(state) for term in part.terms if isinstance(term, RegionTerm | KeypointTerm)]
+        cost[first:last] = np.sum(seen, axis=0)
+    count = (clip.observed.quality > 0.0).sum(axis=1) + 2.0 / FEATURES * clip.points.seen.sum(axis=1)
+    return cost / np.maximum(count, 1.0)

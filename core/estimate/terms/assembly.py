@@ -33,7 +33,7 @@ from .quadratic import QuadraticBuilder, QuadraticTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .smoothness import SmoothnessTerm
 from .stillness import StillnessTerm
-from .term import CostTerm, Term
+from .term import Term
 
 ANKLES = ("ankle.L", "ankle.R")
 LARGEST_VARIATION = 20.0
@@ -91,7 +91,7 @@ def frame_terms(
     noise: RegionNoise,
     width_px: Array,
     points: ObservedKeypoints | None = None,
-) -> list[CostTerm]:
+) -> list[Term]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
     Args:
@@ -106,7 +106,7 @@ def frame_terms(
     bias_std = noise.bias_std(width_px).reshape(1, -1)
     repeated = observed[np.zeros(starts, dtype=np.intp)]
     width = np.repeat(width_px, starts, axis=0)
-    terms: list[CostTerm] = [
+    terms: list[Term] = [
         BeliefTerm.of(starts, belief.posture.skeleton.dof_count, bias_std),
         RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
@@ -128,7 +128,7 @@ def free_frame_terms(
     noise: RegionNoise,
     width_px: Array,
     points: ObservedKeypoints | None = None,
-) -> tuple[CostTerm, list[CostTerm]]:
+) -> tuple[Term, list[Term]]:
     """The terms of one frame of which nothing is believed but that a person stands before the camera.
 
     Args:
@@ -147,7 +147,7 @@ def free_frame_terms(
     bias_std = noise.bias_std(width_px).reshape(1, -1)
     repeated = observed[np.zeros(starts, dtype=np.intp)]
     width = np.repeat(width_px, starts, axis=0)
-    terms: list[CostTerm] = [
+    terms: list[Term] = [
         RegionTerm(model, repeated, noise, width, evidence.distrust, evidence.area_ratio),
         LimitTerm(),
         BalanceTerm(body),
@@ -159,12 +159,12 @@ def free_frame_terms(
     return BeliefTerm.of(starts, body.skeleton.dof_count, bias_std), terms
 
 
-def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[CostTerm]:
+def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, starts: int) -> list[Term]:
     """The keypoints of one frame, and the depths guessed with them, in as many states."""
     std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     repeated = points[np.zeros(starts, dtype=np.intp)]
     term = KeypointTerm(evidence.model, repeated, std_m, np.zeros((max(starts - 1, 0), 1)))
-    terms: list[CostTerm] = [FrameKeypointTerm(term)]
+    terms: list[Term] = [FrameKeypointTerm(term)]
     if np.isfinite(points.depth_m).any():
         depths = evidence.depths
         std = _depth_std_m(evidence, points, depths.std_m)[0]

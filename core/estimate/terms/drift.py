@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from .term import NormalEquations, student_weight
+from .term import NormalEquations, student_cost, student_weight
 
 DEGREES = 4.0
 
@@ -62,6 +62,22 @@ def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) 
     pull[1:] += linked[..., None] * change
     pull[:-1] -= (kept * linked)[..., None] * change
     return Drift(level, own, -kept * linked, pull)
+
+
+def drift_cost(error: Array, used: BoolArray, kept: Array) -> Array:
+    """(F,) negative logarithm of Student's t of errors that last, up to a constant; arguments as of `drift`.
+
+    An error costs by its change, in so far as it and the one before are none too large, else by its size.
+    """
+    error = np.where(used[..., None], error, 0.0)
+    size, squared = error.shape[-1], (error**2).sum(-1)
+    level = np.where(used, student_weight(squared, DEGREES, size), 0.0)
+    change = error[1:] - kept[..., None] * error[:-1]
+    both = np.sqrt(level[1:] * level[:-1])
+    cost = np.where(used, student_cost(squared, DEGREES, size), 0.0)
+    fresh = np.maximum(1.0 - kept**2, 1e-6)
+    cost[1:] += both * (student_cost((change**2).sum(-1) / fresh, DEGREES, size) - cost[1:])
+    return np.asarray(cost.sum(-1))
 
 
 def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:

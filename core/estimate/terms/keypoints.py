@@ -1,6 +1,7 @@
 """Keypoints against their prediction, in pixels: robust, and with errors that last."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ...body.kinematics import Pose
 from ...footage.keypoints.keypoints import Keypoints
 from ...observation.keypoints import KeypointModel
 from ..clip_state import ClipState
-from .drift import Drift, add_drift, drift
+from .drift import Drift, add_drift, drift, drift_cost
 from .term import NormalEquations
 
 PIXEL_STD = 0.35
@@ -75,6 +76,7 @@ class KeypointTerm:
     """(N,) error of a sure detection along each axis [m]; infinite for what is not believed."""
     kept: Array
     """(F - 1, N) share of an error that is left in the next frame."""
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add two rows for each keypoint."""
@@ -83,6 +85,11 @@ class KeypointTerm:
         factor = np.where(used, 1.0 / std_px, 0.0)
         jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
         add_drift(equations, jacobian, rows, state.tangent_jacobian)
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) see `drift_cost`."""
+        error, _, used = self.errors(state.pose, state.frame)
+        return drift_cost(error, used, self.kept)
 
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""

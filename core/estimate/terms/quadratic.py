@@ -1,6 +1,7 @@
 """Terms that are quadratic in the unknowns, hence built once: posed keyframes, biases, weak priors."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,10 +16,16 @@ class QuadraticTerm:
     """½ xᵀ M x over all unknowns."""
 
     matrix: BlockBanded
+    robust: ClassVar[bool] = False
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add the term; annealing does not touch it."""
         equations.add_quadratic(self.matrix, state.unknowns)
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) each frame's share of ½ xᵀ M x."""
+        unknowns = state.unknowns
+        return np.asarray(0.5 * (unknowns * self.matrix.multiply(unknowns)).sum(-1))
 
 
 class QuadraticBuilder:

@@ -5,11 +5,13 @@ distribution allows for it without loosening the rest of the clip (Lange, Little
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
+from ...arrays import Array
 from ..clip_state import ClipState
-from .term import NormalEquations
+from .term import NormalEquations, student_cost
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 
@@ -22,6 +24,7 @@ class SmoothnessTerm:
     """Usual size at the clip's own pace."""
     degrees: float = 4.0
     """Degrees of freedom of a limb's acceleration; fewer allow more bursts."""
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each unknown and inner frame."""
@@ -38,3 +41,14 @@ class SmoothnessTerm:
         pull = information * second * self.std
         for offset, coefficient in enumerate(SECOND_DIFFERENCE):
             equations.gradient[offset : offset + len(pull), columns] += coefficient * pull
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) negative logarithm of Student's t over all limbs, up to a constant; by the middle frame."""
+        cost = np.zeros(state.frames)
+        if state.frames < 3:
+            return cost
+        second = np.diff(state.variation, n=2, axis=0) / self.std
+        for limb in state.prior.skeleton.limbs:
+            # Weighed by all of a limb's components together, as `add_to` does.
+            cost[1:-1] += student_cost((second[:, limb] ** 2).sum(axis=1), self.degrees, 1)
+        return cost

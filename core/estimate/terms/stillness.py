@@ -8,6 +8,7 @@ once for the speed and once for the height.
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -34,6 +35,7 @@ class StillnessTerm:
     """Height above the lowest of the points at which a point's rows count a quarter."""
     std_m: float = 0.003
     """How far a standing ankle wanders from frame to frame [m]."""
+    robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add three rows for each point and pair of frames."""
@@ -53,14 +55,33 @@ class StillnessTerm:
             (jacobian[1:] * weight[..., None]).reshape(shape),
         )
 
+    def cost(self, state: ClipState) -> Array:
+        """(F,) what it costs the points to move, which is bounded; that of the later frame of each pair."""
+        cost = np.zeros(state.frames)
+        if state.frames < 2:
+            return cost
+        places = state.body.points(state.pose)[:, list(self.points)]
+        travel, middle = np.diff(places, axis=0), 0.5 * (places[1:] + places[:-1])
+        speed, height = self._moving(travel, middle, state.frame[1:])
+        farthest = self.release_speed_m_s * self.step_s[:, None] / self.std_m
+        # The integral of a row times its weight, ∫ x (1 + x²)⁻⁴ dx.
+        moved = farthest**2 * (1.0 - (1.0 + speed**2) ** -3.0) / 6.0
+        cost[1:] = (moved * _kernel(height) ** 2).sum(-1)
+        return cost
+
     def _standing(self, travel: Array, middle: Array, frame: IndexArray) -> Array:
         """(F - 1, points) how far each point is taken to stand, 0 to 1."""
+        speed, height = self._moving(travel, middle, frame)
+        return np.asarray(_kernel(speed) * _kernel(height))
+
+    def _moving(self, travel: Array, middle: Array, frame: IndexArray) -> tuple[Array, Array]:
+        """(F - 1, points) speed and height, in those at which rows count a quarter."""
         sight = self.camera.sight(middle, frame[:, None])
         along = np.sum(travel * sight, axis=-1, keepdims=True) * sight
         counted = travel - (1.0 - self.depth_share) * along
         speed = np.linalg.norm(counted, axis=-1) / self.step_s[:, None]
         height = middle[..., 2] - middle[..., 2].min(axis=1, keepdims=True)
-        return np.asarray(_kernel(speed / self.release_speed_m_s) * _kernel(height / self.release_height_m))
+        return speed / self.release_speed_m_s, height / self.release_height_m
 
 
 def _kernel(x: Array) -> Array:

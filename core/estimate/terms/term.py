@@ -1,4 +1,4 @@
-"""The protocol of a term, its cost where one is needed, and the normal equations that terms add to."""
+"""The protocol of a term, what all of them cost, and the normal equations that terms add to."""
 
 from collections.abc import Iterable
 from typing import ClassVar, Protocol
@@ -54,25 +54,21 @@ class NormalEquations:
 
 
 class Term(Protocol):
-    """A term adds its linearized rows at a state; `temperature` ≥ 1 widens image noise while annealing."""
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add this term's rows."""
-        ...
-
-
-class CostTerm(Term, Protocol):
-    """A term that also tells its cost, as the choice between several fits of one frame needs."""
+    """A term adds its linearized rows at a state, and tells its cost, by which states are chosen between."""
 
     robust: ClassVar[bool]
     """Whether its noise has heavy tails; without them the cost is half a sum of squares."""
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add this term's rows; `temperature` ≥ 1 widens image noise while annealing."""
+        ...
 
     def cost(self, state: ClipState) -> Array:
         """(F,) negative logarithm of each frame's probability, up to a constant."""
         ...
 
 
-def total_cost(terms: Iterable[CostTerm], state: ClipState) -> Array:
+def total_cost(terms: Iterable[Term], state: ClipState) -> Array:
     """(F,) negative logarithm of the probability of each frame's state, up to a constant.
 
     Sums of squares are added before robust costs: the order is fixed because rounding depends on it.

@@ -13,7 +13,7 @@ from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import observed_joints
 from keymark.core.estimate.keypoint_notes import keypoint_notes
 from keymark.core.estimate.side_swaps import doubted_at_changes, exchanged_back, find_swaps
-from keymark.core.estimate.terms.drift import add_drift, drift
+from keymark.core.estimate.terms.drift import add_drift, drift, drift_cost
 from keymark.core.estimate.terms.term import NormalEquations
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
 from keymark.core.footage.camera import Camera
@@ -292,6 +292,19 @@ def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
     information = np.linalg.inv(kept**apart)
     np.testing.assert_allclose(dense(equations.matrix), information, atol=1e-6)
     np.testing.assert_allclose(equations.gradient[:, 0], information @ error[:, 0, 0], atol=1e-9)
+
+
+def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
+    """An error that stays costs little more than its first frame; an outlier costs by itself."""
+    used, kept = np.ones((20, 1), dtype=bool), np.full((19, 1), 0.95)
+    steady = np.full((20, 1, 1), 0.5)
+    jumping = steady * np.where(np.arange(20) % 2, 1.0, -1.0)[:, None, None]
+    calm, wild = drift_cost(steady, used, kept), drift_cost(jumping, used, kept)
+    assert calm[1:].max() < 0.2 * calm[0] and wild[1:].min() > 10.0 * calm[0]
+    outlier = steady.copy()
+    outlier[10] = 1000.0
+    assert drift_cost(outlier, used, kept).sum() < calm.sum() + 60.0
+    assert drift_cost(steady, ~used, kept).sum() == 0.0
 
 
 def test_drift_begins_anew_after_a_gap_or_an_outlier() -> None:

@@ -114,6 +114,39 @@ def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
     assert LimitTerm().cost(at).max() > 0.0
 
 
+def test_terms_of_a_clip_descend_their_cost() -> None:
+    """Depths, rows over several frames and bursts too, of which states of a stretch are chosen between."""
+    at = state(seed=7, size=0.02)
+    prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), at.frame)
+    builder = QuadraticBuilder(FRAMES, DOFS)
+    builder.add(slice(0, DOFS), (-0.9, 1.0), 0.3)
+    for term in (DepthTerm(CAMERA, prior, np.full((FRAMES, 1), 0.2)), builder.term()):
+        assert_gradient(term, lambda s, term=term: term.cost(s).sum(), at)
+        assert term.cost(at).shape == (FRAMES,) and term.cost(at).sum() > 0.0
+    smooth = SmoothnessTerm(0.8)
+    assert_gradient(smooth, lambda s: smooth.cost(s).sum(), at)
+    burst = replace(at, variation=30.0 * at.variation)
+    assert smooth.cost(burst).sum() < 100.0 * smooth.cost(at).sum()  # 900 times as much if it were quadratic
+
+
+def test_the_cost_of_a_moving_foot_grows_with_its_way_and_is_bounded() -> None:
+    """A foot that creeps costs half the square of its pull; one that walks costs no more than one that runs."""
+    term = StillnessTerm(CAMERA, (HUMAN.point_names.index("ankle.L"),), np.full(FRAMES - 1, 1.0 / 30.0))
+    across = CAMERA.matrix_world[:3, 0]
+    held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]
+
+    def cost(step_m: float) -> float:
+        deviation = np.zeros((FRAMES, DOFS))
+        deviation[:, :3] = step_m * across * np.arange(FRAMES)[:, None]
+        at = ClipState(BODY, held, np.arange(FRAMES), np.eye(DOFS), deviation, np.zeros((FRAMES, 0)))
+        found = term.cost(at)
+        assert found[0] == 0.0  # of the later frame of each pair
+        return float(found[1:].mean())
+
+    assert cost(0.0003) == pytest.approx(0.5 * 0.1**2, rel=0.02)
+    assert cost(0.001) < cost(0.02) < cost(0.06) < 1.05 * cost(0.02)
+
+
 def pull(points: tuple[int, ...], step_m: np.ndarray) -> np.ndarray:
     """The stillness term's pull on the first frame of a body that moves as a whole (3,) [m a frame]."""
     term = StillnessTerm(CAMERA, points, np.full(FRAMES - 1, 1.0 / 30.0))
