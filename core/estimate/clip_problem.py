@@ -28,7 +28,7 @@ class ClipProblem:
     """As stated; the evidence has the calibrated lens."""
     evidence: KeyframeEvidence
     factor: Array
-    """(D, D) of the deviation's accelerations."""
+    """(D, D) of the deviation's accelerations, by the keyframes."""
     prior: Posture
     """A batch of F postures."""
     keyframes: IndexArray
@@ -61,6 +61,16 @@ class ClipProblem:
     turns: IndexArray
     """(K - 1,) whole turns about the vertical that the prior adds to that in each gap; see `prior/turns`."""
 
+    limb_size: Array
+    """(D,) factor on the accelerations of each degree of freedom's limb, by what the footage shows of it."""
+    depth_factor: Array
+    """(F, P) factor on the noise of the prior's depths, by how far the prior misses each point."""
+
+    @property
+    def accelerations(self) -> Array:
+        """(D, D) the factor L of usual accelerations, with what the footage shows."""
+        return np.asarray(self.limb_size[:, None] * self.factor)
+
     @property
     def frames(self) -> int:
         """Number of frames F."""
@@ -83,7 +93,7 @@ class ClipProblem:
             self.body,
             self.prior[window.frames],
             np.arange(window.first, window.last),
-            self.factor,
+            self.accelerations,
             np.zeros((frames, self.body.skeleton.dof_count)),
             np.zeros((frames, markers * FEATURES)),
         )
