@@ -28,8 +28,9 @@ USUAL_SIZE = 0.15
 solution is smoother than the motion, whose size is one."""
 SHRINKAGE = 0.7
 """Power of the size: what a solution shows of a limb's motion is partly what was assumed of it."""
-SMALLEST, LARGEST = 0.6, 3.0
-"""Bounds of a limb's factor."""
+LARGEST, LARGEST_PER_GAP_S, LARGEST_OF_ALL = 1.5, 4.5, 3.0
+"""Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a third of a
+second apart and show less of the swings between them. A looser motion has more local optima."""
 DEPENDENT_ROWS = 8.0
 """Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
 but count as rows of their own."""
@@ -90,12 +91,14 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
     pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
     variation = np.concatenate(kept)
     size = problem.limb_size.copy()
-    if len(variation) < 3:
+    if len(variation) < 3 or len(problem.keyframes) < 2:
         return size
     squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
+    gap_s = float(np.median(np.diff(problem.keyframes))) * pace * REFERENCE_STEP_S
+    largest = float(np.clip(LARGEST_PER_GAP_S * gap_s, LARGEST, LARGEST_OF_ALL))
     for limb in problem.body.skeleton.limbs:
         found = (np.sqrt(squared[limb].mean()) / USUAL_SIZE) ** SHRINKAGE
-        size[limb] *= np.clip(found, SMALLEST, LARGEST)
+        size[limb] = np.clip(size[limb] * found, 1.0, largest)
     return size
 
 

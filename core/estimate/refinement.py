@@ -5,7 +5,7 @@ and the background look, where markers are that were lost, what stands before th
 the motion is. Each changes the problem, and the states follow it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -84,11 +84,34 @@ def refine(
         contours = yield from scaled(_learned(problem, spans, states, album), 0.4, 0.5)
     if contours is not None and len(problem.evidence.model.placements):
         looking = find_lost(problem, spans, states, contours, anew.frames)
-        problem = yield from scaled(looking, 0.5, 0.8)
+        problem = yield from scaled(looking, 0.5, 0.7)
+        # What was found may decide a turn that was open, and a turn shows where to look.
+        still_open = _open_gaps(problem, turns.undecided)
+        if still_open.any():
+            again = yield from scaled(choose_turns(problem, states, still_open), 0.7, 0.75)
+            kept = tuple(one for one in turns.undecided if not still_open[_gap(problem, one)])
+            turns = replace(again, undecided=(*kept, *again.undecided))
+            if (again.problem.turns != problem.turns).any():
+                problem, states = again.problem, again.states
+                looking = find_lost(problem, spans, states, contours, anew.frames)
+                problem = yield from scaled(looking, 0.75, 0.8)
     if earlier is None and contours is not None:
         problem, contours = yield from scaled(_before_occluders(problem, spans, states, contours), 0.8, 0.9)
     problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.9, 1.0)
     return Refinement(problem, states, contours, turns.undecided)
+
+
+def _gap(problem: ClipProblem, one: Undecided) -> int:
+    """The gap between keyframes that a stretch lies in."""
+    return int(np.searchsorted(problem.keyframes, one.frame[0], side="right")) - 1
+
+
+def _open_gaps(problem: ClipProblem, undecided: tuple[Undecided, ...]) -> BoolArray:
+    """(K - 1,) gaps that turn the short way though another is nearly as probable."""
+    gaps = np.zeros(len(problem.turns), dtype=bool)
+    for one in undecided:
+        gaps[_gap(problem, one)] = problem.turns[_gap(problem, one)] == 0
+    return gaps
 
 
 def _learned(
