@@ -16,7 +16,7 @@ from keymark.core.progress import Preview
 
 FRAMES, EVERY, MOVED = 360, 6, 31
 TOLERANCE_MM = 10.0
-"""At the one worst point, in a frame that hardly anything determines; on average it is less than a twentieth."""
+"""At the one worst point, in a frame that hardly anything determines; on average a twentieth or less."""
 TRUTH = exercise(FRAMES)
 TRACKS = film(TRUTH, 0.3)
 OPTIONS = WholeClipOptions(window_s=10.0)
