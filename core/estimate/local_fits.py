@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from .clip_problem import ClipProblem
 from .clip_state import ClipState
+from .unseen_markers import unseen_cost
 from .window_problem import WindowProblem
 from .windows import Window
 
@@ -79,6 +80,7 @@ def _fit(
     first, last = int(start.frame[0]), int(start.frame[-1]) + 1
     part = WindowProblem(problem, Window(first, last, first, last), start)
     cost = yield from part.descend(temperatures)
+    cost = cost + unseen_cost(problem, part.state)
     return LocalFit(problem, part.state.without_cache(), float(cost.sum()))
 
 
