@@ -293,8 +293,8 @@ def _solve_windows(
     for window, begun, ended in stretches:
         first, last = (REFINED_SHARE + (1.0 - REFINED_SHARE) * share for share in (begun, ended))
         part = WindowProblem(problem, window, states.pop(0))
-        if contours is not None:
-            yield from scaled(part.follow_contours(contours), first, last)
+        last_steps = part.converge() if contours is None else part.follow_contours(contours)
+        yield from scaled(last_steps, first, last)
         inner = slice(window.keep_first, window.keep_last)
         posture, covariance[inner], residual_px[inner] = yield from scaled(part.solution(), last, last)
         if outlined is not None:

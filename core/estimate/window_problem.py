@@ -19,11 +19,14 @@ from .terms.regions import FEATURES, RegionTerm
 from .terms.term import NormalEquations, total_cost
 from .windows import Window
 
-TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
+TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
+"""Of a first descent: what is learned from its postures changes the problem before they have converged."""
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-SETTLING_TEMPERATURES = (2.0, 1.0, 1.0)
+SETTLING_TEMPERATURES = (1.0, 1.0)
 """Of the steps from postures that were found with less knowledge."""
+CONVERGING_TEMPERATURES = tuple(1.0 for _ in range(9))
+"""Of the last steps where no contours follow."""
 CONTOUR_TEMPERATURES = (1.0, 1.0)
 """Of the steps with contours, once the markers have brought these within reach of their edges."""
 LARGEST_STEP = 0.5
@@ -60,6 +63,10 @@ class WindowProblem:
     def settle(self) -> Part[None]:
         """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
         yield from self._gauss_newton(SETTLING_TEMPERATURES, 0.0, 1.0)
+
+    def converge(self) -> Part[None]:
+        """Gauss-Newton to the end with the terms there are; yields likewise."""
+        yield from self._gauss_newton(CONVERGING_TEMPERATURES, 0.0, 1.0)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
         """Gauss-Newton steps with the terms there are; it yields now and then.
