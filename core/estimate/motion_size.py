@@ -54,7 +54,7 @@ def adapted(
         problem: The clip's problem.
         spans: The windows.
         states: The state of each by the markers so far.
-        among: (F,) frames that tell how far the prior misses.
+        among: (F,) frames in whose gaps it is asked how far the prior misses.
         earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
             prior misses in all other gaps; None without one.
 
@@ -114,10 +114,12 @@ def _depth_factor(
         sight = camera.sight(body.points(body.pose(kept)), frame[:, None])
         missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
         squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
-    squared[~among] = np.nan
     gap = np.searchsorted(problem.keyframes, np.arange(problem.frames), side="right")
     told = np.isfinite(squared[:, 0])
     gaps = len(problem.keyframes) + 1
+    # A gap of which only some frames are estimated again would not tell what all of it did.
+    asked = np.bincount(gap[among], minlength=gaps) > 0
+    told &= (asked & (np.bincount(gap[~told], minlength=gaps) == 0))[gap]
     count = np.bincount(gap[told], minlength=gaps)
     total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
