@@ -54,7 +54,7 @@ def adapted(
         problem: The clip's problem.
         spans: The windows.
         states: The state of each by the markers so far.
-        among: (F,) frames that tell how far the prior misses.
+        among: (F,) frames in whose gaps it is asked how far the prior misses.
         earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
             prior misses in all other gaps; None without one.
 
@@ -65,7 +65,7 @@ def adapted(
     if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
         return problem, states
     known = problem if earlier is None else earlier
-    factor = _depth_factor(problem, states, among, known.depth_factor)
+    factor = _depth_factor(problem, spans, states, among, known.depth_factor)
     size = limb_sizes(problem, spans, states) if earlier is None else earlier.limb_size
     grown = size / problem.limb_size
     problem = replace(problem, limb_size=size, depth_factor=factor)
@@ -102,23 +102,27 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
     return size
 
 
-def _depth_factor(problem: ClipProblem, states: list[ClipState], among: BoolArray, known: Array) -> Array:
+def _depth_factor(
+    problem: ClipProblem, spans: list[Window], states: list[ClipState], among: BoolArray, known: Array
+) -> Array:
     """(F, P) factor on the noise of the prior's depths, alike within a gap, else as known."""
     body, camera = problem.body, problem.camera
     squared = np.full(problem.depth_factor.shape, np.nan)
-    for state in (one.without_cache() for one in states):
-        points = body.points(state.pose)
-        missed = points - body.points(body.pose(state.prior))
-        sight = camera.sight(points, state.frame[:, None])
+    for window, state in zip(spans, states, strict=True):
+        kept, frame = state.posture[window.kept], state.frame[window.kept]
+        missed = body.points(body.pose(kept)) - body.points(body.pose(state.prior[window.kept]))
+        sight = camera.sight(body.points(body.pose(kept)), frame[:, None])
         missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
-        squared[state.frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
-    told = np.isfinite(squared[:, 0])
+        squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
     gap = np.searchsorted(problem.keyframes, np.arange(problem.frames), side="right")
+    told = np.isfinite(squared[:, 0])
     gaps = len(problem.keyframes) + 1
-    asked = np.bincount(gap[among & told], minlength=gaps) > 0
+    # A gap of which only some frames are estimated again would not tell what all of it did.
+    asked = np.bincount(gap[among], minlength=gaps) > 0
+    told &= (asked & (np.bincount(gap[~told], minlength=gaps) == 0))[gap]
     count = np.bincount(gap[told], minlength=gaps)
     total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
     mean = (1.0 - BODY_SHARE) * mean + BODY_SHARE * mean.mean(axis=-1, keepdims=True)
     std = np.clip(DEPENDENT_ROWS * np.sqrt(mean), LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M)
-    return np.where(asked[gap][:, None], (std / DEPTH_STD_M)[gap], known)
+    return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], known)

@@ -15,8 +15,10 @@ from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import Preview
 
 FRAMES, EVERY, MOVED = 360, 6, 31
-TOLERANCE_MM = 10.0
-"""At the one worst point, in a frame that hardly anything determines; on average a twentieth or less."""
+TOLERANCE_MM = 4.0
+"""At the one worst point; on average it is a twentieth."""
+FARTHEST_MM = 12.0
+"""At the worst point in a few frames that hardly anything determines, for which all keyframes count."""
 TRUTH = exercise(FRAMES)
 TRACKS = film(TRUTH, 0.3)
 OPTIONS = WholeClipOptions(window_s=10.0)
@@ -91,12 +93,14 @@ def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> No
     again, shown = estimate(moved(), first())
     assert estimated_frames(all_shown) == FRAMES
     assert estimated_frames(shown) < 0.5 * FRAMES
-    assert largest_mm(again.posture, fresh.posture) < TOLERANCE_MM
-    assert 1e3 * point_error_m(again.posture, fresh.posture).mean() < 0.4
+    apart = 1e3 * point_error_m(again.posture, fresh.posture)
+    changed = slice((MOVED - 1) * EVERY, (MOVED + 1) * EVERY + 1)
+    assert apart[changed].max() < TOLERANCE_MM and apart.max() < FARTHEST_MM
+    assert apart.mean() < 0.4 and np.quantile(apart, 0.99) < 2.0
     std = np.sqrt(np.diagonal(fresh.covariance, axis1=-2, axis2=-1))
     differ = np.abs(again.covariance - fresh.covariance) / (std[:, :, None] * std[:, None, :])
     assert differ.max() < 0.15
-    assert largest_mm(first().posture, fresh.posture) > TOLERANCE_MM
+    assert largest_mm(first().posture, fresh.posture) > 2.0 * TOLERANCE_MM
     back, _ = estimate(posed(), again)
     assert largest_mm(back.posture, first().posture) < TOLERANCE_MM
 
