@@ -88,7 +88,7 @@ def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray
     """Turn the other way round where that costs less.
 
     Args:
-        problem: The clip's problem, with the short way round in the gaps that are asked for.
+        problem: The clip's problem; turns that it has in these gaps are held against the short way.
         states: Windows of it, solved; they may overlap.
         among: (K - 1,) the gaps that are asked for.
 
@@ -136,7 +136,7 @@ def _tries(
     best: Contest | None = None
     for way in doubt.turns:
         turns = problem.turns.copy()
-        turns[doubt.gap] += way
+        turns[doubt.gap] = 0 if turns[doubt.gap] == way else way
         other = problem.with_turns(turns)
         tried = yield from contest(problem, state, other, other.start(_whole(state)))
         if tried is not None and (best is None or tried.gain > best.gain):
