@@ -1,6 +1,8 @@
 """An album of the performer of `_scene`, drawn part by part before a static, cluttered background."""
 
+from collections.abc import Mapping
 from functools import cache
+from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -9,12 +11,14 @@ from keymark.core.body.posture import Posture
 from keymark.core.footage.clips.album import Album
 from keymark.core.observation.contours import ContourModel
 from keymark.core.observation.part_map import part_map
+from numpy.typing import ArrayLike
 
 FRAMES = 46
 FRAME = np.arange(FRAMES)
 POSED = np.array([0, 15, 30, 45])
 """The frames of the keyframes."""
 TRUTH = exercise(FRAMES)
+NOTHING: Mapping[str, ArrayLike] = MappingProxyType({})
 NOISE_LEVELS = 3.0
 FINER = 3
 
@@ -31,14 +35,21 @@ def background(rng: np.random.Generator) -> np.ndarray:
     return np.kron(blocks, np.ones((20, 20, 1)))
 
 
-def photograph(posture: Posture, shake_px: int = 0, seed: int = 3) -> Album:
-    """An album of F postures; `shake_px` moves the background about as a hand-held camera does."""
+def photograph(
+    posture: Posture, shake_px: int = 0, seed: int = 3, painted: Mapping[str, ArrayLike] = NOTHING
+) -> Album:
+    """An album of F postures.
+
+    `shake_px` moves the background about as a hand-held camera does; `painted` segments have own colors.
+    """
     rng = np.random.default_rng(seed)
     frames = posture.batch[0]
     place = background(rng)
     model = ContourModel.average(BODY, CAMERA)
     parts = model.part_outlines(BODY.pose(posture), np.arange(frames))
     colors = part_colors(len(model.parts.segments))
+    for segment, color in painted.items():
+        colors[model.parts.segments.index(segment)] = color
     album = Album()
     for frame in range(frames):
         shift = tuple(rng.integers(-shake_px, shake_px + 1, size=2))

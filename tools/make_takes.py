@@ -1,7 +1,7 @@
 """Make takes with truth: compose a performance, film it, and write its take, keyframe and truth files.
 
 Usage: make_takes.py [--output FOLDER] [--threads N] [--keypoints] [NAME ...], with the Python of a virtual
-environment that has `bpy`; by default all takes of studio/catalogue.py into out/takes. The one called
+environment that has `bpy`; by default all takes of studio/catalogue/ into out/takes. The one called
 `aerobic` is the demonstration of presets/demo. A take needs some minutes; with --keypoints nothing is filmed,
 and only what the studio's detector sees is written anew. Equal seeds give equal motion, keyframes, keypoints
 and, in one version of Blender, equal pictures.
@@ -22,7 +22,7 @@ from _boot import load_package  # noqa: E402
 
 load_package()
 
-from keymark.core.arrays import BoolArray  # noqa: E402
+from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.posture_fields import rounded  # noqa: E402
 from keymark.core.files.json_file import write_json  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints  # noqa: E402
@@ -34,7 +34,7 @@ from keymark.core.take.keyframe_file import write_keyframes  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import write_take  # noqa: E402
 from studio.catalogue import TAKES  # noqa: E402
-from studio.described import Described  # noqa: E402
+from studio.described import SHUTTER_FRAMES, Described  # noqa: E402
 from studio.detector import detect  # noqa: E402
 from studio.filming import (  # noqa: E402
     add_sensor_noise,
@@ -46,7 +46,7 @@ from studio.filming import (  # noqa: E402
     prepare_cycles,
 )
 from studio.look import MARKERS  # noqa: E402
-from studio.performance import FPS, Performance, principal_points  # noqa: E402
+from studio.performance import Performance, principal_points  # noqa: E402
 from studio.performer import Performer, build_performer  # noqa: E402
 from studio.posing import pose_by_hand  # noqa: E402
 from studio.room import BuiltRoom, build_room  # noqa: E402
@@ -54,7 +54,7 @@ from studio.room import BuiltRoom, build_room  # noqa: E402
 FRAME_START = 1
 WORN = (evidence_kinds.MARKERS, evidence_kinds.CONTOURS)
 """Evidence that a take is held against where its keypoints are for comparison."""
-SIDE_EXPOSURE = {"moments": 2, "samples": 2}
+SIDE_EXPOSURE = {"moments": 2, "shutter_frames": SHUTTER_FRAMES, "samples": 2}
 LICENSE = (
     "The take in this folder (clip, camera, keyframes, truth) was made by\n"
     "tools/make_takes.py and is free under the project's own license,\n"
@@ -96,15 +96,19 @@ def make(described: Described, output: Path, threads: int | None) -> None:
     random = np.random.default_rng(described.seed)
     shadow = np.array(described.shadow_per_height)
     masks = _masks(performer, performance, room, described)
-    exposure = {"moments": described.moments, "samples": described.samples}
+    exposure = {
+        "moments": described.moments,
+        "shutter_frames": described.shutter_frames,
+        "samples": described.samples,
+    }
     images = film(performer, performance, room, described.camera, **exposure, shadow_per_height=shadow)
     noisy = [add_sensor_noise(image, random, described.noise) for image in images]
-    encode(noisy, output / "clip.mp4", described.quality)
+    encode(noisy, output / "clip.mp4", described.quality, performance.fps)
     _write_data(output, performance, masks, described)
     if described.side is not None:
         images = film(performer, performance, room, described.side, **SIDE_EXPOSURE, shadow_per_height=shadow)
         noisy = [add_sensor_noise(image, random, described.noise) for image in images]
-        encode(noisy, output / "side.mp4", "MEDIUM")
+        encode(noisy, output / "side.mp4", "MEDIUM", performance.fps)
         _write_json(output / "side.json", {"clip": "side.mp4", "camera": described.side.to_dict()})
 
 
@@ -119,7 +123,7 @@ def detect_again(described: Described, output: Path) -> None:
 def write_keypoint_file(output: Path, performance: Performance, described: Described) -> None:
     """Write what the studio's detector sees."""
     people = detect(performance, described.camera, np.random.default_rng(described.seed))
-    write_keypoints(output / KEYPOINT_FILE, people, FRAME_START, FPS)
+    write_keypoints(output / KEYPOINT_FILE, people, FRAME_START, performance.fps)
 
 
 def _masks(
@@ -152,7 +156,7 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
     take = Take(
         folder=output,
         clip=output / "clip.mp4",
-        fps=FPS,
+        fps=performance.fps,
         frame_start=FRAME_START,
         frame_count=performance.frame_count,
         camera=described.camera,
@@ -166,15 +170,22 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
     by_hand = [Keyframe(index, noisy[row]) for row, index in enumerate(at)]
     write_keyframes(output / "keyframes_noisy.json", by_hand, body, FRAME_START)
     if not described.postures:
-        for name in ("keyframes.json", "keyframes_noisy.json"):
-            _keep_points_only(output / name)
+        _keep_points_only(output / "keyframes.json", points[list(at)])
+        _keep_points_only(output / "keyframes_noisy.json")
 
 
-def _keep_points_only(path: Path) -> None:
-    """Remove the postures from a keyframe file: thirteen marked points do not determine twists."""
+def _keep_points_only(path: Path, points: Array | None = None) -> None:
+    """Remove the postures from a keyframe file: thirteen marked points do not determine twists.
+
+    Args:
+        path: The file.
+        points: (K, 13, 3) the marked points [m] where they are not the postures' own.
+    """
     keyframes = json.loads(path.read_text(encoding="utf-8"))["keyframes"]
-    for keyframe in keyframes:
+    for row, keyframe in enumerate(keyframes):
         del keyframe["posture"]
+        if points is not None:
+            keyframe["points"] = dict(zip(keyframe["points"], rounded(points[row]), strict=True))
     _write_json(path, {"keyframes": keyframes})
 
 

@@ -8,7 +8,9 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
+from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
+from ..observation.occluders import StaticOccluders
 from ..prior.turns import with_turns
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
@@ -26,12 +28,17 @@ class ClipProblem:
     """As stated; the evidence has the calibrated lens."""
     evidence: KeyframeEvidence
     factor: Array
-    """(D, D) of the deviation's accelerations."""
+    """(D, D) of the deviation's accelerations, by the keyframes."""
     prior: Posture
     """A batch of F postures."""
     keyframes: IndexArray
     """(K,) frames of the keyframes."""
     observed: ObservedRegions
+    """The markers' regions: as tracked, and those found at a second look."""
+    tracked: ObservedRegions
+    """As tracked."""
+    ignored: IgnoredPixels | None
+    """What is never a marker, in all frames; None for nothing."""
     width_px: Array
     """(F, M) half-width of each marker's limb [px]."""
     step_s: Array
@@ -54,10 +61,25 @@ class ClipProblem:
     turns: IndexArray
     """(K - 1,) whole turns about the vertical that the prior adds to that in each gap; see `prior/turns`."""
 
+    limb_size: Array
+    """(D,) factor on the accelerations of each degree of freedom's limb, by what the footage shows of it."""
+    depth_factor: Array
+    """(F, P) factor on the noise of the prior's depths, by how far the prior misses each point."""
+
+    @property
+    def accelerations(self) -> Array:
+        """(D, D) the factor L of usual accelerations, with what the footage shows."""
+        return np.asarray(self.limb_size[:, None] * self.factor)
+
     @property
     def frames(self) -> int:
         """Number of frames F."""
         return self.prior.batch[0]
+
+    def before(self, occluders: StaticOccluders) -> "ClipProblem":
+        """This problem with what is known to stand before the performer."""
+        model = replace(self.evidence.model, occluders=occluders)
+        return replace(self, evidence=replace(self.evidence, model=model))
 
     def with_turns(self, turns: IndexArray) -> "ClipProblem":
         """The same with these whole turns (K - 1,) in the gaps between the keyframes."""
@@ -71,7 +93,7 @@ class ClipProblem:
             self.body,
             self.prior[window.frames],
             np.arange(window.first, window.last),
-            self.factor,
+            self.accelerations,
             np.zeros((frames, self.body.skeleton.dof_count)),
             np.zeros((frames, markers * FEATURES)),
         )

@@ -81,7 +81,7 @@ def contour_schedule(
     scale = camera.focal_px / max(float(depth), 0.1) / factor
     last = np.array([NARROW.reach, NARROW.prior_std, NARROW.farthest])
     first = np.array(WIDEST_M) * min(scale, LARGEST_REACH_PX / WIDEST_M[0])
-    if keypoints is not None and _points_locate(keypoints):
+    if keypoints is not None and points_locate(keypoints):
         first *= BY_KEYPOINTS
     looks = np.geomspace(np.maximum(first, last), last, LOOKS)
     return Schedule(
@@ -94,7 +94,7 @@ def all_located(body: Body, marked: tuple[str, ...]) -> bool:
     return bool(_limbs_located(body, marked).all())
 
 
-def _points_locate(keypoints: Keypoints) -> bool:
+def points_locate(keypoints: Keypoints) -> bool:
     """Whether keypoints show the ends of all limbs, and the trunk, in most frames."""
     seen = keypoints.seen.mean(axis=0)
     best = {name: 0.0 for group in ENDS for name in group}

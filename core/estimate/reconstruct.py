@@ -11,6 +11,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..errors import InputError
+from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.reading_key import of_same_footage
@@ -42,6 +43,7 @@ from .notes import (
     marker_notes,
     turn_notes,
 )
+from .seen_tracks import seen_tracks
 from .undecided import undecided_covariance
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
@@ -78,8 +80,9 @@ class Reconstruction:
 
     @property
     def tracks(self) -> RegionTracks:
-        """The markers' regions in every frame."""
-        return self.reading.tracks
+        """The markers' regions in every frame: as tracked, and those found at a second look."""
+        tracks = self.reading.tracks
+        return tracks if self.solution is None else seen_tracks(tracks, self.solution.problem.observed)
 
 
 def reconstruct(
@@ -163,11 +166,12 @@ def _reconstruct(
         keypoints = performer_keypoints(take, prior, tracks)
     notes += keypoints.notes
     baseline = _motion(take, tracks, prior, None, "interpolation")
-    motion, model, solution = baseline, average_model(take), None
+    motion, model, solution, seen = baseline, average_model(take), None, tracks
     if method == "map":
         usable = _usable(earlier, reading)
         solution = yield from _whole_clip(take, reading, keypoints, prior, match_scale, begun, usable)
-        motion, model = _solved(take, tracks, solution, match_scale), solution.evidence.model
+        seen = seen_tracks(tracks, solution.problem.observed)
+        motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None) + turn_notes(take, solution.undecided)
     elif method == "ekf":
@@ -176,7 +180,7 @@ def _reconstruct(
     moved = evidence_speed(tracks, take.marker_segments, keypoints, reading.album)
     speed = yield from within("Measuring the speed", moved, 1.0, 1.0)
     yield Progress("Done", 1.0)
-    notes += marker_notes(tracks)
+    notes += marker_notes(seen)
     return Reconstruction(motion, baseline, reading, speed.values, notes, keypoints, model, solution)
 
 
@@ -218,6 +222,7 @@ def _whole_clip(
         match_scale=match_scale,
         keypoints=keypoints,
         lower_ankle=_found_ankle(take, prior),
+        ignored=IgnoredPixels(take.ignored_regions, take.camera.resolution),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

@@ -141,7 +141,7 @@ def _same_factor(one: Array, other: Array) -> bool:
 def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) whether a frame's prior, keyframe or observations differ."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
-    changed |= _observations_differ(earlier.observed, now.observed)
+    changed |= _observations_differ(earlier.tracked, now.tracked)
     changed |= _observations_differ(earlier.points, now.points)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
     changed[np.setxor1d(earlier.keyframes, now.keyframes)] = True
@@ -150,6 +150,13 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     scale = np.abs(other).max(axis=(1, 2))
     changed[both[np.abs(information - other).max(axis=(1, 2)) > 1e-6 * scale]] = True
     return changed
+
+
+def with_earlier_finds(earlier: ClipProblem, now: ClipProblem, changed: BoolArray) -> ClipProblem:
+    """The problem with what a second look has found before, in frames that have not changed (F,)."""
+    frame, marker = np.nonzero(np.broadcast_to(~changed[:, None], now.observed.quality.shape))
+    kept = earlier.observed[frame, marker]
+    return replace(now, observed=now.observed.replaced((frame, marker), kept))
 
 
 def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:

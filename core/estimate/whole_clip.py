@@ -17,6 +17,7 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
+from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..observation.keypoints import KeypointModel
@@ -34,10 +35,10 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
+from .refinement import Anew, refine
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .turn_choice import choose_turns
 from .undecided import Undecided
 from .warm_start import (
     blend_weight,
@@ -45,13 +46,14 @@ from .warm_start import (
     revised_windows,
     same_setup,
     with_earlier_evidence,
+    with_earlier_finds,
     with_earlier_turns,
 )
 from .window_problem import WindowProblem
 from .windows import Window, windows
 
-MARKERS_SHARE = 0.5
-"""Share of the work before contours are measured."""
+MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6
+"""Shares of the work that following the markers is, and all before contours are measured."""
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,7 @@ def estimate_whole_clip(
     match_scale: Array | None = None,
     keypoints: Keypoints | None = None,
     lower_ankle: Array | None = None,
+    ignored: IgnoredPixels | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
@@ -129,6 +132,7 @@ def estimate_whole_clip(
         keypoints: The performer's keypoints in the F frames; None for none.
         lower_ankle: (F,) height of the lower ankle where all keyframes are matched [m]; by their soles where
             None.
+        ignored: What of the pictures is never a marker; None for nothing.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
@@ -180,6 +184,8 @@ def estimate_whole_clip(
         prior,
         index,
         observed,
+        observed,
+        ignored,
         width_px,
         step_s,
         options.regions,
@@ -192,6 +198,8 @@ def estimate_whole_clip(
         swapped,
         prior,
         np.zeros(max(len(index) - 1, 0), dtype=np.intp),
+        np.ones(body.skeleton.dof_count),
+        np.ones((tracks.frame_count, len(body.skeleton.points))),
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
@@ -228,23 +236,24 @@ def _solve(
     if earlier is not None and same_setup(earlier.problem, problem):
         same = with_earlier_evidence(earlier.problem, problem)
         if same is not None:
-            same, anew = with_earlier_turns(earlier.problem, same)
+            same, gaps = with_earlier_turns(earlier.problem, same)
             changed = changed_frames(earlier.problem, same)
+            same = with_earlier_finds(earlier.problem, same, changed)
             spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, anew, album, earlier)
+            result = yield from _solve_windows(same, spans, Anew(changed, gaps), album, earlier)
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
             still = tuple(one for one in earlier.undecided if not changed[one.frame].any())
             return replace(result, posture=earlier.posture.plus(step), undecided=(*still, *result.undecided))
     every = list(windows(problem.frames, length, margin))
-    all_gaps = np.ones(len(problem.turns), dtype=bool)
-    return (yield from _solve_windows(problem, every, all_gaps, album, None, contours))
+    everything = Anew.everything(problem)
+    return (yield from _solve_windows(problem, every, everything, album, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
-    turning: BoolArray,
+    anew: Anew,
     album: Album | None,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
@@ -254,7 +263,7 @@ def _solve_windows(
     Args:
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
-        turning: (K - 1,) gaps between keyframes in which the body may turn another way.
+        anew: What is decided anew.
         album: Pictures of all frames.
         earlier: An estimate of all other frames.
         contours: What was learned of them already; None to learn it once the markers are followed.
@@ -268,22 +277,12 @@ def _solve_windows(
         part = WindowProblem(problem, window, problem.start(window))
         yield from scaled(part.follow_markers(), MARKERS_SHARE * begun, MARKERS_SHARE * ended)
         states.append(part.state.without_cache())
-    turns = yield from scaled(choose_turns(problem, states, turning), MARKERS_SHARE, MARKERS_SHARE)
-    problem, states = turns.problem, turns.states
-    contours = contours if earlier is None else earlier.contours
-    if contours is not None and earlier is None:
-        contours = contours.with_camera(problem.evidence.model.camera)
-    elif earlier is None and album is not None:
-        known = problem.evidence.model.camera  # with the lens that was found
-        kept = [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
-        segments = tuple(one.segment for one in problem.evidence.model.placements)
-        schedule = contour_schedule(
-            problem.body, known, album.factor, segments, problem.prior, problem.keypoints
-        )
-        learning = learn_contours(
-            problem.body, known, album, Posture.concatenate(kept), problem.keyframes, schedule
-        )
-        contours = yield from scaled(learning, MARKERS_SHARE, MARKERS_SHARE)
+    if earlier is None:
+        refining = refine(problem, spans, states, album, anew, contours)
+    else:
+        refining = refine(problem, spans, states, album, anew, earlier.contours, earlier.problem)
+    refined = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
+    problem, states, contours = refined.problem, refined.states, refined.contours
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()
@@ -292,7 +291,7 @@ def _solve_windows(
     residual_px = np.empty(problem.observed.quality.shape) if earlier is None else earlier.residual_px.copy()
     postures: list[Posture] = []
     for window, begun, ended in stretches:
-        first, last = (MARKERS_SHARE + (1.0 - MARKERS_SHARE) * share for share in (begun, ended))
+        first, last = (REFINED_SHARE + (1.0 - REFINED_SHARE) * share for share in (begun, ended))
         part = WindowProblem(problem, window, states.pop(0))
         if contours is not None:
             yield from scaled(part.follow_contours(contours), first, last)
@@ -303,7 +302,7 @@ def _solve_windows(
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, turns.undecided)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, refined.undecided)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

@@ -22,6 +22,8 @@ from .windows import Window
 TEMPERATURES = (8.0, 4.0, 2.0, *(1.0 for _ in range(9)))
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
+SETTLING_TEMPERATURES = (2.0, 1.0, 1.0)
+"""Of the steps from postures that were found with less knowledge."""
 CONTOUR_TEMPERATURES = (1.0, 1.0)
 """Of the steps with contours, once the markers have brought these within reach of their edges."""
 LARGEST_STEP = 0.5
@@ -54,6 +56,10 @@ class WindowProblem:
         """Gauss-Newton with annealed image noise; yields the fraction done and the postures on the way."""
         matched = bool(self.clip.matched.any())
         yield from self._gauss_newton(MATCHED_TEMPERATURES if matched else TEMPERATURES, 0.0, 1.0)
+
+    def settle(self) -> Part[None]:
+        """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
+        yield from self._gauss_newton(SETTLING_TEMPERATURES, 0.0, 1.0)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
         """Gauss-Newton steps with the terms there are; it yields now and then.

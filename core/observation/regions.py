@@ -17,7 +17,9 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
+from .occluders import StaticOccluders
 from .occlusion import part_outlines, visible_share
+from .picture_edge import edge_cut, near_edge
 from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
 
 MOMENTS = ((0, 0), (0, 1), (1, 1))
@@ -31,6 +33,8 @@ USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 """A shirt covers the shoulders, which rise above their joints, and ends at the hip bones; trousers and
 stockings are thicker than the leg inside. Medians of calibrations at a dozen performers' keyframes."""
+LEAST_SHOWN = 0.15
+"""Least share of a region that static occluders leave, below which none of it is expected to be seen."""
 PIECES_AT_ONCE = 600
 """Pieces, counted over frames, that are evaluated together, so that their samples fit in the cache."""
 
@@ -82,7 +86,9 @@ class RegionPrediction:
     area: Array
     """(F, M) visible area [px²]."""
     visible: Array
-    """(F, M) visible share of the silhouette."""
+    """(F, M) visible share of the silhouette, of a region that is seen."""
+    shown: Array
+    """(F, M) the same before it is known whether it is seen: less where static occluders hide it all."""
     centroid_jacobian: Array | None = None
     """(F, M, 2, D) [px per m or rad]."""
     moment_jacobian: Array | None = None
@@ -92,7 +98,7 @@ class RegionPrediction:
     def unmarked(cls, frames: int, dofs: int | None) -> "RegionPrediction":
         """The prediction of no marker at all, M = 0, with Jacobians by `dofs` unknowns where given."""
         empty = np.zeros((frames, 0))
-        prediction = cls(np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2)), empty, empty)
+        prediction = cls(np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2)), empty, empty, empty)
         if dofs is None:
             return prediction
         by_tangent = {"centroid_jacobian": np.zeros((frames, 0, 2, dofs))}
@@ -113,6 +119,8 @@ class RegionModel:
     body: Body
     camera: Camera
     placements: tuple[MarkerPlacement, ...]
+    occluders: StaticOccluders | None = None
+    """What stands before the performer; None where nothing is known to."""
 
     @cached_property
     def _pieces(self) -> PieceStack:
@@ -179,9 +187,22 @@ class RegionModel:
         scale = (self.camera.focal_px / np.maximum(depth, 1e-3)) ** 2  # [px² per m²]
         parts = part_outlines(self._parts, pose, self.camera, frame)
         seen = scale * visible_share(pixels, depth, parts, self._own)
+        cell, size = samples.area * scale, self.camera.resolution
+        edge = np.nonzero(near_edge(pixels, cell, size))
+        cut = edge_cut(pixels[edge], cell[edge], size)
+        seen[edge] *= cut.share
         visible_area = self._per_marker((samples.area * seen).sum(2))
-        whole_area = self._per_marker((samples.area * scale).sum(2))
-        visible = visible_area / np.maximum(whole_area, TINY)
+        whole_area = np.maximum(self._per_marker((samples.area * scale).sum(2)), TINY)
+        shown = visible_area / whole_area
+        if self.occluders is not None:
+            before = seen * self.occluders.visible_share(pixels, depth)
+            area = self._per_marker((samples.area * before).sum(2))
+            shown = area / whole_area
+            # What is seen nevertheless is compared as if nothing stood there: its map is rough.
+            trusted = area > LEAST_SHOWN * visible_area
+            visible_area = np.where(trusted, area, visible_area)
+            seen = np.where(trusted[:, self._marker_of, None], before, seen)
+        visible = visible_area / whole_area
         # A wholly hidden marker is compared with no measurement, but its moments stay finite.
         hidden = visible < 1e-3
         factor = np.where(hidden[:, self._marker_of, None], scale, seen)
@@ -194,10 +215,13 @@ class RegionModel:
         centered = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
         np.multiply(weighted[:, :, :1], centered, out=weighted[:, :, 1:])
         moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centered, -1, -2))
-        prediction = RegionPrediction(centroid, moment, visible_area, visible)
+        prediction = RegionPrediction(centroid, moment, visible_area, visible, shown)
         if not jacobian:
             return prediction
-        return replace(prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment))
+        cutting = edge, cut.slope
+        return replace(
+            prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment, cutting)
+        )
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
@@ -216,11 +240,13 @@ class RegionModel:
         weighted: Array,
         centered: Array,
         moment: Array,
+        cutting: tuple[tuple[IndexArray, ...], Array],
     ) -> dict[str, Array]:
         """Jacobians of centroid and moments, through the spatial velocity of each piece.
 
         `factor` (F, Q, S) turns a sample's area into its weight; `weighted` (F, Q, 3, S) holds the weights,
-        alone and times `centered`.
+        alone and times `centered`; `cutting` are the pieces at the picture's edge, and how fast it cuts their
+        samples.
         """
         count = samples.area.shape[-1]
         rates = self.camera.motion_jacobian(samples.world, frame[:, None, None])  # (F, Q, S, 2, 6)
@@ -228,15 +254,20 @@ class RegionModel:
         summed = (weighted @ np.swapaxes(flat, -1, -2)).reshape(*weighted.shape[:3], 2, 6)
         mixed = summed[:, :, 1:]
         second = np.stack([mixed[:, :, a, b] + mixed[:, :, b, a] for a, b in MOMENTS], axis=2)
-        rows = self._to_world(np.concatenate([summed[:, :, 0], second], axis=2), frame)  # (F, Q, 5, 6)
-        # Rotation also changes the share of the silhouette that each sample stands for.
         middle = moment[:, self._marker_of]
-        effect = np.empty((*rows.shape[:3], count))
+        moving = np.concatenate([summed[:, :, 0], second], axis=2)  # (F, Q, 5, 6)
+        effect = np.empty((*moving.shape[:3], count))
         effect[:, :, :2] = centered
         for row, (a, b) in enumerate(MOMENTS, start=2):
             np.multiply(centered[:, :, a], centered[:, :, b], out=effect[:, :, row])
             effect[:, :, row] -= middle[..., a, b, None]
         effect *= factor[:, :, None]
+        # What moves out of the picture is seen no more.
+        edge, slope = cutting
+        lost = effect[edge] * samples.area[edge][:, None]  # (E, 5, S)
+        moving[edge] += np.einsum("eks,esa,esab->ekb", lost, slope, rates[edge], optimize=True)
+        rows = self._to_world(moving, frame)
+        # Rotation also changes the share of the silhouette that each sample stands for.
         rows[..., 3:] += effect @ samples.area_rate
         moved = pose.posture.skeleton.moved_by[self._pieces.joint]  # (Q, D)
         derived = self._per_marker((rows @ pose.screws[:, None]) * moved[:, None])

@@ -19,7 +19,10 @@ FOLLOWING, READING = "Following the markers", "Reading the clip"
 EXPECTED_RADIUS_M = 0.45
 """Radius around a marker of the interpolated keyframes within which it is searched first."""
 RADIUS_GROWTH_M_PER_S = 3.0
-"""Growth of that radius before the first keyframe and after the last, where the posture is only held."""
+"""Growth of that radius farther from a keyframe than ..."""
+KNOWN_S = 0.2
+"""... this: a limb may have swung there and back in between, and before the first keyframe and after the last
+the posture is only held [s]."""
 CHUNK_FRAMES = 500
 
 
@@ -62,9 +65,9 @@ def expected_regions(take: Take, frame_count: int) -> ExpectedRegions:
     for frame in chunks(np.arange(frame_count), CHUNK_FRAMES):
         center[frame] = model.evaluate(take.body.pose(prior[frame]), frame).centroid
     depth = take.camera.depth(prior.translation, np.arange(frame_count))
-    posed = take.keyframe_indices
-    beyond = np.maximum(np.arange(frame_count) - max(posed), min(posed) - np.arange(frame_count)).clip(0)
-    reach = EXPECTED_RADIUS_M + RADIUS_GROWTH_M_PER_S * beyond / take.fps
+    frame, posed = np.arange(frame_count), np.array(sorted(take.keyframe_indices))
+    away = np.abs(frame[:, None] - posed).min(axis=1) / take.fps
+    reach = EXPECTED_RADIUS_M + RADIUS_GROWTH_M_PER_S * np.maximum(away - KNOWN_S, 0.0)
     radius = reach * take.camera.focal_px / np.maximum(depth, 0.1)
     # To a fraction of a pixel, so that a posture read from Blender once more expects the same.
     center, radius = np.round(64.0 * center) / 64.0, np.round(64.0 * radius) / 64.0

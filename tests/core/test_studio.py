@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
+from keymark.core.body.posture_fit import fit_posture
 from keymark.core.prior.interpolation import interpolate_linearly
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.review.score import read_truth
@@ -69,7 +70,7 @@ def test_nothing_is_faster_than_people_or_below_the_floor(
     """Points keep to the speed of athletes, and soles to the floor."""
     performance = performances[name]
     points = _points(performance)
-    assert np.linalg.norm(np.diff(points, axis=0), axis=-1).max() * FPS < FASTEST_MPS
+    assert np.linalg.norm(np.diff(points, axis=0), axis=-1).max() * performance.fps < FASTEST_MPS
     for side, rotations in performance.feet.items():
         ankle = points[:, HUMAN.point_names.index(f"ankle.{side}"), 2]
         assert (ankle - foot_clearance(rotations[performance.middles])).min() > -BELOW_FLOOR_M
@@ -131,6 +132,58 @@ def test_a_demonstration_without_its_own_keyframes_would_get_chosen_ones() -> No
     assert DEMONSTRATION.posed_frames(118)[:3] == (0, 8, 15)
     chosen: Described = dataclasses.replace(DEMONSTRATION, keyframes=())
     assert chosen.posed_frames(118) != DEMONSTRATION.keyframes
+
+
+def test_a_fast_take_has_its_own_frame_rate(performances: dict[str, Performance]) -> None:
+    """At sixty frames per second neighbors are half as far apart; a take that says nothing has thirty."""
+    throws = performances["throw60"]
+    assert (throws.fps, performances["throw"].fps) == (60, FPS)
+    slow = dataclasses.replace(throws, frame_count=throws.frame_count // 2, times=throws.times / 2.0, fps=30)
+    per_second = [np.linalg.norm(np.diff(_points(p), axis=0), axis=-1).max() * p.fps for p in (throws, slow)]
+    assert per_second[1] == pytest.approx(per_second[0], rel=0.1)
+
+
+def test_a_build_moves_joints_but_no_feet(performances: dict[str, Performance]) -> None:
+    """A performer's own joints lie a centimeter or two beside the skeleton's, as far as limbs allow."""
+    performance = performances["martial"]
+    assert performance.build is not None and performances["kick"].build is None
+    pose = performance.body.pose(performance.postures[performance.middles])
+    points, names = _points(performance), HUMAN.point_names
+    beside = np.linalg.norm(points - performance.body.points(pose), axis=-1)
+    assert 0.005 < beside.mean() < 0.015 and beside.max() < 0.03
+    assert beside[:, [names.index("ankle.L"), names.index("ankle.R")]].max() < 1e-12
+    for first, last, segment in (
+        ("hip", "knee", "thigh"),
+        ("knee", "ankle", "shin"),
+        ("elbow", "wrist", "forearm"),
+    ):
+        ends = [points[:, names.index(f"{part}.L")] for part in (first, last)]
+        length = np.linalg.norm(ends[1] - ends[0], axis=-1)
+        assert np.abs(length - performance.body.actor.segments_m[f"{segment}.L"]).max() < 0.025
+
+
+def test_no_posture_reaches_a_build(performances: dict[str, Performance]) -> None:
+    """The posture that comes nearest to the performer's points is still millimeters off."""
+    performance = performances["martial"]
+    residual = fit_posture(performance.body, _points(performance)[::20]).residual_m
+    assert residual.mean(axis=-1).min() > 0.002
+    assert residual.max(axis=-1).min() > 0.005
+
+
+def test_a_mesh_follows_its_build(performances: dict[str, Performance]) -> None:
+    """Thighs and shins of the mesh join the performer's own hip, knee and ankle."""
+    performance = performances["martial"]
+    body, build = performance.body, performance.build
+    assert build is not None
+    pose = body.pose(performance.postures[performance.middles])
+    joints = {j.name: (pose.rotation[:, i], pose.origin[:, i]) for i, j in enumerate(HUMAN.joints)}
+    placed, points = build.placed(body, pose, joints), _points(performance)
+    for joint, start, end in (("hip.R", "hip.R", "knee.R"), ("knee.R", "knee.R", "ankle.R")):
+        turn, place = placed[joint]
+        first, last = (points[:, HUMAN.point_names.index(name)] for name in (start, end))
+        along = (last - first) / np.linalg.norm(last - first, axis=-1, keepdims=True)
+        assert place == pytest.approx(first, abs=1e-9)
+        assert -turn[..., 2] == pytest.approx(along, abs=1e-6)
 
 
 def test_flight_falls_as_bodies_fall() -> None:

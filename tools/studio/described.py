@@ -9,6 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.footage.camera import Camera
 
+from .build import Build
 from .look import Look
 from .performance import FPS, Choreography, Performance, compose, principal_points, stored_times
 from .surroundings import Room, Thing
@@ -16,6 +17,7 @@ from .surroundings import Room, Thing
 Plan = Callable[[Body, Array, np.random.Generator], Choreography]
 SHADOW_CLOSE_BY = (0.08, 0.30, 0.0)
 KEYFRAME_EVERY = 10.0
+SHUTTER_FRAMES = 0.5
 HANDS_TO_BOX_M = 0.13
 BOX_M = (0.34, 0.24, 0.20)
 CARDBOARD, PAINTED = (0.34, 0.24, 0.13), (0.26, 0.26, 0.28)
@@ -52,6 +54,8 @@ class Described:
     """Whether keyframes.json has the whole postures, or only their thirteen points."""
     moments: int = 3
     """Renders per frame while the shutter is open."""
+    shutter_frames: float = SHUTTER_FRAMES
+    """How long the shutter is open, at most 2 frames."""
     samples: int = 2
     """Light paths per pixel of each render."""
     noise: float = 1.5
@@ -84,7 +88,13 @@ def posed_frames(frame_count: int, random: np.random.Generator) -> tuple[int, ..
 
 
 def performed(
-    plan: Plan, actor: Actor, frame_count: int, heading_deg: float = 0.0, tempo: float = 1.0
+    plan: Plan,
+    actor: Actor,
+    frame_count: int,
+    heading_deg: float = 0.0,
+    tempo: float = 1.0,
+    fps: int = FPS,
+    build: Build | None = None,
 ) -> Callable[[int], Performance]:
     """Map from a seed to an actor's performance of a plan.
 
@@ -94,12 +104,14 @@ def performed(
         frame_count: Frames of the take.
         heading_deg: Rotation of the whole motion to the left about the world's origin.
         tempo: Speed factor; gravity is right only at 1.
+        fps: Frames per second.
+        build: Where the performer's joints lie, if not where the skeleton's do.
     """
 
     def perform(seed: int) -> Performance:
         body, times = Body(actor), stored_times(frame_count)
-        planned = plan(body, tempo * times / FPS, np.random.default_rng(seed))
-        return compose(body, times, planned.turned(heading_deg))
+        planned = plan(body, tempo * times / fps, np.random.default_rng(seed))
+        return replace(compose(body, times, planned.turned(heading_deg), fps), build=build)
 
     return perform
 

@@ -20,7 +20,7 @@ from keymark.core.footage.keypoints.body_points import mirrored_point
 from keymark.core.footage.keypoints.people import People, SeenPeople
 from scipy.signal import lfilter
 
-from .performance import Performance
+from .performance import Performance, principal_points
 
 NAME = "the studio's detector"
 SIDES = ("L", "R")
@@ -136,7 +136,8 @@ def _truth(performance: Performance, camera: Camera, random: np.random.Generator
     """The detector's own points of the body, which lie beside the joints."""
     body, rows = performance.body, performance.middles
     pose = body.pose(performance.postures[rows])
-    joints = dict(zip(body.skeleton.point_names, np.swapaxes(body.points(pose), 0, 1), strict=True))
+    points = principal_points(performance, rows)
+    joints = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
     turns = {joint.name: pose.rotation[:, index] for index, joint in enumerate(body.skeleton.joints)}
     joints["nose"] = joints["head"] + turns["neck"] @ np.array(NOSE_M)
     soles = sole_offsets(body)

@@ -1,4 +1,4 @@
-"""Filming: cameras, a shutter open half the frame, sensor noise, H.264, and the markers' true masks."""
+"""Filming: cameras, a shutter open part of the frame, sensor noise, H.264, and the markers' true masks."""
 
 import tempfile
 from collections.abc import Iterator
@@ -13,11 +13,10 @@ from keymark.core.footage.camera import Camera
 from mathutils import Matrix
 
 from .look import MARKERS
-from .performance import FPS, Performance
+from .performance import Performance
 from .performer import Performer
 from .room import BuiltRoom
 
-SHUTTER_FRAMES = 0.5
 ROOM_SAMPLES = 24
 MARGIN_PX = 16
 SIXTEEN_BITS = 65535.0
@@ -75,6 +74,7 @@ def film(
     room: BuiltRoom,
     camera: Camera,
     moments: int,
+    shutter_frames: float,
     samples: int,
     shadow_per_height: Array,
 ) -> list[Array]:
@@ -89,6 +89,7 @@ def film(
         room: The surroundings.
         camera: Becomes the scene's camera.
         moments: Renders while the shutter is open; the frame is their mean.
+        shutter_frames: How long the shutter is open.
         samples: Light paths per pixel of each render.
         shadow_per_height: (3,) offset of a point's shadow on the floor, per meter of its height.
     """
@@ -98,7 +99,7 @@ def film(
     empty = render(ROOM_SAMPLES)
     for thing in (performer.thing, *room.moving):
         thing.hide_render = False
-    offsets = SHUTTER_FRAMES * ((np.arange(moments) + 0.5) / moments - 0.5)
+    offsets = shutter_frames * ((np.arange(moments) + 0.5) / moments - 0.5)
     images = []
     for frame in range(performance.frame_count):
         indices = performance.at(frame + offsets)
@@ -171,14 +172,14 @@ def add_sensor_noise(image: Array, random: np.random.Generator, strength: float)
     return np.asarray(np.clip(np.rint(noisy), 0, 255), dtype=np.uint8)
 
 
-def encode(images: list[Image], path: Path, quality: str) -> None:
+def encode(images: list[Image], path: Path, quality: str, fps: int) -> None:
     """Write images as H.264 in MP4, by Blender's sequencer."""
     with tempfile.TemporaryDirectory() as folder:
         for number, image in enumerate(images):
             cv2.imwrite(str(Path(folder) / f"{number:04d}.png"), image)
         scene = bpy.data.scenes.new("Encoding")
         height, width = images[0].shape[:2]
-        scene.render.resolution_x, scene.render.resolution_y, scene.render.fps = width, height, FPS
+        scene.render.resolution_x, scene.render.resolution_y, scene.render.fps = width, height, fps
         scene.frame_start, scene.frame_end = 1, len(images)
         scene.view_settings.view_transform = "Standard"
         editor = scene.sequence_editor_create()

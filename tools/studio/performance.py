@@ -12,6 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
 from scipy.ndimage import gaussian_filter1d
 
+from .build import Build
 from .limbs import (
     FreeLeg,
     arm_rotations,
@@ -26,6 +27,7 @@ from .limbs import (
 Channels = dict[str, Array]
 
 FPS = 30
+"""Frames per second of a take that says nothing else."""
 STEPS_PER_FRAME = 8
 SIDES = ("L", "R")
 SOFT_LANDING_FRAMES = 0.5
@@ -76,6 +78,10 @@ class Performance:
     feet: dict[str, Array]
     """World rotations (T, 3, 3) of each foot's mesh by side: the skeleton's feet are rigid with the shins, a
     person's are not."""
+    fps: int = FPS
+    """Frames per second."""
+    build: Build | None = None
+    """Where the performer's joints lie; None for the skeleton's own."""
 
     def at(self, times: Array) -> IndexArray:
         """Indices of the stored times nearest to `times` [frames]."""
@@ -93,7 +99,7 @@ def stored_times(frame_count: int) -> Array:
     return np.arange(-STEPS_PER_FRAME, (frame_count + 1) * STEPS_PER_FRAME) / STEPS_PER_FRAME
 
 
-def compose(body: Body, times: Array, plan: Choreography) -> Performance:
+def compose(body: Body, times: Array, plan: Choreography, fps: int = FPS) -> Performance:
     """The performance that a plan describes at `stored_times`."""
     posture = Posture.rest(body.skeleton, times.shape)
     balls = {body.skeleton.joints[i].name: column for column, i in enumerate(body.skeleton.ball_joints)}
@@ -118,7 +124,7 @@ def compose(body: Body, times: Array, plan: Choreography) -> Performance:
         legs = _leg(body, side, plan, place, rotation[:, balls["pelvis"]])
         rotation[:, balls[f"hip.{side}"]], angle[:, hinges[f"knee.{side}"]], feet[side] = legs
     count = round(len(times) / STEPS_PER_FRAME) - 2
-    return Performance(body, count, times, Posture(body.skeleton, place, rotation, angle), feet)
+    return Performance(body, count, times, Posture(body.skeleton, place, rotation, angle), feet, fps)
 
 
 def _leg(
@@ -167,4 +173,5 @@ def _ankle(body: Body, side: str, pelvis_rotation: Array, hip: Array, knee: Arra
 
 def principal_points(performance: Performance, indices: IndexArray) -> Array:
     """The true principal points (N, 13, 3) [m] at stored times."""
-    return performance.body.points(performance.body.pose(performance.postures[indices]))
+    body, pose = performance.body, performance.body.pose(performance.postures[indices])
+    return body.points(pose) if performance.build is None else performance.build.points(body, pose)

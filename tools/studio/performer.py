@@ -48,6 +48,8 @@ class Performer:
         one = np.array([index])
         pose = performance.body.pose(performance.postures[one])
         placed = movers(performance.body, pose, {s: r[one] for s, r in performance.feet.items()})
+        if performance.build is not None:
+            placed = performance.build.placed(performance.body, pose, placed)
         bent = np.zeros_like(self.places)
         for column, name in enumerate(self.names):
             rotation = placed[name][0][0] @ self.modeled[0][column].T

@@ -66,7 +66,7 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
             evidence.distrust,
             evidence.area_ratio,
         ),
-        DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None]),
+        DepthTerm(clip.camera, prior_depth, clip.depth_std_m[frames, None] * clip.depth_factor[frames]),
         LimitTerm(),
         StillnessTerm(clip.camera, ankles, step_s),
     ]
@@ -209,7 +209,8 @@ def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTe
     builder = QuadraticBuilder(frames, dofs + size.shape[1])
     posture, bias = slice(0, dofs), slice(dofs, None)
     builder.add(posture, (1.0,), LARGEST_VARIATION)
-    information = clip.factor.T @ clip.evidence.information[inside] @ clip.factor
+    factor = clip.accelerations
+    information = factor.T @ clip.evidence.information[inside] @ factor
     builder.add_blocks(clip.keyframes[inside] - window.first, information)
     kept = np.exp(-step_s / noise.bias_time_s)[:, None]
     builder.add(bias, (-kept, 1.0), size[1:] * np.sqrt(1.0 - kept**2))

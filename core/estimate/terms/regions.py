@@ -5,7 +5,7 @@ deviation along them, the linearized difference of matrix square roots: three nu
 angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import ClassVar
 
 import numpy as np
@@ -75,19 +75,38 @@ class ObservedRegions:
     """(F, M) [px], NaN where hidden."""
     quality: Array
     """(F, M)."""
+    variance: Array
+    """(F, M, 5) of the features beyond that of tracked regions [px²]."""
 
     @classmethod
     def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
         """Axes and deviations of every visible region."""
         seen = tracks.visible
         moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
-        values, axes = np.linalg.eigh(moments)
-        deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
         quality = np.where(seen, tracks.quality, 0.0)
-        return cls(tracks.centroid, moments, axes, deviation, tracks.area, quality)
+        variance = np.zeros((*seen.shape, FEATURES))
+        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
 
-    def __getitem__(self, index: slice | IndexArray | tuple[slice, IndexArray]) -> "ObservedRegions":
-        """Some of the frames, or of the frames and markers."""
+    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
+        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
+        changed = {}
+        for field in fields(self):
+            values = getattr(self, field.name).copy()
+            values[where] = getattr(found, field.name)
+            changed[field.name] = values
+        return ObservedRegions(**changed)
+
+    @classmethod
+    def found(
+        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
+    ) -> "ObservedRegions":
+        """Regions (...) that were measured otherwise than by tracking."""
+        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
+
+    def __getitem__(
+        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
+    ) -> "ObservedRegions":
+        """Some of the frames, of the frames and markers, or of the pairs of both."""
         return ObservedRegions(
             self.centroid[index],
             self.second_moment[index],
@@ -95,7 +114,14 @@ class ObservedRegions:
             self.deviation[index],
             self.area[index],
             self.quality[index],
+            self.variance[index],
         )
+
+
+def _axes(second_moment: Array) -> tuple[Array, Array]:
+    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
+    values, axes = np.linalg.eigh(second_moment)
+    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
 
 
 def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
@@ -141,13 +167,13 @@ def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
 def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
     """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
 
-    A table or a door may hide a part of a marker, of which the body's model knows nothing. A share f that is
-    cut off a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
+    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
 
     Args:
         area: (F, M) area of the regions seen [px].
         area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, occlusion by the body itself included.
+        predicted: The regions' prediction, occlusion by the body itself and by known occluders included.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
@@ -220,4 +246,5 @@ class RegionTerm:
         variance = self.noise.pixel_std_px**2 + self.noise.surface_std(self.width_px) ** 2
         variance = variance * self.distrust[:, None] ** 2
         variance = variance + missing_variance(self.observed.area, self.area_ratio, predicted)
+        variance = variance + self.observed.variance
         return np.asarray(np.where(usable[..., None], trust[..., None] / variance, 0.0))

@@ -130,7 +130,7 @@ def test_terms_of_a_clip_descend_their_cost() -> None:
 
 
 def test_the_cost_of_a_moving_foot_grows_with_its_way_and_is_bounded() -> None:
-    """A foot that creeps costs half the square of its pull; one that runs hardly more than one that walks."""
+    """A foot that creeps costs half the square of its pull; one that walks no more than one that runs."""
     term = StillnessTerm(CAMERA, (HUMAN.point_names.index("ankle.L"),), np.full(FRAMES - 1, 1.0 / 30.0))
     across = CAMERA.matrix_world[:3, 0]
     held = exercise(1)[np.zeros(FRAMES, dtype=np.intp)]

@@ -115,7 +115,7 @@ def test_nobody_turns_faster_than_a_dancer() -> None:
     assert doubted_turns(problem, cost, ~every) == []
     assert doubted_turns(replace(problem, step_s=0.2 * problem.step_s), cost, every) == []
     bad = np.where(np.arange(FRAMES) > 60, 3.0, 0.0)
-    assert {doubt.gap: doubt.turns for doubt in doubted_turns(problem, bad, every)}[4] == (-1, 1)
+    assert {doubt.gap: doubt.turns for doubt in doubted_turns(problem, bad, every)}[4] in ((-1, 1), (1, -1))
 
 
 def test_a_turn_stays_where_nothing_changed_and_is_decided_anew_elsewhere() -> None:

@@ -1,6 +1,6 @@
 """What the body predicts of the markers' regions."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -131,3 +131,47 @@ def test_markers_are_predicted_in_the_order_given() -> None:
     )
     nearest = np.linalg.norm(seen[:, None] - middles[None], axis=-1).argmin(axis=1)
     np.testing.assert_array_equal(nearest, np.arange(len(middles)))
+
+
+def shifted(shift: float) -> RegionModel:
+    """The model before a camera whose picture ends elsewhere."""
+    return RegionModel(BODY, replace(CAMERA, shift_x=shift), MODEL.placements)
+
+
+def test_the_edge_of_the_picture_cuts_a_region() -> None:
+    """Half of a stretched forearm outside: half the area, and the centroid of the rest."""
+    posture = standing()
+    pose, frame = BODY.pose(posture), np.zeros(1, dtype=np.intp)
+    whole = predict(posture)
+    middle = whole.centroid[0, 1, 0]
+    model = shifted((middle - CAMERA.resolution[0]) / CAMERA.resolution[0])  # to the picture's right edge
+    cut, edge = model.evaluate(pose, frame), CAMERA.resolution[0]
+    assert cut.visible[0, 1] == pytest.approx(0.5 * whole.visible[0, 1], abs=0.08)
+    half = np.sqrt(12.0 * whole.second_moment[0, 1, 0, 0]) / 2.0
+    assert cut.centroid[0, 1, 0] == pytest.approx(edge - half / 2.0, abs=0.1 * half)
+    assert cut.second_moment[0, 1, 0, 0] == pytest.approx(0.25 * whole.second_moment[0, 1, 0, 0], rel=0.3)
+    np.testing.assert_allclose(cut.area[0, 3:], whole.area[0, 3:])  # the legs are inside
+
+
+def test_slopes_at_the_edge_are_those_of_what_is_left() -> None:
+    """A region that leaves the picture moves less than its limb, as central differences say."""
+    posture = standing(shoulder__L__rotation_y=0.2)
+    middle = predict(posture).centroid[0, 1, 0]
+    model = shifted((middle - CAMERA.resolution[0]) / CAMERA.resolution[0])
+    frame, column = np.zeros(1, dtype=np.intp), HUMAN.dof_names.index("pelvis.location_x")
+    step = 1e-4 * np.eye(HUMAN.dof_count)[column : column + 1]
+    sides = [model.evaluate(BODY.pose(posture.plus(sign * step)), frame).centroid for sign in (1.0, -1.0)]
+    slope = (sides[0] - sides[1])[0, :, 0] / 2e-4
+    seen = model.evaluate(BODY.pose(posture), frame, jacobian=True)
+    assert seen.centroid_jacobian is not None
+    ours = seen.centroid_jacobian[0, :, 0, column]
+    assert ours[1] == pytest.approx(slope[1], rel=0.05)
+    assert slope[1] < 0.7 * slope[3]  # of a shin, all of which is inside
+
+
+def test_what_has_left_the_picture_is_not_seen() -> None:
+    """No share of it, and finite moments."""
+    model = shifted(-0.9)
+    seen = model.evaluate(BODY.pose(standing()), np.zeros(1, dtype=np.intp), jacobian=True)
+    assert seen.visible.max() == 0.0
+    assert np.isfinite(seen.centroid).all() and np.isfinite(seen.moment_jacobian).all()

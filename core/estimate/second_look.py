@@ -1,0 +1,345 @@
+"""A second look for markers that were lost, blurred or half hidden, once it is known where they should be.
+
+Tracking knows colors and paths; by now postures and the look of background and body are known too. Where the
+estimate predicts a marker in sight and none was tracked, the album's picture around is unmixed (`unmixing`).
+What is found there must be more than chance can make, about as large as predicted and, the farther off the
+prediction, in line with what is seen in the frames beside it.
+"""
+
+from collections.abc import Generator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.ndimage import binary_dilation
+
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..body.body_volume import body_pieces
+from ..body.limbs import limb_of
+from ..body.posture import Posture
+from ..footage.ignored_regions import is_ignored
+from ..footage.segmentation.moments import centroid_and_second_moment
+from ..footage.segmentation.unmixing import Palette, Traces, traces
+from ..footage.surface_colors import (
+    bare_surfaces,
+    common_colors,
+    is_alike,
+    marker_surfaces,
+    usual_background,
+)
+from ..progress import Part, scaled
+from .clip_problem import ClipProblem
+from .clip_state import ClipState
+from .contour_evidence import ContourEvidence
+from .terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
+from .window_problem import WindowProblem
+from .windows import Window
+
+ROUNDS = 3
+"""Looks at most: what is found moves the body, and with it where the rest is looked for."""
+LOST = 0.5
+"""Quality below which a tracked region beside lost ones is looked at again."""
+BESIDE = 2
+"""Frames from lost ones within which it is: a blur comes and goes."""
+MORE = 1.3
+"""How much larger than such a region a find must be to replace it, and the prediction to look for it."""
+LEAST_AREA_PX = 6.0
+"""Least predicted area, in pixels of the album."""
+LEAST_GAIN = 10.0
+"""Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance."""
+LEAST_REST_GAIN = 3.0
+"""Of what an occluder cuts off from a find."""
+LEAST_PEAK = 0.3
+"""Least of a find's largest shares; colors that were never learned pass for less."""
+LEAST_CERTAINTY = 0.25
+"""Least mean gain of its pixels, relative to the largest: what others explain as well tells no place."""
+LEAST_SIZE, MOST_SIZE = 0.15, 2.0
+"""Area of a find relative to the predicted one."""
+SIZE_DEVIATION = 1.2
+"""Standard deviation of its logarithm, as for tracking."""
+NEAR = 1.0
+"""Distance from the prediction, in the marker's lengths, within which a find stands alone."""
+WIDENING = 0.5
+"""Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
+FARTHEST = 5.0
+"""Largest such distance: that from one side of the body to the other, two arms long."""
+STRETCHED = 80.0
+"""Percentile of its predicted lengths that is a marker's own, hardly foreshortened."""
+HALF = 0.6
+"""Half of the marker's length, and its blur."""
+MOVING = 0.3
+"""Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
+what is nearer is taken in by the steps that follow with contours."""
+STEP = 1.0
+"""Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear."""
+REST_REACH = 0.7
+"""Distance of such a rest from the find, in the marker's lengths."""
+PLACE_STD = 0.5
+"""Standard deviation of a find's features beyond a tracked region's, in pixels of the album."""
+SHUTTER = 0.5
+"""Share of the time between frames in which the shutter is open: between nothing and all of it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What is looked for, and before what: the colors of M markers, of the bare body and the background."""
+
+    contours: ContourEvidence
+    """The clip's pictures, and the look of performer and background."""
+    palettes: tuple[Palette | None, ...]
+    """(M,) None for a marker whose color was never seen well."""
+    background: SingleArray
+    """(rows, columns, 3) blue, green, red; NaN where unknown."""
+    deviation: SingleArray
+    """(rows, columns) its standard deviation."""
+
+    @classmethod
+    def of(cls, problem: ClipProblem, contours: ContourEvidence) -> "Search":
+        """Learn the colors from the tracked regions and the appearance."""
+        tracked, appearance = problem.tracked, contours.appearance
+        surfaces = marker_surfaces(contours.album, tracked.centroid, tracked.second_moment, tracked.quality)
+        common, part = common_colors(appearance)
+        limbs = np.array([limb_of(piece.segment) for piece in body_pieces(problem.body)])[part]
+        worn = np.array([limb_of(one.segment) for one in problem.evidence.model.placements])
+        bare = bare_surfaces(common, surfaces, limbs[:, None] == worn)
+        every = [one for one in (*surfaces, *bare) if one is not None]
+        palettes = [
+            None if own is None else Palette(own, tuple(one for one in every if not is_alike(own, one)))
+            for own in surfaces
+        ]
+        return cls(
+            contours, tuple(palettes), usual_background(appearance), appearance.deviation.astype(np.float64)
+        )
+
+    def look(
+        self, problem: ClipProblem, posture: Posture, frame: IndexArray
+    ) -> Generator[float, None, tuple[ObservedRegions, IndexArray]]:
+        """Look for what is missed; yields the fraction done.
+
+        Args:
+            problem: The clip's problem.
+            posture: Postures of the frames, by what was observed so far.
+            frame: (N,) ascending frames that are looked at; in others nothing changes.
+
+        Returns:
+            The observed regions with those found, and the frames of finds that are far from the prediction.
+        """
+        album, observed = self.contours.album, problem.observed[frame]
+        expected = _Expected.of(problem, posture, frame)
+        there = np.array([int(index) in album for index in frame], dtype=np.bool_)[:, None]
+        wanted = there & expected.missed(observed, LEAST_AREA_PX * album.factor**2)
+        wanted &= np.array([palette is not None for palette in self.palettes])
+        moments, certainty = np.full((*wanted.shape, 6), np.nan), np.zeros(wanted.shape)
+        rows = np.flatnonzero(wanted.any(axis=1))
+        for number, row in enumerate(rows.tolist()):
+            picture = album.picture(int(frame[row]))
+            mask = None if problem.ignored is None else problem.ignored.mask(int(frame[row]))
+            for marker in np.flatnonzero(wanted[row]).tolist():
+                window = expected.window(row, marker, album.factor, self.background.shape)
+                if window is None:
+                    continue
+                palette, at = self.palettes[marker], (slice(*window[0]), slice(*window[1]))
+                assert palette is not None
+                seen = palette.unmix(picture[at], self.background[at], self.deviation[at])
+                if mask is not None:
+                    step = mask.shape[0] // picture.shape[0]
+                    small = mask[step // 2 :: step, step // 2 :: step]
+                    seen.gain[is_ignored(small)[: picture.shape[0], : picture.shape[1]][at]] = 0.0
+                found = traces(seen, (window[1][0], window[0][0])).scaled(album.factor)
+                best = expected.best(row, marker, found)
+                if best is not None:
+                    moments[row, marker] = found.moments[best].sum(axis=0)
+                    certainty[row, marker] = found.certainty[best].mean()
+            yield (number + 1) / len(rows)
+        alike = [
+            (one, other)
+            for one, first in enumerate(self.palettes)
+            for other, second in enumerate(self.palettes[:one])
+            if first is not None and second is not None and is_alike(first.surface, second.surface)
+        ]
+        found_regions, kept = expected.held(observed, moments, certainty, alike, album.factor)
+        row, marker = np.nonzero(kept)
+        off = np.linalg.norm(found_regions.centroid - expected.centroid, axis=-1) > MOVING * expected.length
+        far = frame[(kept & off).any(axis=1)]
+        return problem.observed.replaced((frame[row], marker), found_regions[row, marker]), far
+
+
+def find_lost(
+    problem: ClipProblem,
+    spans: list[Window],
+    states: list[ClipState],
+    contours: ContourEvidence,
+    among: BoolArray,
+) -> Part[ClipProblem]:
+    """The problem with lost markers observed where they are found; states follow those that are far off.
+
+    Args:
+        problem: The clip's problem.
+        spans: The windows.
+        states: The state of each by the markers so far; those with far finds are replaced.
+        contours: The look of performer and background, and the clip's pictures.
+        among: (F,) frames that are looked at; the others keep what is observed in them.
+    """
+    if not spans or not among.any():
+        return problem
+    search, left = Search.of(problem, contours), list(range(len(spans)))
+    for number in range(ROUNDS):
+        begun, ended = number / ROUNDS, (number + 1) / ROUNDS
+        inside = [np.arange(spans[one].keep_first, spans[one].keep_last) for one in left]
+        kept = [states[one].posture[spans[one].kept][among[at]] for one, at in zip(left, inside, strict=True)]
+        frame = np.concatenate([at[among[at]] for at in inside])
+        if not len(frame):
+            break
+        looking = search.look(problem, Posture.concatenate(kept), frame)
+        observed, far = yield from scaled(looking, begun, begun)
+        problem = replace(problem, observed=observed)
+        left = [one for one in left if ((far >= spans[one].first) & (far < spans[one].last)).any()]
+        for one in left:
+            part = WindowProblem(problem, spans[one], states[one])
+            yield from scaled(part.follow_markers(), begun, begun)
+            states[one] = part.state.without_cache()
+        yield ended
+        if not left:
+            break
+    return problem
+
+
+@dataclass(frozen=True, eq=False)
+class _Expected:
+    """What is predicted of M markers in N frames, in pixels of the clip."""
+
+    frame: IndexArray
+    """(N,)."""
+    centroid: Array
+    """(N, M, 2)."""
+    area: Array
+    """(N, M)."""
+    seen: BoolArray
+    """(N, M) whether enough of it is predicted in sight to be compared."""
+    length: Array
+    """(M,) the marker's length where it is hardly foreshortened."""
+    reach: Array
+    """(N, M) how far around is searched."""
+    sweep: Array
+    """(N, M, 2) motion while the shutter is open."""
+
+    @classmethod
+    def of(cls, problem: ClipProblem, posture: Posture, frame: IndexArray) -> "_Expected":
+        evidence = problem.evidence
+        predicted = evidence.model.evaluate(problem.body.pose(posture), frame)
+        longest = np.sqrt(12.0 * np.linalg.eigvalsh(predicted.second_moment)[..., 1])
+        length = np.percentile(longest, STRETCHED, axis=0)
+        away = _frames_away(problem.observed.quality >= LOST)[frame]
+        reach = length * np.minimum(NEAR + WIDENING * away, FARTHEST)
+        seen = predicted.visible > problem.noise.least_visible
+        sweep = np.zeros_like(predicted.centroid)
+        if len(frame) > 1:
+            sweep = SHUTTER * np.gradient(predicted.centroid, frame.astype(np.float64), axis=0)
+        area = predicted.area * evidence.area_ratio
+        return cls(frame, predicted.centroid, area, seen, length, reach, sweep)
+
+    def missed(self, observed: ObservedRegions, least_area: float) -> BoolArray:
+        """(N, M) which markers should be seen by more than they are."""
+        hidden = np.isnan(observed.centroid[..., 0])
+        beside = binary_dilation(hidden, np.ones((2 * BESIDE + 1, 1), dtype=np.bool_))
+        small = ~(observed.area * MORE > self.area) & (observed.quality < LOST)
+        return np.asarray(self.seen & (self.area >= least_area) & beside & small)
+
+    def window(
+        self, row: int, marker: int, factor: int, shape: tuple[int, ...]
+    ) -> tuple[tuple[int, int], tuple[int, int]] | None:
+        """First and last row, and column, that are searched in a picture of a shape; None without any."""
+        # So wide that what has its center within reach lies in it as a whole.
+        reach = (self.reach[row, marker] + HALF * self.length[marker]) / factor
+        center = self.centroid[row, marker] / factor
+        size = np.array([shape[1], shape[0]])
+        left, top = np.clip(np.floor(center - reach), 0, size).astype(np.intp).tolist()
+        right, bottom = np.clip(np.ceil(center + reach) + 1, 0, size).astype(np.intp).tolist()
+        return ((top, bottom), (left, right)) if right > left and bottom > top else None
+
+    def best(self, row: int, marker: int, found: Traces) -> IndexArray | None:
+        """Those of R traces that are the marker: the likeliest, and what is cut off from it; else None."""
+        moments, gain = found.moments, found.gain
+        centroid, _ = centroid_and_second_moment(moments)
+        away = np.linalg.norm(centroid - self.centroid[row, marker], axis=-1) / self.reach[row, marker]
+        size = moments[:, 0] / self.area[row, marker]
+        likely = (gain >= LEAST_GAIN) & (found.peak >= LEAST_PEAK) & (away <= 1.0)
+        likely &= (found.certainty >= LEAST_CERTAINTY) & (size >= LEAST_SIZE) & (size <= MOST_SIZE)
+        if not likely.any():
+            return None
+        cost = 0.5 * (np.log(np.maximum(size, LEAST_SIZE)) / SIZE_DEVIATION) ** 2 + 0.5 * (2.0 * away) ** 2
+        main = int(np.where(likely, cost, np.inf).argmin())
+        apart = np.linalg.norm(centroid - centroid[main], axis=-1)
+        own = np.flatnonzero((gain >= LEAST_REST_GAIN) & (apart <= REST_REACH * self.length[marker]))
+        return own if size[own].sum() <= MOST_SIZE else np.array([main])
+
+    def held(
+        self,
+        observed: ObservedRegions,
+        moments: Array,
+        certainty: Array,
+        alike: list[tuple[int, int]],
+        factor: int,
+    ) -> tuple[ObservedRegions, BoolArray]:
+        """Finds (N, M), and which of them hold against the frames beside them and against markers alike.
+
+        Args:
+            observed: What is observed already, in the N frames.
+            moments: (N, M, 6) raw moments of the finds, NaN for none.
+            certainty: (N, M).
+            alike: Pairs of markers of one color.
+            factor: Pixels of the clip to one of the album.
+        """
+        centroid, second = centroid_and_second_moment(moments)
+        area, known = moments[..., 0], np.isfinite(observed.centroid[..., 0])
+        kept = np.isfinite(area)
+        same = np.linalg.norm(centroid - observed.centroid, axis=-1) < self.length
+        kept &= ~known | (same & (area > MORE * observed.area))
+        place = np.where(kept[..., None], centroid, observed.centroid)
+        kept &= self._in_line(place)
+        away = np.linalg.norm(centroid - self.centroid, axis=-1)
+        for one, other in alike:
+            shared = np.linalg.norm(place[:, one] - place[:, other], axis=-1) < 0.5 * self.length[one]
+            nearer = away[:, one] < away[:, other]
+            both = kept[:, one] & kept[:, other]
+            kept[shared & ~(both & nearer), one] = False
+            kept[shared & ~(both & ~nearer), other] = False
+        ratio = area / np.maximum(self.area, 1e-6)
+        whole = np.clip(np.minimum(ratio, 1.5 / np.maximum(ratio, 1e-6)), 0.0, 1.0)
+        second = np.where(kept[..., None, None], second, np.eye(2))
+        found = ObservedRegions.found(
+            centroid, second, area, whole * certainty, self._variance(second, PLACE_STD * factor)
+        )
+        return found, kept
+
+    def _in_line(self, place: Array) -> BoolArray:
+        """(N, M) whether a place is near the predicted one, or within a step of that in a frame beside it."""
+        step = np.linalg.norm(np.diff(place, axis=0), axis=-1)
+        step = np.where((np.diff(self.frame) == 1)[:, None] & np.isfinite(step), step, np.inf)
+        nothing = np.full((1, place.shape[1]), np.inf)
+        least = np.minimum(np.concatenate([nothing, step]), np.concatenate([step, nothing]))
+        away = np.linalg.norm(place - self.centroid, axis=-1)
+        return np.asarray((away <= NEAR * self.length) | (least <= STEP * self.length))
+
+    def _variance(self, second: Array, place_std: float) -> Array:
+        """(N, M, 5) variance of finds' features beyond that of tracked regions [px²].
+
+        A region swept by s while the shutter is open gains s sᵀ / 12 in its second moment; for how long it is
+        open is not known, so that all of it is noise.
+        """
+        values, axes = np.linalg.eigh(second)
+        deviation = np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+        swept = np.einsum("nmij,nmi->nmj", axes, self.sweep)  # along the region's own axes
+        variance = np.full((*swept.shape[:2], FEATURES), place_std**2)
+        for row, (a, b) in enumerate(((0, 0), (0, 1), (1, 1)), start=2):
+            gained = swept[..., a] * swept[..., b] / 12.0
+            variance[..., row] += (gained / (deviation[..., a] + deviation[..., b])) ** 2
+        return variance
+
+
+def _frames_away(seen: BoolArray) -> Array:
+    """(F, M) number of frames to the nearest one in which a marker is seen well, at least one."""
+    count = len(seen)
+    index = np.arange(count)[:, None]
+    before = np.maximum.accumulate(np.where(seen, index, -count), axis=0)
+    after = np.minimum.accumulate(np.where(seen, index, 2 * count)[::-1], axis=0)[::-1]
+    return np.asarray(np.clip(np.minimum(index - before, after - index), 1, count), dtype=np.float64)

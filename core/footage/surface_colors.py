@@ -1,0 +1,140 @@
+"""The colors that a performer wears, as unmixing needs them: of each marker, and of all that is no marker."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from .appearance import CELL_VOLUME, LEVELS, UNSEEN_LOG_DENSITY, Appearance
+from .clips.album import Album
+from .segmentation.unmixing import Surface, contrast, mixed, surface_of
+
+LEARNED_FRAMES = 8
+WHOLE = 0.6
+"""Least quality of regions that a marker's color is learned from, where there are any."""
+INNER = 1.0
+"""Squared distance from a region's center, in its deviations, within which a pixel is clear of the edge."""
+FEWEST_INNER = 3
+LEAST_MASS = 0.07
+"""Least share of a part's pixels that have a color of its own."""
+MOST_COLORS = 4
+"""Of a part."""
+NEAR_CELLS = 2
+"""Cells around a common one that belong to its color."""
+PART_DEVIATION = 5.0
+APART = 12.0
+"""Distance of colors that are two surfaces', in levels of `contrast`."""
+OWN_SHARE = 0.1
+"""Share of a marker's color from which another is a mixture with it: of a sleeve's shaded side, or edge."""
+GRAY = np.array([60.0, 0.0, 0.0])
+"""Middle gray: what markers' edges are mixed with in front of most walls."""
+
+
+def marker_surfaces(
+    album: Album, centroid: Array, second_moment: Array, quality: Array
+) -> list[Surface | None]:
+    """The color of each of M markers in an album; None where it is never seen well enough.
+
+    Args:
+        album: Pictures of the frames.
+        centroid: (F, M, 2) of the markers' regions [px of the clip]; NaN where hidden.
+        second_moment: (F, M, 2, 2).
+        quality: (F, M).
+    """
+    return [
+        _marker_surface(album, centroid[:, m], second_moment[:, m], quality[:, m])
+        for m in range(quality.shape[1])
+    ]
+
+
+def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality: Array) -> Surface | None:
+    there = np.array([index in album for index in range(len(quality))])
+    usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
+    if not usual.any():
+        return None
+    good = np.flatnonzero(usual >= min(WHOLE, float(np.median(usual[usual > 0.0]))))
+    chosen = good[np.unique(np.linspace(0, len(good) - 1, LEARNED_FRAMES).round().astype(np.intp))]
+    inside = []
+    for frame in chosen.tolist():
+        picture = album.picture(frame)
+        reach = np.sqrt(np.diagonal(second_moment[frame]).clip(0.0)) / album.factor
+        low, high = (np.floor(centroid[frame] / album.factor + side * reach) for side in (-1.0, 1.0))
+        left, top = np.clip(low, 0, picture.shape[1::-1]).astype(int).tolist()
+        right, bottom = np.clip(high + 1, 0, picture.shape[1::-1]).astype(int).tolist()
+        row, column = np.indices((max(bottom - top, 0), max(right - left, 0)))
+        offset = (np.stack([column + left, row + top], axis=-1) + 0.5) * album.factor - centroid[frame]
+        away = np.einsum("rci,ij,rcj->rc", offset, np.linalg.pinv(second_moment[frame]), offset)
+        pixels = picture[top:bottom, left:right][away < INNER]
+        if len(pixels) >= FEWEST_INNER:
+            inside.append(pixels)
+    return surface_of(np.concatenate(inside)) if inside else None
+
+
+def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
+    """Colors that the body's parts commonly have, the commonest first.
+
+    Returns:
+        Colors (K, 3) as `contrast` gives them, and the part (K,) that each was seen on.
+    """
+    found: list[tuple[float, int, Array]] = []
+    for part, log_density in enumerate(appearance.parts[:-1]):
+        share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
+        share = np.maximum(share, 0.0).reshape(LEVELS, LEVELS, LEVELS) * CELL_VOLUME
+        whole = share.sum()
+        for _ in range(MOST_COLORS):
+            peak = np.unravel_index(int(share.argmax()), share.shape)
+            near = tuple(slice(max(int(at) - NEAR_CELLS, 0), int(at) + NEAR_CELLS + 1) for at in peak)
+            mass = float(share[near].sum())
+            if mass < LEAST_MASS * whole or mass == 0.0:
+                break
+            cells = np.moveaxis(np.indices(share[near].shape), 0, -1) + [one.start for one in near]
+            color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
+            found.append((mass / whole, part, color))
+            share[near] = 0.0
+    found.sort(key=lambda one: -one[0])
+    color = contrast(np.array([color for *_, color in found]).reshape(-1, 3))
+    return color, np.array([part for _, part, _ in found], dtype=np.intp)
+
+
+def bare_surfaces(common: Array, markers: Sequence[Surface | None], beside: BoolArray) -> list[Surface]:
+    """The body's surfaces that no marker covers: its common colors without the markers' own and their edges'.
+
+    Args:
+        common: (K, 3) colors of the body as `common_colors` gives them.
+        markers: The M markers' colors.
+        beside: (K, M) whether a color was seen on the limb that a marker is worn on.
+    """
+    worn = [one for one in markers if one is not None]
+    bare: list[Surface] = []
+    for color, near in zip(common, beside, strict=True):
+        surface = Surface(color, PART_DEVIATION)
+        known = np.array([one.color for one in (*worn, *bare)]).reshape(-1, 3)
+        if any(is_alike(surface, one) for one in worn) or _is_near(color, known):
+            continue
+        neighbors = [one for one, there in zip(markers, near, strict=True) if there and one is not None]
+        if not any(_is_blend(color, one, known) for one in neighbors):
+            bare.append(surface)
+    return bare
+
+
+def _is_near(color: Array, known: Array) -> bool:
+    return bool((np.linalg.norm(known - color, axis=-1) < APART).any())
+
+
+def _is_blend(color: Array, marker: Surface, known: Array) -> bool:
+    """Whether a color is a mixture of a marker's with black, gray or a known one (K, 3)."""
+    ends = np.concatenate([np.zeros((1, 3)), GRAY[None], known])
+    share, _ = mixed(color, ends, PART_DEVIATION, marker.color, PART_DEVIATION)
+    at = ends + share[:, None] * (marker.color - ends)
+    return bool(((share > OWN_SHARE) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
+
+
+def is_alike(one: Surface, other: Surface) -> bool:
+    """Whether two surfaces' colors cannot be told apart."""
+    return bool(np.linalg.norm(one.color - other.color) < 3.0 * max(one.deviation, other.deviation))
+
+
+def usual_background(appearance: Appearance) -> SingleArray:
+    """(rows, columns, 3) the background's colors; NaN where unknown."""
+    known = appearance.known[..., None]
+    return np.where(known, appearance.color, np.nan).astype(np.float32)

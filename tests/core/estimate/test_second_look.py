@@ -1,0 +1,186 @@
+"""A second look at drawn pictures for markers that tracking has lost."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from _filmed import FRAMES, POSED, TRUTH, photograph
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
+from keymark.core.body.posture import Posture
+from keymark.core.estimate.seen_tracks import seen_tracks
+from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.footage.clips.album import Album
+from keymark.core.footage.ignored_regions import IgnoredPixels, IgnoredRegion
+from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import Keyframe
+from keymark.core.progress import run
+
+MARKER = SEGMENTS.index("forearm.R")
+LOST = np.arange(20, 25)
+WORN = {"forearm.R": (215.0, 60.0, 40.0)}
+PUSHED_UP = {"forearm.R": (60.0, 60.0, 60.0)}
+EXPOSED = 7
+"""Moments of one exposure."""
+
+
+def jerked() -> Posture:
+    """The filmed motion with a jerk of the right arm that no keyframe shows."""
+    step = np.zeros((FRAMES, BODY.skeleton.dof_count))
+    jerk = 0.6 * np.sin(np.pi * np.clip((np.arange(FRAMES) - 17.0) / 10.0, 0.0, 1.0)) ** 2
+    step[:, BODY.skeleton.dof_names.index("shoulder.R.rotation_y")] = jerk
+    return TRUTH.plus(step)
+
+
+MOTION = jerked()
+
+
+def blurred(frames: np.ndarray) -> Album:
+    """The album of the true motion, with some frames exposed over two frames' time."""
+    sharp, album = photograph(MOTION, painted=WORN), Album()
+    moving = {}
+    for frame in frames.tolist():
+        around = np.linspace(-1.0, 1.0, EXPOSED)
+        step = MOTION[frame + 1 : frame + 2].minus(MOTION[frame - 1 : frame]) / 2.0
+        swept = photograph(MOTION[np.full(EXPOSED, frame)].plus(around[:, None] * step), painted=WORN)
+        pictures, _ = swept.pictures(range(EXPOSED))
+        moving[frame] = pictures.astype(float).mean(axis=0).round().astype(np.uint8)
+    for frame in range(FRAMES):
+        album.add(frame, moving.get(frame, sharp.picture(frame)))
+    return album
+
+
+@cache
+def pictures() -> Album:
+    """The album in which the lost frames are blurred."""
+    return blurred(LOST)
+
+
+def tracked() -> RegionTracks:
+    """Tracks that miss the right forearm in the lost frames."""
+    tracks = film(MOTION, 0.3)
+    centroid, second, area, quality = (
+        getattr(tracks, name).copy() for name in ("centroid", "second_moment", "area", "quality")
+    )
+    centroid[LOST, MARKER], second[LOST, MARKER], area[LOST, MARKER] = np.nan, np.nan, np.nan
+    quality[LOST, MARKER] = 0.0
+    return replace(tracks, centroid=centroid, second_moment=second, area=area, quality=quality)
+
+
+def posed(off: float = 0.0) -> tuple[Keyframe, ...]:
+    """Few keyframes, the last of them off by an angle of the elbow."""
+    error = np.zeros((1, BODY.skeleton.dof_count))
+    error[0, BODY.skeleton.dof_names.index("elbow.L.flexion")] = off
+    exact = [Keyframe(int(index), MOTION[index : index + 1][0]) for index in POSED]
+    last = MOTION[POSED[-1] : POSED[-1] + 1].plus(error)[0]
+    return (*exact[:-1], Keyframe(int(POSED[-1]), last))
+
+
+def estimate(
+    album: Album,
+    keyframes: tuple[Keyframe, ...] = posed(),
+    earlier: WholeClipResult | None = None,
+    ignored: IgnoredPixels | None = None,
+) -> WholeClipResult:
+    """The estimate from tracks that miss a marker."""
+    prior = interpolate(keyframes, FRAMES)
+    index = tuple(keyframe.index for keyframe in keyframes)
+    return run(
+        estimate_whole_clip(
+            BODY,
+            CAMERA,
+            tracked(),
+            SEGMENTS,
+            prior,
+            index,
+            album=album,
+            earlier=earlier,
+            ignored=ignored,
+        )
+    )
+
+
+def everywhere() -> IgnoredPixels:
+    """The whole picture, in the lost frames."""
+    whole = IgnoredRegion(box=(0.0, 0.0, 320.0, 240.0), frames=(int(LOST[0]), int(LOST[-1])))
+    return IgnoredPixels((whole,), CAMERA.resolution)
+
+
+@cache
+def found() -> WholeClipResult:
+    """The estimate from blurred pictures."""
+    return estimate(pictures())
+
+
+def finds(result: WholeClipResult) -> np.ndarray:
+    """(F, M) what was found beyond the tracks."""
+    problem = result.problem
+    return np.isfinite(problem.observed.area) & np.isnan(problem.tracked.area)
+
+
+def test_a_blurred_marker_is_found_where_it_is() -> None:
+    """In most of the frames, within two pixels, and nothing else is; the posture follows."""
+    new = finds(found())
+    assert new[LOST, MARKER].sum() >= 3
+    true = MODEL.evaluate(BODY.pose(MOTION), np.arange(FRAMES)).centroid
+    off = np.linalg.norm(found().problem.observed.centroid - true, axis=-1)
+    assert off[new].max() < 2.0
+    new[LOST, MARKER] = False
+    hidden = MODEL.evaluate(BODY.pose(MOTION), np.arange(FRAMES)).visible < 0.1
+    assert not (new & hidden).any()
+    quality = found().problem.observed.quality
+    assert (quality[finds(found())] > 0.0).all() and quality.max() <= 1.0
+
+
+def test_nothing_is_found_of_a_marker_that_is_not_there() -> None:
+    """The sleeve pushed up, for those frames."""
+    bare, worn = (photograph(MOTION, painted=one) for one in (PUSHED_UP, WORN))
+    album = Album()
+    for frame in range(FRAMES):
+        album.add(frame, (bare if frame in LOST else worn).picture(frame))
+    assert not finds(estimate(album))[LOST, MARKER].any()
+
+
+def test_ignored_pixels_are_no_marker() -> None:
+    """With the whole picture ignored in those frames nothing is found."""
+    assert not finds(estimate(pictures(), ignored=everywhere()))[LOST, MARKER].any()
+
+
+def test_finds_are_kept_where_nothing_changed() -> None:
+    """A keyframe changed at the end: what was found far from it is the same to the last digit."""
+    again = estimate(pictures(), posed(0.004), found())
+    before, after = found().problem, again.problem
+    assert again.evidence is not found().evidence and finds(again)[LOST, MARKER].any()
+    first = POSED[-2]
+    np.testing.assert_array_equal(after.observed.centroid[:first], before.observed.centroid[:first])
+    np.testing.assert_array_equal(after.tracked.area, before.tracked.area)
+
+
+def test_nothing_changed_looks_at_nothing() -> None:
+    """The same estimate again is the earlier one, finds included."""
+    again = estimate(pictures(), earlier=found())
+    np.testing.assert_array_equal(again.problem.observed.area, found().problem.observed.area)
+    np.testing.assert_array_equal(again.posture.translation, found().posture.translation)
+
+
+def test_a_result_shows_what_was_found() -> None:
+    """The tracks of a result hold the finds, with their quality; what was tracked stays."""
+    tracks, observed = tracked(), found().problem.observed
+    shown, new = seen_tracks(tracks, observed), finds(found())
+    np.testing.assert_array_equal(shown.centroid[new], observed.centroid[new])
+    np.testing.assert_array_equal(shown.quality[~new], tracks.quality[~new])
+    assert shown.visible.sum() == tracks.visible.sum() + new.sum()
+
+
+def test_the_posture_follows_what_was_found() -> None:
+    """The wrist is much nearer to its true place in the picture in the lost frames than without."""
+    without = estimate(pictures(), ignored=everywhere())
+    assert wrist_error_px(found().posture) < 0.6 * wrist_error_px(without.posture)
+
+
+def wrist_error_px(posture: Posture) -> float:
+    """Mean distance of the right wrist from its true place in the lost frames [px]."""
+    wrist = BODY.skeleton.point_names.index("wrist.R")
+    points = [BODY.points(BODY.pose(one[LOST]))[:, wrist] for one in (posture, MOTION)]
+    one, other = (CAMERA.project(point)[0] for point in points)
+    return float(np.linalg.norm(one - other, axis=-1).mean())

@@ -1,0 +1,142 @@
+"""Dances and turns."""
+
+from ..described import Described, actor, performed
+from ..look import Look
+from ..motions import back_spin, dance, furniture, spin
+from ..surroundings import Lamp, Room, Thing
+from ..viewpoint import look_from
+from .sizes import MIDDLE, SMALL
+
+SPIN = Described(
+    name="spin",
+    perform=performed(spin.plan, actor(1.74, thigh=1.02, upper_arm=1.05), 96, -20.0, tempo=0.92),
+    camera=look_from(-24.0, 3.4, 2.2, (0.0, 0.0, 0.93), 35.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (190, 178, 40),
+            "forearm.L": (190, 50, 130),
+            "forearm.R": (40, 110, 200),
+            "shin.L": (200, 70, 30),
+            "shin.R": (30, 150, 110),
+            "cloth": (120, 124, 132),
+            "hair": (24, 20, 20),
+        },
+        girths={"trunk": 0.92, "upper_arm": 0.9, "thigh": 0.98},
+        cloth_m={"trunk": 0.008, "forearm": 0.016, "shin": 0.008},
+        folds=0.8,
+    ),
+    room=Room(
+        lamps=(
+            Lamp((-2.2, -2.2, 2.6), 0.8, 120.0, (1.0, 0.55, 0.42)),
+            Lamp((2.8, -2.4, 2.4), 1.0, 110.0, (0.45, 0.62, 1.0)),
+        ),
+        sky=(0.8, 0.7, 1.0, 0.16),
+        things=(Thing((0.9, 0.3, 0.75), (0.10, 0.09, 0.08), {0: (-0.55, -0.95, 0.375)}),),
+    ),
+    seed=105,
+    keyframes=(0, 10, 19, 26, 32, 38, 47, 55, 64, 72, 80, 95),
+    samples=1,
+    noise=2.0,
+    shadow_per_height=(0.8, 0.9, 0.0),
+)
+"""Warm light from one side, blue from the other, wide sleeves, and a counter before the feet.
+
+Keyframes half a turn apart would leave open which way the turn goes; an animator poses more while it lasts.
+"""
+
+
+DANCE = Described(
+    name="dance",
+    perform=performed(dance.plan, actor(1.67, shin=1.03, trunk=0.97, hip_width=1.06), 120, 10.0),
+    camera=look_from(14.0, 4.4, 1.5, (0.0, 0.0, 0.95), 47.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (40, 90, 190),
+            "forearm.L": (206, 44, 44),
+            "forearm.R": (60, 160, 60),
+            "shin.L": (216, 110, 34),
+            "shin.R": (40, 150, 170),
+            "cloth": (70, 60, 66),
+            "skin": (92, 62, 46),
+            "hair": (18, 16, 16),
+        },
+        girths={"thigh": 1.08, "trunk": 0.96, "forearm": 0.94},
+    ),
+    room=Room(
+        lamps=(
+            Lamp((0.6, -3.8, 3.2), 1.6, 170.0, (1.0, 0.78, 0.86)),
+            Lamp((-2.2, -1.0, 2.2), 0.7, 50.0, (0.55, 0.45, 1.0)),
+        ),
+        sky=(0.9, 0.85, 1.0, 0.22),
+        wall=(0.36, 0.34, 0.40),
+        planks=((0.20, 0.13, 0.09), (0.17, 0.11, 0.08), (0.08, 0.06, 0.05)),
+    ),
+    seed=107,
+    samples=1,
+    noise=2.0,
+)
+"""Red and orange are similar colors, and so are the blues; the light is rosy."""
+
+OAK, STEEL = (0.34, 0.24, 0.14), (0.10, 0.10, 0.11)
+
+FURNITURE = Described(
+    name="furniture",
+    perform=performed(furniture.plan, actor(1.75, forearm=1.03, upper_arm=0.97, trunk=1.02), 92, -6.0),
+    camera=look_from(-14.0, 4.3, 1.45, (0.0, -0.1, 1.02), 40.0, MIDDLE, tilt_deg=-1.5),
+    look=Look(
+        colors={
+            "trunk": (70, 150, 170),
+            "forearm.L": (224, 120, 30),
+            "forearm.R": (150, 60, 180),
+            "shin.L": (200, 50, 60),
+            "shin.R": (60, 150, 70),
+            "cloth": (58, 62, 84),
+            "skin": (214, 168, 140),
+            "hair": (150, 60, 30),
+        },
+        girths={"trunk": 1.1, "upper_arm": 1.05, "thigh": 1.04},
+        cloth_m={"trunk": 0.012, "forearm": 0.008, "shin": 0.012},
+        folds=0.7,
+    ),
+    room=Room(
+        wall=(0.62, 0.60, 0.54),
+        things=(
+            Thing((1.20, 0.55, 0.04), OAK, {0: (0.02, -0.72, 0.74)}),
+            Thing((1.16, 0.03, 0.46), OAK, {0: (0.02, -0.90, 0.49)}),
+            Thing((0.05, 0.50, 0.72), STEEL, {0: (-0.56, -0.72, 0.36)}),
+            Thing((0.05, 0.50, 0.72), STEEL, {0: (0.60, -0.72, 0.36)}),
+            Thing((0.42, 0.42, 0.05), STEEL, {0: (0.96, -0.80, 0.45)}),
+            Thing((0.42, 0.04, 0.52), OAK, {0: (0.96, -1.02, 0.70)}),
+            Thing((0.04, 0.40, 0.44), STEEL, {0: (0.77, -0.80, 0.22)}),
+            Thing((0.04, 0.40, 0.44), STEEL, {0: (1.15, -0.80, 0.22)}),
+        ),
+    ),
+    seed=112,
+    samples=1,
+)
+"""A table and a chair hide the shins and parts of the thighs, after the first steps all the time."""
+
+BACK_SPIN = Described(
+    name="back_spin",
+    perform=performed(back_spin.plan, actor(1.66, trunk=0.99, shin=1.02, shoulder_width=1.04), 88, 8.0),
+    camera=look_from(8.0, 4.2, 1.6, (0.0, 0.0, 0.94), 44.0, SMALL, tilt_deg=-1.0),
+    look=Look(
+        colors={
+            "trunk": (170, 70, 60),
+            "forearm.L": (70, 170, 90),
+            "forearm.R": (70, 100, 210),
+            "shin.L": (220, 170, 40),
+            "shin.R": (190, 60, 170),
+            "cloth": (44, 48, 60),
+            "skin": (84, 58, 44),
+            "hair": (200, 160, 80),
+        },
+        girths={"trunk": 0.95, "thigh": 1.06},
+        cloth_m={"trunk": 0.008, "forearm": 0.010, "shin": 0.012},
+        folds=0.6,
+    ),
+    room=Room(wall=(0.46, 0.48, 0.60)),
+    seed=118,
+    samples=1,
+)
+"""Begins from behind, turns to the front and on to the back, between keyframes spread evenly."""

@@ -1,0 +1,97 @@
+"""Kicks and punches."""
+
+from ..build import Build
+from ..described import Described, actor, performed
+from ..look import Look
+from ..motions import box, kick, martial, spin_kick
+from ..surroundings import Lamp, Room
+from ..viewpoint import look_from
+from .sizes import SMALL, WIDE
+
+HARD_SHADOW = (2.0, 1.2, 0.0)
+
+KICK = Described(
+    name="kick",
+    perform=performed(kick.plan, actor(1.70, upper_arm=0.95, shin=0.97, hip_width=1.1), 100, 12.0),
+    camera=look_from(58.0, 4.8, 1.1, (0.05, -0.25, 0.98), 55.0, SMALL, tilt_deg=2.0),
+    look=Look(
+        colors={"trunk": (28, 130, 120), "forearm.L": (220, 170, 30), "forearm.R": (200, 60, 160),
+                 "shin.L": (60, 90, 210), "shin.R": (200, 60, 40), "cloth": (196, 192, 184), "skin": (226,
+                                                                                                      180,
+    150)},
+        girths={"thigh": 1.12, "trunk": 1.08, "upper_arm": 1.1, "forearm": 1.08},
+        cloth_m={"trunk": 0.012, "forearm": 0.008, "shin": 0.010}, folds=0.7,
+    ),
+    seed=102,
+)  # fmt: skip
+
+
+BOX = Described(
+    name="box",
+    perform=performed(box.plan, actor(1.80, forearm=1.04, shoulder_width=1.08), 108, 4.0),
+    camera=look_from(24.0, 4.2, 1.45, (0.0, -0.05, 0.98), 50.0, SMALL),
+    look=Look(
+        colors={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50),
+                 "shin.L": (60, 160, 90),
+                 "shin.R": (150, 60, 180), "skin": (170, 120, 92)},
+        girths={"upper_arm": 1.15, "forearm": 1.1, "trunk": 1.04},
+    ),
+    room=Room(
+        lamps=(Lamp((-2.3, -1.9, 2.4), 0.35, 95.0, (1.0, 0.86, 0.68)), Lamp((2.6, -3.0, 1.4), 1.2, 7.0,
+                                                                            (0.75, 0.85, 1.0))),
+        sky=(0.7, 0.8, 1.0, 0.05), wall=(0.30, 0.27, 0.25),
+    ),
+    noise=3.0, seed=103, shadow_per_height=HARD_SHADOW,
+)  # fmt: skip
+
+SPIN_KICK = Described(
+    name="spin_kick",
+    perform=performed(spin_kick.plan, actor(1.77, thigh=1.02, shin=1.02, trunk=0.98), 76, 18.0),
+    camera=look_from(16.0, 5.2, 1.35, (0.0, -0.1, 0.98), 46.0, WIDE, tilt_deg=1.0),
+    look=Look(
+        colors={
+            "trunk": (200, 60, 36),
+            "forearm.L": (48, 168, 96),
+            "forearm.R": (60, 96, 214),
+            "shin.L": (226, 186, 40),
+            "shin.R": (168, 60, 190),
+            "cloth": (206, 202, 192),
+            "skin": (186, 134, 104),
+        },
+        girths={"thigh": 1.08, "trunk": 1.04, "upper_arm": 1.04},
+        cloth_m={"trunk": 0.012, "forearm": 0.007, "shin": 0.010},
+        folds=0.6,
+    ),
+    room=Room(wall=(0.50, 0.53, 0.58)),
+    seed=111,
+    keyframes=(0, 8, 15, 23, 48, 56, 66, 75),
+    moments=7,
+    shutter_frames=0.9,
+    samples=1,
+)
+"""Nearly a full turn between two keyframes, in a long exposure that blurs forearms and the kicking leg."""
+
+MARTIAL = Described(
+    name="martial",
+    perform=performed(martial.plan, actor(1.76, shin=0.98, hip_width=1.04), 88, -4.0, build=Build()),
+    camera=look_from(-36.0, 4.4, 1.3, (0.0, -0.12, 0.97), 48.0, SMALL, tilt_deg=1.0),
+    look=Look(
+        colors={
+            "trunk": (220, 140, 40),
+            "forearm.L": (70, 70, 200),
+            "forearm.R": (196, 48, 60),
+            "shin.L": (60, 170, 150),
+            "shin.R": (170, 60, 150),
+            "cloth": (66, 74, 60),
+            "skin": (160, 112, 84),
+            "hair": (26, 22, 20),
+        },
+        girths={"thigh": 1.08, "upper_arm": 1.1, "forearm": 1.06},
+        folds=0.6,
+    ),
+    room=Room(wall=(0.50, 0.58, 0.58)),
+    seed=114,
+    moments=4,
+    samples=1,
+)
+"""The performer's joints lie up to two centimeters beside the skeleton's; no posture reaches them all."""

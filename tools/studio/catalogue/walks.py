@@ -1,0 +1,149 @@
+"""Walks."""
+
+from ..described import Described, actor, performed
+from ..look import Look
+from ..motions import approach, duck, far_leg, steps, stroll
+from ..surroundings import Room, Thing
+from ..viewpoint import look_at, look_from
+from .sizes import SMALL
+
+STROLL = Described(
+    name="stroll",
+    perform=performed(stroll.plan, actor(1.78, thigh=1.04, forearm=0.96), 90),
+    camera=look_from(6.0, 4.1, 1.55, (0.0, 0.0, 0.98), 32.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (196, 54, 44),
+            "forearm.L": (36, 140, 130),
+            "forearm.R": (150, 70, 190),
+            "shin.L": (70, 100, 210),
+            "shin.R": (210, 180, 40),
+            "cloth": (92, 80, 66),
+        },
+        cloth_m={"trunk": 0.010, "forearm": 0.006, "shin": 0.016},
+        folds=0.7,
+    ),
+    room=Room(
+        things=(
+            Thing((0.26, 0.26, 2.7), (0.46, 0.44, 0.40), {0: (-0.42, -1.0, 1.35)}),
+            Thing((0.9, 0.5, 0.05), (0.30, 0.20, 0.12), {0: (0.75, -1.0, 0.52)}),
+            Thing((0.8, 0.06, 0.5), (0.30, 0.20, 0.12), {0: (0.75, -1.0, 0.25)}),
+        )
+    ),
+    seed=108,
+    samples=1,
+)
+"""The performer walks past behind a pillar and a low table."""
+
+FAR_LEG = Described(
+    name="far_leg",
+    perform=performed(far_leg.plan, actor(1.82, thigh=0.98, shin=1.03, hip_width=0.95), 102),
+    camera=look_from(90.0, 4.6, 1.05, (0.0, 0.0, 0.98), 46.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (54, 150, 90),
+            "forearm.L": (206, 60, 150),
+            "forearm.R": (214, 160, 40),
+            "shin.L": (60, 80, 200),
+            "shin.R": (206, 84, 40),
+            "cloth": (150, 146, 140),
+            "skin": (142, 98, 74),
+            "hair": (20, 18, 18),
+        },
+        girths={"thigh": 1.02, "trunk": 1.02, "shin": 1.04},
+        cloth_m={"trunk": 0.008, "forearm": 0.005, "shin": 0.012},
+        folds=0.6,
+    ),
+    room=Room(
+        wall=(0.56, 0.52, 0.58),
+        things=(Thing((0.75, 2.0, 0.04), (0.06, 0.06, 0.065), {0: (0.0, 0.0, -0.018)}),),
+    ),
+    seed=113,
+    keyframes=(0, 15, 28, 42, 57, 72, 87, 101),
+    samples=1,
+)
+"""Seen exactly from the side; every keyframe is a heel strike, so that all swings happen between them."""
+
+APPROACH = Described(
+    name="approach",
+    perform=performed(approach.plan, actor(1.73, thigh=1.01, upper_arm=1.03, trunk=0.98), 66, 4.0),
+    camera=look_at((0.35, -6.6, 1.25), (-0.02, -1.2, 0.98), 38.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (190, 60, 120),
+            "forearm.L": (50, 150, 180),
+            "forearm.R": (226, 150, 40),
+            "shin.L": (110, 80, 200),
+            "shin.R": (70, 160, 60),
+            "cloth": (60, 56, 60),
+            "skin": (226, 180, 150),
+            "hair": (90, 60, 30),
+        },
+        girths={"thigh": 1.04, "shin": 1.05},
+    ),
+    room=Room(wall=(0.44, 0.50, 0.44)),
+    seed=115,
+    samples=1,
+)
+"""A run toward the camera: feet touch the floor briefly, and the performer more than doubles in size."""
+
+STEPS = Described(
+    name="steps",
+    perform=performed(steps.plan, actor(1.68, shin=0.98, trunk=1.03), 96),
+    camera=look_from(86.0, 4.9, 1.25, (0.0, -0.08, 1.12), 44.0, SMALL),
+    look=Look(
+        colors={
+            "trunk": (60, 110, 200),
+            "forearm.L": (220, 90, 40),
+            "forearm.R": (80, 160, 70),
+            "shin.L": (200, 50, 130),
+            "shin.R": (220, 190, 50),
+            "cloth": (70, 60, 56),
+            "skin": (110, 76, 58),
+            "hair": (20, 16, 16),
+        },
+        girths={"trunk": 1.08, "thigh": 1.06},
+        folds=0.7,
+    ),
+    room=Room(
+        wall=(0.58, 0.50, 0.46),
+        things=tuple(
+            Thing((1.0, length, steps.RISE_M), (0.30, 0.31, 0.33), {0: (0.0, middle, height)})
+            for length, middle, height in steps.boxes()
+        ),
+    ),
+    seed=116,
+    samples=1,
+)
+"""Three steps, seen from the side: the near leg hides the far one, and the floor is not level."""
+
+DUCK = Described(
+    name="duck",
+    perform=performed(duck.plan, actor(1.79, forearm=0.97, hip_width=1.05), 88),
+    camera=look_from(22.0, 4.4, 1.35, (0.0, -0.05, 0.92), 38.0, SMALL, tilt_deg=1.5),
+    look=Look(
+        colors={
+            "trunk": (150, 160, 50),
+            "forearm.L": (60, 80, 210),
+            "forearm.R": (210, 60, 50),
+            "shin.L": (170, 70, 180),
+            "shin.R": (40, 160, 150),
+            "cloth": (96, 70, 56),
+            "skin": (190, 138, 108),
+            "hair": (60, 40, 26),
+        },
+        cloth_m={"trunk": 0.011, "forearm": 0.008, "shin": 0.010},
+        folds=0.7,
+    ),
+    room=Room(
+        things=(
+            Thing((0.14, 1.9, 0.14), (0.42, 0.08, 0.06), {0: (-0.15, -0.05, 1.30)}),
+            Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, -0.95, 0.615)}),
+            Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, 0.85, 0.615)}),
+            Thing((0.50, 0.04, 0.34), (0.62, 0.60, 0.20), {0: (0.16, -0.97, 1.18)}),
+        ),
+    ),
+    seed=117,
+    samples=1,
+)
+"""A bar, its post and a sign hide parts of the performer, who ducks under it."""
