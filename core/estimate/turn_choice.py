@@ -33,8 +33,6 @@ MARGIN_S = 0.2
 """How far beyond its keyframes, which hold it, a stretch is solved."""
 CHEAPER = 3.0
 """Another turn is taken where it costs less by so much: it is twenty times as probable."""
-SETTLED = (1.0, 1.0)
-"""Steps of a window in which a turn was taken."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +77,7 @@ def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[D
         doubted = time_s >= LONG_S and misfit > DOUBTED_COST
         if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
             continue
-        other = -1 if step[gap] > 0.0 else 1
-        ways = (other, -other) if doubted else (other,)
+        ways = (-1, 1) if doubted else (-1 if step[gap] > 0.0 else 1,)
         possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= FASTEST_RAD_PER_S * time_s]
         if possible:
             found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
@@ -91,7 +88,7 @@ def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray
     """Turn the other way round where that costs less.
 
     Args:
-        problem: The clip's problem, with the short way round in the gaps that are asked for.
+        problem: The clip's problem; turns that it has in these gaps are held against the short way.
         states: Windows of it, solved; they may overlap.
         among: (K - 1,) the gaps that are asked for.
 
@@ -122,10 +119,13 @@ def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray
     turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
     settled = []
     for state in states:
-        part = WindowProblem(problem, _whole(state), state)
-        if turned[part.window.frames].any():
-            yield from scaled(part.descend(SETTLED), 1.0, 1.0)
-        settled.append(part.state.without_cache())
+        window = _whole(state)
+        if turned[window.frames].any():
+            # From the prior, as an estimate that keeps these turns begins (`warm_start`).
+            part = WindowProblem(problem, window, problem.start(window))
+            yield from scaled(part.follow_markers(), 1.0, 1.0)
+            state = part.state.without_cache()
+        settled.append(state)
     return ChosenTurns(problem, settled, tuple(open_still))
 
 
@@ -136,7 +136,7 @@ def _tries(
     best: Contest | None = None
     for way in doubt.turns:
         turns = problem.turns.copy()
-        turns[doubt.gap] += way
+        turns[doubt.gap] = 0 if turns[doubt.gap] == way else way
         other = problem.with_turns(turns)
         tried = yield from contest(problem, state, other, other.start(_whole(state)))
         if tried is not None and (best is None or tried.gain > best.gain):

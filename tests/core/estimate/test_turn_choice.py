@@ -11,13 +11,15 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.body.heading import yawed_at
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.notes import turn_notes
-from keymark.core.estimate.turn_choice import doubted_turns
+from keymark.core.estimate.turn_choice import choose_turns, doubted_turns
 from keymark.core.estimate.undecided import Undecided, undecided_covariance
 from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.window_problem import WindowProblem
+from keymark.core.estimate.windows import Window
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.progress import Preview
+from keymark.core.progress import Preview, run
 from keymark.core.take.take_file import read_take
 
 FRAMES, EVERY = 76, 15
@@ -75,6 +77,19 @@ def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
     assert turns.pop(GAP) == added
     assert not any(turns)
     assert 1e3 * point_error_m(result.posture, truth).mean() < 40.0
+
+
+def test_a_turn_taken_wrongly_is_taken_back() -> None:
+    """Turns can be chosen again, as when more has been seen: the one there is held against the short way."""
+    truth = turning(146.0)
+    problem = estimate(truth, film(truth, 0.3))[0].problem
+    wrong = problem.with_turns(np.array([0, -1, 0, 0, 0]))
+    window = Window(0, FRAMES, 0, FRAMES)
+    part = WindowProblem(wrong, window, wrong.start(window))
+    run(part.follow_markers())
+    chosen = run(choose_turns(wrong, [part.state], np.ones(5, dtype=bool)))
+    assert not chosen.problem.turns.any()
+    np.testing.assert_array_equal(chosen.problem.prior.rotations, problem.prior.rotations)
 
 
 def test_nothing_seen_decides_nothing() -> None:
