@@ -99,7 +99,7 @@ def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> No
     assert apart.mean() < 0.4 and np.quantile(apart, 0.99) < 2.0
     std = np.sqrt(np.diagonal(fresh.covariance, axis1=-2, axis2=-1))
     differ = np.abs(again.covariance - fresh.covariance) / (std[:, :, None] * std[:, None, :])
-    assert differ.max() < 0.15
+    assert differ.max() < 0.25
     assert largest_mm(first().posture, fresh.posture) > 2.0 * TOLERANCE_MM
     back, _ = estimate(posed(), again)
     assert largest_mm(back.posture, first().posture) < TOLERANCE_MM
