@@ -50,7 +50,7 @@ class Contest:
 
 
 def contest(
-    problem: ClipProblem, state: ClipState, other: ClipProblem, start: ClipState
+    problem: ClipProblem, state: ClipState, other: ClipProblem, start: ClipState, findable: Array
 ) -> Generator[None, None, Contest | None]:
     """Solve a stretch of consecutive frames once more from where it is, and from another start.
 
@@ -61,26 +61,27 @@ def contest(
         state: Its solution in the stretch, cut from that of a window.
         other: The problem about another prior, or the same.
         start: Where the alternative begins, a state of the same frames about the other problem's prior.
+        findable: (F, M) what `findable_share` says of the clip.
 
     Returns:
         Both solutions; None where the alternative is hopeless.
     """
-    known = yield from _fit(problem, state, ())
-    begun = yield from _fit(other, start, BEGUN)
+    known = yield from _fit(problem, state, (), findable)
+    begun = yield from _fit(other, start, BEGUN, findable)
     if begun.cost > (1.0 + HOPELESS_SHARE) * known.cost + HOPELESS_COST:
         return None
-    settled = yield from _fit(problem, state, SETTLED)
-    ended = yield from _fit(other, begun.state, GONE_ON)
+    settled = yield from _fit(problem, state, SETTLED, findable)
+    ended = yield from _fit(other, begun.state, GONE_ON, findable)
     return Contest(settled, ended)
 
 
 def _fit(
-    problem: ClipProblem, start: ClipState, temperatures: tuple[float, ...]
+    problem: ClipProblem, start: ClipState, temperatures: tuple[float, ...], findable: Array
 ) -> Generator[None, None, LocalFit]:
     first, last = int(start.frame[0]), int(start.frame[-1]) + 1
     part = WindowProblem(problem, Window(first, last, first, last), start)
     cost = yield from part.descend(temperatures)
-    cost = cost + unseen_cost(problem, part.state)
+    cost = cost + unseen_cost(problem, part.state, findable)
     return LocalFit(problem, part.state.without_cache(), float(cost.sum()))
 
 

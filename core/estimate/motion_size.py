@@ -110,8 +110,9 @@ def _depth_factor(
     squared = np.full(problem.depth_factor.shape, np.nan)
     for window, state in zip(spans, states, strict=True):
         kept, frame = state.posture[window.kept], state.frame[window.kept]
-        missed = body.points(body.pose(kept)) - body.points(body.pose(state.prior[window.kept]))
-        sight = camera.sight(body.points(body.pose(kept)), frame[:, None])
+        points = body.points(body.pose(kept))
+        missed = points - body.points(body.pose(state.prior[window.kept]))
+        sight = camera.sight(points, frame[:, None])
         missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
         squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
     gap = np.searchsorted(problem.keyframes, np.arange(problem.frames), side="right")

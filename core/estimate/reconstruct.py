@@ -1,6 +1,7 @@
 """Reconstruction of a motion from a take: one generator shared by operator, command line and tests."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -78,7 +79,7 @@ class Reconstruction:
         """How the keypoints agree with the motion, point by point; None without keypoints or `map`."""
         return self.solution.keypoints if self.solution is not None and self.keypoints.names else None
 
-    @property
+    @cached_property
     def tracks(self) -> RegionTracks:
         """The markers' regions in every frame: as tracked, and those found at a second look."""
         tracks = self.reading.tracks

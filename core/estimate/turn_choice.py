@@ -17,6 +17,7 @@ from .clip_problem import ClipProblem
 from .clip_state import ClipState
 from .local_fits import Contest, blended, contest, cut, inside
 from .undecided import Undecided, undecided
+from .unseen_markers import findable_share
 from .window_problem import WindowProblem, image_cost
 from .windows import Window
 
@@ -99,12 +100,14 @@ def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray
     before, open_still = problem, []
     seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
+    # Of the whole clip: once for all gaps, not once a gap.
+    findable = findable_share(problem) if doubts else np.zeros(0)
     for number, doubt in enumerate(doubts):
         first, last = (int(frame) for frame in problem.keyframes[doubt.gap : doubt.gap + 2])
         state = cut(states, first, last + 1, margin)
         if state is None:
             continue
-        tries = _tries(problem, state, doubt)
+        tries = _tries(problem, state, doubt, findable)
         best = yield from scaled(tries, number / len(doubts), (number + 1) / len(doubts))
         if best is None:
             continue
@@ -130,7 +133,7 @@ def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray
 
 
 def _tries(
-    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn
+    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn, findable: Array
 ) -> Generator[None, None, Contest | None]:
     """The contest that another turn wins most clearly, or loses least; None where all are hopeless."""
     best: Contest | None = None
@@ -138,7 +141,7 @@ def _tries(
         turns = problem.turns.copy()
         turns[doubt.gap] = 0 if turns[doubt.gap] == way else way
         other = problem.with_turns(turns)
-        tried = yield from contest(problem, state, other, other.start(_whole(state)))
+        tried = yield from contest(problem, state, other, other.start(_whole(state)), findable)
         if tried is not None and (best is None or tried.gain > best.gain):
             best = tried
     return best
