@@ -5,6 +5,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 from keymark.core.arrays import Array
+from keymark.operators.cli.blender_silence import blender_silence
 from keymark.operators.cli.use_cases.demo_character import write_demo_character
 from scipy.spatial import ConvexHull
 from studio.performer import one_surface, skin_weights
@@ -54,7 +55,8 @@ BALL_POINTS = 400
 def write_figure(file: Path) -> None:
     """Generate the rig, and dress it in the body, into a .blend."""
     write_demo_character(file)
-    bpy.ops.wm.open_mainfile(filepath=str(file))
+    with blender_silence(debug=False):
+        bpy.ops.wm.open_mainfile(filepath=str(file))
     rig = bpy.data.objects[RIG]
     bpy.data.objects.remove(bpy.data.objects[BODY])
     bones = {bone.name: bone for bone in rig.data.bones if bone.use_deform and _radii(bone.name)}
@@ -70,7 +72,8 @@ def write_figure(file: Path) -> None:
     _paint(body, places, np.array(list(hulls))[weights.argmax(axis=1)])
     body.parent = rig
     body.modifiers.new("Armature", "ARMATURE").object = rig
-    bpy.ops.wm.save_as_mainfile(filepath=str(file), compress=True)
+    with blender_silence(debug=False):
+        bpy.ops.wm.save_as_mainfile(filepath=str(file), compress=True)
 
 
 def _radii(bone: str) -> tuple[float, float, float] | None:

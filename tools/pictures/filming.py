@@ -1,12 +1,12 @@
 """Good and bad filming side by side, one picture a point."""
 
-import cv2
 import numpy as np
 from keymark.core.arrays import Image
 from keymark.core.report.canvas import INK, WHITE, Canvas, Color
 
 from .filming_scenes import PAIRS, SIZE
-from .shots import Shot, photograph, projected
+from .photograph import photograph
+from .shot import Shot
 
 GAP, BAR = 8, 32
 GOOD: Color = (82, 138, 30)
@@ -29,7 +29,8 @@ def _marked(shot: Shot) -> Image:
     """A photograph with the lines that are drawn over it."""
     tile = Canvas(*SIZE)
     tile.paste(photograph(shot), 0, 0, *SIZE)
-    for line in projected(shot.take.camera, shot.lines):
+    for places in shot.lines:
+        line, _ = shot.take.camera.project(places)
         tile.line(line, INK, 4.0)
         tile.line(line, LINE, 2.4)
         for end in line:
@@ -47,11 +48,3 @@ def _label(canvas: Canvas, left: float, words: str, *, good: bool) -> None:
     for stroke in strokes:
         canvas.line(np.array(stroke), WHITE, 2.6)
     canvas.text(words, left + 36.0, y + 5.0, 11.0, WHITE)
-
-
-def fit_quality(image: Image, most_bytes: int) -> int:
-    """The best quality at which a picture is no larger than this as JPEG."""
-    for quality in range(88, 40, -4):
-        if len(cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]) <= most_bytes:
-            return quality
-    raise ValueError(f"no quality makes the picture {most_bytes} bytes small")

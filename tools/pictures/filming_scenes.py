@@ -9,11 +9,10 @@ from studio.catalogue.fights import BOX, KICK
 from studio.catalogue.walks import STROLL
 from studio.described import Described
 from studio.look import CLOTH_M, Look
-from studio.room import WALL_BEHIND_Y
-from studio.surroundings import Lamp, Room, Thing
+from studio.surroundings import WALL_BEHIND_Y, Lamp, Room, Thing
 from studio.viewpoint import look_at, look_from
 
-from .shots import Shot
+from .shot import Shot
 
 SIZE = (472, 354)
 """Of a photograph [px]."""
@@ -46,7 +45,10 @@ GOOD = Described(
 """What all good photographs begin with."""
 CHEST = replace(GOOD, camera=_from(6.0, 3.9, 1.1, 38.0))
 KICKING = replace(
-    GOOD, perform=KICK.perform, look=replace(KICK.look, cloth_m=CLOTH_M, folds=0.0), camera=look_from(58.0, 4.6, 1.1, (0.05, -0.2, 0.98), 44.0, SIZE)
+    GOOD,
+    perform=KICK.perform,
+    look=replace(KICK.look, cloth_m=CLOTH_M, folds=0.0),
+    camera=look_from(58.0, 4.6, 1.1, (0.05, -0.2, 0.98), 44.0, SIZE),
 )
 WIDE_M, FOLDS = {"trunk": 0.036, "forearm": 0.024, "shin": 0.034}, 0.2
 """Clothes that do not show the body in them."""
@@ -70,9 +72,7 @@ ALIKE = Look(
     cloth_m=WIDE_M,
     folds=FOLDS,
 )
-DIM = Room(
-    lamps=(Lamp((2.9, 1.2, 2.5), 0.5, 120.0, (1.0, 0.86, 0.66)),), sky=(0.7, 0.8, 1.0, 0.05)
-)
+DIM = Room(lamps=(Lamp((2.9, 1.2, 2.5), 0.5, 120.0, (1.0, 0.86, 0.66)),), sky=(0.7, 0.8, 1.0, 0.05))
 TABLE = (
     Thing((1.3, 0.6, 0.05), (0.26, 0.17, 0.10), {0: (0.55, -1.1, 0.74)}),
     Thing((0.06, 0.5, 0.72), (0.2, 0.13, 0.08), {0: (0.0, -1.1, 0.36)}),
@@ -98,11 +98,19 @@ BARE = Room(furnished=False, planks=((0.34, 0.32, 0.30),) * 3, wall=(0.62, 0.60,
 PAIRS: dict[str, tuple[Shot, Shot]] = {
     "distance": (
         Shot(CHEST, ARMS_UP, "fills three quarters of the height"),
-        Shot(replace(GOOD, camera=_from(6.0, 6.6, 1.3, 24.0, 1.1)), ARMS_UP, "a third of the height: limbs are thin lines"),
+        Shot(
+            replace(GOOD, camera=_from(6.0, 6.6, 1.3, 24.0, 1.1)),
+            ARMS_UP,
+            "a third of the height: limbs are thin lines",
+        ),
     ),
     "height": (
         Shot(CHEST, KNEE_UP, "camera level, at the height of the hips"),
-        Shot(replace(GOOD, camera=_from(6.0, 2.5, 3.3, 30.0, 0.75)), KNEE_UP, "from above: legs and trunk shrink"),
+        Shot(
+            replace(GOOD, camera=_from(6.0, 2.5, 3.3, 30.0, 0.75)),
+            KNEE_UP,
+            "from above: legs and trunk shrink",
+        ),
     ),
     "direction": (
         Shot(KICKING, KICK_OUT, "the kick goes across the view"),
@@ -136,7 +144,9 @@ PAIRS: dict[str, tuple[Shot, Shot]] = {
     ),
     "shutter": (
         Shot(KICKING, STRIKE, "open for 1/300 s: sharp"),
-        Shot(replace(KICKING, moments=12, samples=3, shutter_frames=LONG), STRIKE, "open for 1/30 s: blurred"),
+        Shot(
+            replace(KICKING, moments=12, samples=3, shutter_frames=LONG), STRIKE, "open for 1/30 s: blurred"
+        ),
     ),
     "clothes": (
         Shot(replace(GOOD, look=PLAIN), KNEE_UP, "close-fitting, unlike the room"),
@@ -160,7 +170,12 @@ PAIRS: dict[str, tuple[Shot, Shot]] = {
         ),
     ),
     "room": (
-        Shot(replace(GOOD, room=Room(things=MARKS)), STANDING, "upright and level lines, marks on the floor", lines=LINES),
+        Shot(
+            replace(GOOD, room=Room(things=MARKS)),
+            STANDING,
+            "upright and level lines, marks on the floor",
+            lines=LINES,
+        ),
         Shot(replace(GOOD, room=BARE), STANDING, "nothing tells how the camera stands"),
     ),
     "start": (

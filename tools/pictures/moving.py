@@ -73,9 +73,7 @@ def draw_moving_picture(results: Results, output: Path) -> None:
         results.converted / BLEND, frames, lambda frame: _orbit(frame / len(seen.judged.frames)), SAMPLES
     )
     character = render_result(results.character / CHARACTER, frames, lambda _: _before_character(), SAMPLES)
-    pictures = [
-        _picture(seen, frame, (turned[row], character[row])) for row, frame in enumerate(frames)
-    ]
+    pictures = [_picture(seen, frame, (turned[row], character[row])) for row, frame in enumerate(frames)]
     write_animation(output, pictures, round(1000.0 * STEP / seen.take.fps))
 
 
@@ -155,7 +153,9 @@ def _footage(seen: _Seen, frame: int) -> Image:
     move = np.array([[scale, 0.0, -scale * left], [0.0, scale, -scale * top]])
     # Pixel centers lie half a pixel from the corners from which coordinates count.
     move[:, 2] += 0.5 * (scale - 1.0)
-    shown = cv2.warpAffine(seen.images[frame], move, PANEL, flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    shown = cv2.warpAffine(
+        seen.images[frame], move, PANEL, flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE
+    )
     return np.asarray(shown, dtype=np.uint8)
 
 
@@ -218,7 +218,9 @@ def _strip(canvas: Canvas, judged: Review, frame: int) -> None:
     canvas.line([[x[frame], top - 4.0], [x[frame], low + 7.0]], WHITE, 1.6)
     words = f"{len(judged.keyframe_indices)} poses by hand"
     canvas.text(words, left, canvas.height - 5.0, 8.0, GOLD)
-    canvas.text(f"{count} frames of motion, and how sure each is", right, canvas.height - 5.0, 8.0, SURE, "right")
+    canvas.text(
+        f"{count} frames of motion, and how sure each is", right, canvas.height - 5.0, 8.0, SURE, "right"
+    )
 
 
 def _rounded(panel: Image) -> Image:

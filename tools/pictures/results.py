@@ -1,13 +1,15 @@
 """The results that several pictures show, made once: the demonstration's motion, and a character that has it."""
 
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cached_property
+from io import StringIO
 from pathlib import Path
 
 import bpy
-from keymark.operators.cli.main import main as keymark
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
+from keymark.operators.cli.main import main as keymark
 
 from .figure import write_figure
 
@@ -32,14 +34,13 @@ class Results:
     @cached_property
     def converted(self) -> Path:
         """Folder of the demonstration's motion."""
-        output = self.folder / "demonstration"
-        words = ["--keyframes", str(KEYFRAMES), "--evidence", "markers,contours"]
-        return self._run("convert", str(DEMO), output, *words)
+        words = ("--keyframes", KEYFRAMES, "--evidence", "markers,contours")
+        return self._made("demonstration", "convert", DEMO, *words)
 
     @cached_property
     def matched(self) -> Path:
         """Folder of its motion without any posing, by the library of its kind."""
-        return self._run("convert", str(DEMO), self.folder / "matched", "--library", "aerobic")
+        return self._made("matched", "convert", DEMO, "--library", "aerobic")
 
     @cached_property
     def character(self) -> Path:
@@ -47,10 +48,27 @@ class Results:
         figure = self.folder / "human.blend"
         write_figure(figure)
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        return self._run("retarget", str(self.converted), self.folder / "character", "--character", str(figure))
+        return self._made("character", "retarget", self.converted, "--character", figure)
 
-    def _run(self, command: str, source: str, output: Path, *words: str) -> Path:
-        """Let the command line make a result; returns its folder."""
-        if keymark([command, source, "--output", str(output), "--quiet", *words]):
-            raise SystemExit(f"{output}: `keymark {command}` made no result; it says why above")
+    @cached_property
+    def learned_sheet(self) -> Path:
+        """A picture of the library that is learned from the motion."""
+        library, sheet = self.folder / "anna.json", self.folder / "anna.png"
+        names = ["--title", "Anna exercising", "--author", "Anna", "--count", "12"]
+        _keymark("library", "learn", self.converted / "motion.json", "--output", library, *names)
+        _keymark("library", "show", library, "--sheet", sheet)
+        return sheet
+
+    def _made(self, name: str, *words: str | Path) -> Path:
+        """Let the command line make a folder of results; returns it."""
+        output = self.folder / name
+        _keymark(*words, "--output", output)
         return output
+
+
+def _keymark(*words: str | Path) -> None:
+    """Run a command of Keymark's without its messages, but for an error's."""
+    with redirect_stdout(StringIO()):
+        status = keymark([*(str(word) for word in words), "--quiet"])
+    if status:
+        raise SystemExit(f"keymark {words[0]} failed; the sentence above says why")

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from keymark.core.arrays import Image
 from keymark.core.footage.camera import Camera
+from keymark.operators.cli.blender_silence import blender_silence
 from mathutils import Vector
 from studio.filming import place_camera, prepare_cycles, render
 
@@ -37,16 +38,17 @@ def render_result(
         camera_at: The camera of each of these.
         samples: Light paths per pixel.
     """
-    bpy.ops.wm.open_mainfile(filepath=str(blend))
-    scene = next(scene for scene in bpy.data.scenes if scene.camera is not None)
-    bpy.context.window.scene = scene
-    _furnish(scene)
-    prepare_cycles(SEED)
     images = []
-    for frame in frames:
-        scene.frame_set(scene.frame_start + frame)
-        place_camera(camera_at(frame))
-        images.append(np.asarray(np.rint(255.0 * render(samples)), dtype=np.uint8))
+    with blender_silence(debug=False):
+        bpy.ops.wm.open_mainfile(filepath=str(blend))
+        scene = next(scene for scene in bpy.data.scenes if scene.camera is not None)
+        bpy.context.window.scene = scene
+        _furnish(scene)
+        prepare_cycles(SEED)
+        for frame in frames:
+            scene.frame_set(scene.frame_start + frame)
+            place_camera(camera_at(frame))
+            images.append(np.asarray(np.rint(255.0 * render(samples)), dtype=np.uint8))
     return images
 
 
