@@ -101,6 +101,11 @@ test-ui: .venv-test/ready ## go through all steps by mouse and keys in a real Bl
 	echo "== A session in $$blender"; \
 	BLENDER="$$blender" .venv-test/bin/python -m pytest -m ui tests/real_blender/ui $(TESTS)
 
+# Pictures of Blender are cut from what `make test-ui` took; NAMES="filming keymark" draws those alone.
+.PHONY: pictures
+pictures: .venv-test/ready ## draw all pictures of the docs anew, from the screenshots of test-ui and the demonstration
+	@.venv-test/bin/python tools/draw_pictures.py $(NAMES)
+
 .PHONY: lint
 lint: .venv-dev/ready ## check style, formatting and types
 	@status=0; \

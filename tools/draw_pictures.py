@@ -45,12 +45,8 @@ def main(arguments: list[str]) -> int:
     for name in taken:  # before the long work: what is missing is said at once
         SCREENSHOTS[name].file(chosen.screenshots)
     chosen.output.mkdir(parents=True, exist_ok=True)
-    print(
-        f"{len(names)} pictures into {chosen.output}: {len(taken)} from what `make test-ui` took of the screen,"
-    )
-    print(
-        f"{len(names) - len(taken)} drawn anew; all of these take about a quarter of an hour on two idle cores."
-    )
+    print(f"{len(names)} pictures into {chosen.output}: {len(taken)} from screenshots of `make test-ui`,")
+    print(f"{len(names) - len(taken)} drawn anew; all of these take a quarter of an hour on two idle cores.")
     with tempfile.TemporaryDirectory() as folder:
         makers = _makers(Results(Path(folder)), chosen.screenshots)
         for number, name in enumerate(names, 1):

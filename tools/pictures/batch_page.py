@@ -1,4 +1,4 @@
-"""The page of a batch, in a browser: takes that are made from the demonstration, some of them in need of work."""
+"""The page of a batch, in a browser: takes made from the demonstration, some of them in need of work."""
 
 import json
 import shutil
@@ -28,7 +28,7 @@ TAKES: dict[str, tuple[dict[str, object], int | None]] = {
     "day 2/first and last frame posed": ({"evidence": ["contours"], "markers": None}, 11),
     "day 3/nobody posed it": ({"evidence": ["markers", "contours"], "library": "aerobic"}, None),
 }
-"""By name: fields of take.json that differ from the demonstration's, and of its keyframes every which is kept."""
+"""By name: fields that differ from the demonstration's, and that of its keyframes every n-th is kept."""
 CUT_OFF = "day 3/recorder stopped"
 
 

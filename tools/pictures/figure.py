@@ -1,4 +1,4 @@
-"""The character of the pictures: Rigify's basic human in a smooth body of its own, with large hands and feet."""
+"""The character of the pictures: Rigify's basic human in a smooth body, with large hands and feet."""
 
 from pathlib import Path
 

@@ -29,11 +29,11 @@ STEP = 2
 """Of the footage's frames every second one is shown."""
 HOLD_MS = 500
 """How long the last frame stays, before all begins again."""
-QUALITIES = range(86, 40, -4)
+QUALITIES = range(92, 40, -4)
 MOST_BYTES = 2_500_000
-WIDTH, GAP, TITLE, STRIP = 960, 8, 32, 58
+WIDTH, GAP, TITLE, STRIP = 960, 8, 32, 64
 PANEL = (234, 280)
-MIDDLE = (0.29, 0.0, 1.02)
+MIDDLE = (0.25, 0.0, 1.02)
 """Of the space in which the performer moves [m]."""
 HEIGHT_M = 2.36
 """What a panel shows of it, in height; a character is larger."""
@@ -203,7 +203,7 @@ def _diamond(canvas: Canvas, x: float, y: float, size: float, color: Color) -> N
 def _strip(canvas: Canvas, judged: Review, frame: int) -> None:
     """Keyframes and confidence under the panels, and where the clip is."""
     count = len(judged.confidence)
-    top, low = TITLE + PANEL[1] + 10.0, canvas.height - 22.0
+    top, low = TITLE + PANEL[1] + 10.0, canvas.height - 26.0
     left, right = 8.0, WIDTH - 8.0
     x = left + (right - left) * np.arange(count) / (count - 1)
     y = low - (low - top) * np.nan_to_num(judged.confidence)

@@ -20,7 +20,7 @@ def photograph(shot: Shot) -> Image:
     take = shot.take
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     performance = take.perform(take.seed)
-    room = build_room(take.surroundings(performance))
+    build_room(take.surroundings(performance))
     performer = build_performer(performance.body, take.look)
     for other, frame, (x, y) in shot.passing:
         moving = other.perform(other.seed)

@@ -1,4 +1,4 @@
-"""The results that several pictures show, made once: the demonstration's motion, and a character that has it."""
+"""Results that several pictures show, made once: the demonstration's motion, and a character with it."""
 
 from contextlib import redirect_stdout
 from dataclasses import dataclass

@@ -25,8 +25,10 @@ DRAWN = (
 
 Box = tuple[int, int, int, int]
 VIEWPORT: Box = (0, 27, 1315, 980)
-"""Left, top, right and bottom of the viewport with its sidebar and the timeline, on the screen of a session [px]."""
-SIDEBAR: Box = (1029, 27, 1315, 947)
+"""Left, top, right and bottom, on a session's screen, of the viewport with sidebar and timeline [px]."""
+SIDEBAR: Box = (1029, 50, 1315, 804)
+SHOWN_WIDTH = 1053
+"""Width to which a part of the screen is reduced, where it is wider [px]."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +50,7 @@ class Screenshot:
         found = sorted((screenshots / self.session).glob(f"[0-9][0-9]_{self.name}.png"))
         if not found:
             folder = screenshots / self.session
-            raise SystemExit(
-                f"{folder}: the screenshot `{self.name}` is missing; run `make test-ui`, which takes it"
-            )
+            raise SystemExit(f"{folder}: the screenshot `{self.name}` is missing; `make test-ui` takes it")
         return found[-1]
 
 
