@@ -46,7 +46,7 @@ def main(arguments: list[str]) -> int:
         SCREENSHOTS[name].file(chosen.screenshots)
     chosen.output.mkdir(parents=True, exist_ok=True)
     print(f"{len(names)} pictures into {chosen.output}: {len(taken)} from screenshots of `make test-ui`,")
-    print(f"{len(names) - len(taken)} drawn anew; all of these take a quarter of an hour on two idle cores.")
+    print(f"{len(names) - len(taken)} drawn anew (all of them: a quarter of an hour on two idle cores).")
     with tempfile.TemporaryDirectory() as folder:
         makers = _makers(Results(Path(folder)), chosen.screenshots)
         for number, name in enumerate(names, 1):

@@ -115,7 +115,7 @@ PAIRS: dict[str, tuple[Shot, Shot]] = {
     "direction": (
         Shot(KICKING, KICK_OUT, "the kick goes across the view"),
         Shot(
-            replace(KICKING, camera=look_from(-14.0, 4.6, 1.1, (0.05, -0.2, 0.98), 44.0, SIZE)),
+            replace(KICKING, camera=look_from(21.0, 4.6, 1.1, (0.05, -0.2, 0.98), 44.0, SIZE)),
             KICK_OUT,
             "the kick goes into the lens",
         ),

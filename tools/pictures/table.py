@@ -26,7 +26,8 @@ DRAWN = (
 Box = tuple[int, int, int, int]
 VIEWPORT: Box = (0, 27, 1315, 980)
 """Left, top, right and bottom, on a session's screen, of the viewport with sidebar and timeline [px]."""
-SIDEBAR: Box = (1029, 50, 1315, 804)
+SIDEBAR: Box = (1029, 78, 1315, 804)
+BROWSER: Box = (0, 27, 1315, 802)
 SHOWN_WIDTH = 1053
 """Width to which a part of the screen is reduced, where it is wider [px]."""
 
@@ -69,7 +70,7 @@ SCREENSHOTS: Mapping[str, Screenshot] = {
     "workflow_character.jpg": Screenshot("demo", "retargeted"),
     "libraries_match.jpg": Screenshot("library", "posed_all"),
     "libraries_panel.jpg": Screenshot("shelf", "libraries", SIDEBAR),
-    "libraries_assets.jpg": Screenshot("shelf", "assets"),
+    "libraries_assets.jpg": Screenshot("shelf", "assets", BROWSER),
 }
 """Pictures that show Blender."""
 ALL = (*DRAWN, *SCREENSHOTS)
