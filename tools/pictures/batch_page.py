@@ -3,6 +3,8 @@
 import json
 import shutil
 import subprocess
+from contextlib import chdir, redirect_stderr
+from io import StringIO
 from pathlib import Path
 
 import cv2
@@ -14,7 +16,7 @@ from .results import DEMO, KEYFRAMES
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 SIZE = (1300, 1000)
-NAME = "autumn"
+SHOOT, MOTIONS = "autumn", "motions"
 PATIENCE_S = 120
 CUT = 0.4
 """Share that is left of the file of a take whose recording was cut off."""
@@ -41,7 +43,7 @@ def draw_batch_page(folder: Path) -> Image:
     browser = next((found for found in map(shutil.which, BROWSERS) if found), None)
     if browser is None:
         raise SystemExit(f"batch_summary.jpg: no browser is here; install one of {', '.join(BROWSERS)}")
-    shoot, output = folder / "shoot", folder / NAME
+    shoot, output = folder / SHOOT, folder / MOTIONS
     for made in (shoot, output):
         shutil.rmtree(made, ignore_errors=True)
     for name, (fields, every) in TAKES.items():
@@ -49,7 +51,9 @@ def draw_batch_page(folder: Path) -> Image:
     _write_take(shoot / CUT_OFF, {}, 1)
     clip = shoot / CUT_OFF / "clip.mp4"
     clip.write_bytes(clip.read_bytes()[: int(CUT * clip.stat().st_size)])
-    keymark(["batch", str(shoot), "--output", str(output), "--jobs", "1", "--quiet"])  # one take fails
+    # From the folder itself, so that the page names files as a user would; the take that fails is meant to.
+    with chdir(folder), redirect_stderr(StringIO()):
+        keymark(["batch", SHOOT, "--output", MOTIONS, "--jobs", "1", "--quiet"])
     picture = folder / "page.png"
     picture.unlink(missing_ok=True)
     words = [

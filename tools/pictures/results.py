@@ -39,8 +39,9 @@ class Results:
 
     @cached_property
     def matched(self) -> Path:
-        """Folder of its motion without any posing, by the library of its kind."""
-        return self._made("matched", "convert", DEMO, "--library", "aerobic")
+        """Folder of its motion without any posing."""
+        evidence = "markers,keypoints,depth_hints,contours"
+        return self._made("matched", "convert", DEMO, "--keyframes", "auto", "--evidence", evidence)
 
     @cached_property
     def character(self) -> Path:
