@@ -1,7 +1,7 @@
 """Build the extension's zips into dist/, one for each platform and Python that Blenders come with.
 
-Usage: build_package.py [--platform linux-x64] ... [--python 3.13] ... [--version 0.1.1] [--tool blender_ext.py].
-Only files known to git are packed, less the manifest's exclusions. Blender's own `blender_ext.py` packs and
+Usage: build_package.py [--platform linux-x64] ... [--python 3.13] ... [--version 0.1.1] [--tool FILE]. Only
+files known to git are packed, less the manifest's exclusions. Blender's own `blender_ext.py` packs and
 validates; by default that of the bpy module of the running Python.
 """
 
@@ -47,7 +47,7 @@ def pack(build: Build, version: str, tool: Path) -> Path:
 
 
 def main(arguments: list[str]) -> int:
-    """Build what is asked for and print the paths, with the sizes on standard error; return the exit status."""
+    """Build what is asked for, print the paths, and the sizes on standard error; return the exit status."""
     parser = argparse.ArgumentParser(description="Build the extension's zips into dist/.")
     parser.add_argument("--platform", action="append", choices=EVERYWHERE, help="by default all")
     parser.add_argument("--python", action="append", choices=PYTHONS, help="of Blender; by default all")

@@ -3,7 +3,9 @@
 import json
 import math
 import tomllib
+import zlib
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 from installed_blender import Blender
@@ -131,3 +133,17 @@ def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) 
     shipped = {file.stem for file in (repository / "presets" / "keyframes").glob("*.json")}
     assert "walking" in shipped and shipped <= set(listed)
     assert all(listed[name]["problem"] == "" and listed[name]["postures"] >= 10 for name in shipped)
+
+
+def test_nothing_is_written_into_its_own_folder(blender: Blender, converted: Path, package: Path) -> None:
+    """After converting a take it holds what the zip holds, byte for byte, but for Python's own cache."""
+    folder = blender.user / "extensions" / "user_default" / "keymark"
+    assert converted.is_dir()
+    with ZipFile(package) as zipped:
+        packed = {item.filename: item.CRC for item in zipped.infolist() if not item.is_dir()}
+    there = {
+        file.relative_to(folder).as_posix(): zlib.crc32(file.read_bytes())
+        for file in folder.rglob("*")
+        if file.is_file() and "__pycache__" not in file.parts
+    }
+    assert there == packed

@@ -35,8 +35,8 @@ class Build:
 
 
 EVERYWHERE = ("linux-x64", "windows-x64", "macos-arm64")
-# Blender changed its Python with 5.1. It breaks its interface with a first number only, so 6.0 is the end; should
-# a Blender before that have another Python, it refuses the zip because of its wheels.
+# Blender changed its Python with 5.1. It breaks its interface with a first number only, so 6.0 is the end;
+# should a Blender before that have another Python, it refuses the zip because of its wheels.
 SERIES = (
     Series("blender_4.5_to_5.0", "3.11", "4.5.0", "5.1.0", EVERYWHERE),
     Series("blender_5.1_or_newer", "3.13", "5.1.0", "6.0.0", EVERYWHERE),

@@ -52,6 +52,15 @@ def with_fields(manifest: str, fields: dict[str, str | list[str]]) -> str:
 
 def tracked_files() -> list[str]:
     """Files of the tree tracked by git or untracked and not ignored by .gitignore."""
-    command = ["git", "-c", "safe.directory=*", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    command = [
+        "git",
+        "-c",
+        "safe.directory=*",
+        "ls-files",
+        "-z",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+    ]
     listing = subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout.decode()
     return sorted({name for name in listing.split("\0") if name and (ROOT / name).is_file()})

@@ -48,7 +48,7 @@ def pins() -> dict[str, str]:
 
 def download(requirement: str, platform: str, python: str, interface: str) -> Path:
     """The wheel of one requirement for one platform, Python (`311`) and binary interface."""
-    record = WHEELS / f"{requirement}-{platform}-{interface}.json"  # has the file's name, which only pip knows
+    record = WHEELS / f"{requirement}-{platform}-{interface}.json"  # the file's name, which pip knows
     if record.is_file() and (WHEELS / json.loads(record.read_text())).is_file():
         return WHEELS / json.loads(record.read_text())
     WHEELS.mkdir(exist_ok=True)
