@@ -41,7 +41,7 @@ KEY: Color = (51, 190, 245)
 ICON_SIZE, ICON_FRAME = 256, 19
 TRUNK = ("shoulder.R", "shoulder.L", "hip.L", "hip.R")
 ICON_EDGE, ICON_DOWN, NECK = 34.0, 12.0, 7.0
-"""Free around the body's points, which lie inside of it; how much lower it stands, and its head higher [px]."""
+"""Free around the body's points; how much lower it stands, and its head higher [px]."""
 
 SIZE = (1920, 1080)
 FRAMES = (19, 47, 71, 94)
