@@ -33,7 +33,6 @@ SLOGAN = "one video, a few keyframes, any character"
 
 NIGHT: Color = (48, 38, 33)
 CLOTH: Color = (104, 94, 86)
-SOFT: Color = (150, 143, 138)
 BLUE: Color = (232, 181, 87)
 KEY: Color = (51, 190, 245)
 """Yellow, as keyframes are in Blender."""
@@ -93,7 +92,7 @@ def draw_featured(take: Take, motion: Motion, speed: Array) -> Image:
     canvas = Canvas(*SIZE)
     canvas.paste(draw_figures(motion), 0, 0, *SIZE)
     canvas.text("Keymark", CARDS_LEFT, 118.0, 64.0, INK)
-    canvas.text(SLOGAN, canvas.width - CARDS_LEFT, 112.0, 25.0, SOFT, "right")
+    canvas.text(SLOGAN, canvas.width - CARDS_LEFT, 112.0, 25.0, CLOTH, "right")
     images = dict(Clip.open(take.clip, fps=take.fps).source.at(FRAMES))
     figure = stick_figure(motion)
     for frame, left in zip(FRAMES, card_lefts(), strict=True):

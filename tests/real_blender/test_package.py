@@ -3,9 +3,7 @@
 import json
 import math
 import tomllib
-import zlib
 from pathlib import Path
-from zipfile import ZipFile
 
 import pytest
 from installed_blender import Blender
@@ -137,13 +135,5 @@ def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) 
 
 def test_nothing_is_written_into_its_own_folder(blender: Blender, converted: Path, package: Path) -> None:
     """After converting a take it holds what the zip holds, byte for byte, but for Python's own cache."""
-    folder = blender.user / "extensions" / "user_default" / "keymark"
-    assert converted.is_dir()
-    with ZipFile(package) as zipped:
-        packed = {item.filename: item.CRC for item in zipped.infolist() if not item.is_dir()}
-    there = {
-        file.relative_to(folder).as_posix(): zlib.crc32(file.read_bytes())
-        for file in folder.rglob("*")
-        if file.is_file() and "__pycache__" not in file.parts
-    }
-    assert there == packed
+    assert (converted / "motion.json").is_file()
+    assert blender.changed_files(package) == set()
