@@ -39,7 +39,7 @@ class Blender:
         )
 
     def changed_files(self, package: Path) -> set[str]:
-        """Files of the installed extension that its zip has otherwise or not at all, but for Python's cache."""
+        """Files in which the installed extension differs from its zip, but for Python's own cache."""
         folder = self.user / "extensions" / "user_default" / "keymark"
         with ZipFile(package) as zipped:
             packed = {item.filename: item.CRC for item in zipped.infolist() if not item.is_dir()}
