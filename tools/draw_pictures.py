@@ -22,6 +22,7 @@ from keymark.core.arrays import Image  # noqa: E402
 from pictures.batch_page import draw_batch_page  # noqa: E402
 from pictures.comparison import draw_comparison  # noqa: E402
 from pictures.filming import draw_filming  # noqa: E402
+from pictures.listing import write_featured, write_icon  # noqa: E402
 from pictures.moving import draw_moving_picture  # noqa: E402
 from pictures.results import Results  # noqa: E402
 from pictures.shipped_libraries import draw_libraries  # noqa: E402
@@ -66,7 +67,11 @@ def _makers(results: Results, screenshots: Path) -> dict[str, Callable[[Path], N
         "libraries_learned.jpg": lambda: read_picture(results.learned_sheet),
         "libraries_matches.jpg": lambda: read_picture(results.matched / "report" / "matches.png"),
     }
-    makers: dict[str, Callable[[Path], None]] = {MOVING: partial(draw_moving_picture, results)}
+    makers: dict[str, Callable[[Path], None]] = {
+        MOVING: partial(draw_moving_picture, results),
+        "listing_icon.png": partial(write_icon, results),
+        "listing_featured.jpg": partial(write_featured, results),
+    }
     for name, draw in drawn.items():
         makers[name] = partial(_write, draw, MOST_BYTES)
     for point in POINTS:

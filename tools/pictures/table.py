@@ -19,6 +19,8 @@ DRAWN = (
     "libraries.jpg",
     "libraries_learned.jpg",
     "libraries_matches.jpg",
+    "listing_featured.jpg",
+    "listing_icon.png",
     *(f"{FILMING}{point}.jpg" for point in POINTS),
 )
 """Pictures that draw_pictures.py makes itself."""

@@ -1,34 +1,25 @@
-"""Draw the pictures of a listing among extensions: icon and featured image. Usage: draw_listing.py [FOLDER].
+"""The pictures of a listing among extensions: icon and featured image.
 
-Both show the demonstration: its footage, and the motion that a few posed keyframes make of it. By default
-they go to docs/pictures. A listing wants an icon of 256 by 256 pixels and a featured image of 1920 by 1080.
+Both show the demonstration: its footage, and the motion that a few posed keyframes make of it. A listing
+wants an icon of 256 by 256 pixels and a featured image of 1920 by 1080.
 """
 
-import sys
 from pathlib import Path
 
 import numpy as np
+from keymark.core.arrays import Array, Image
+from keymark.core.estimate.reconstruct import reconstruct
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.progress import run
+from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_jpg, write_png
+from keymark.core.report.mannequin import View, draw_mannequin, view_axes
+from keymark.core.report.posture_picture import TILT_RAD, backdrop
+from keymark.core.report.stick_figure import draw_figure, stick_figure
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "tests"))
-from _boot import load_package  # noqa: E402
+from .results import Results
 
-load_package()
-
-from keymark.core.arrays import Array, Image  # noqa: E402
-from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.clips.clip import Clip  # noqa: E402
-from keymark.core.progress import run  # noqa: E402
-from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_jpg, write_png  # noqa: E402
-from keymark.core.report.mannequin import View, draw_mannequin, view_axes  # noqa: E402
-from keymark.core.report.posture_picture import TILT_RAD, backdrop  # noqa: E402
-from keymark.core.report.stick_figure import draw_figure, stick_figure  # noqa: E402
-from keymark.core.take.motion import Motion  # noqa: E402
-from keymark.core.take.take import Take  # noqa: E402
-from keymark.core.take.take_file import read_take  # noqa: E402
-
-TAKE = ROOT / "presets" / "demo" / "aerobic"
-ICON, FEATURED = "listing_icon.png", "listing_featured.jpg"
 SLOGAN = "one video, a few keyframes, any character"
 
 NIGHT: Color = (48, 38, 33)
@@ -143,13 +134,14 @@ def draw_diamond(canvas: Canvas, x: float, y: float, radius: float, color: Color
     canvas.polygon([[x - radius, y], [x, y - radius], [x + radius, y], [x, y + radius]], color)
 
 
-def main(folder: Path) -> None:
-    """Reconstruct the demonstration and draw both."""
-    take = read_take(TAKE, TAKE / "keyframes_noisy.json")
+def write_icon(results: Results, path: Path) -> None:
+    """Reconstruct the demonstration and draw its icon."""
+    take = results.take
+    write_png(str(path), draw_icon(take, run(reconstruct(take, "map")).motion))
+
+
+def write_featured(results: Results, path: Path) -> None:
+    """Reconstruct the demonstration and draw the featured image."""
+    take = results.take
     done = run(reconstruct(take, "map"))
-    write_png(str(folder / ICON), draw_icon(take, done.motion))
-    write_jpg(str(folder / FEATURED), draw_featured(take, done.motion, done.speed))
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "pictures")
+    write_jpg(str(path), draw_featured(take, done.motion, done.speed))
