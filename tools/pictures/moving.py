@@ -65,7 +65,7 @@ def draw_moving_picture(results: Results, output: Path) -> None:
     """Draw all frames and write them as an animated WebP.
 
     Raises:
-        ValueError: No quality makes it small enough.
+        SystemExit: No quality makes it small enough.
     """
     seen = _see(results.take)
     frames = list(range(0, len(seen.judged.frames), STEP))
@@ -81,7 +81,7 @@ def write_animation(output: Path, pictures: list[Image], milliseconds: int) -> N
     """Write an endless loop at the best quality that is small enough.
 
     Raises:
-        ValueError: There is none.
+        SystemExit: There is none.
     """
     animation = cv2.Animation()
     animation.frames = pictures
@@ -96,7 +96,7 @@ def write_animation(output: Path, pictures: list[Image], milliseconds: int) -> N
                 return
     finally:
         draft.unlink(missing_ok=True)
-    raise ValueError(f"{output}: no quality makes it {MOST_BYTES} bytes small; show fewer frames")
+    raise SystemExit(f"{output}: no quality makes it {MOST_BYTES} bytes small; show fewer frames")
 
 
 def _see(take: Take) -> _Seen:
