@@ -6,7 +6,7 @@
 OUTPUT ?= out/demo
 TAKE ?= presets/demo/aerobic
 TESTS ?=
-BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again speed batch check
+BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again waiting batch check
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
