@@ -8,6 +8,7 @@ seconds, processor seconds and the process's peak memory, which includes Blender
 """
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -260,3 +261,5 @@ def main(step: str, folder: Path, *words: str) -> None:
 
 if __name__ == "__main__":
     main(sys.argv[1], Path(sys.argv[2]), *sys.argv[3:])
+    sys.stdout.flush()
+    os._exit(0)  # with an extension registered, Blender as a module may crash or hang when it ends as usual
