@@ -119,7 +119,7 @@ package: .venv-test/ready ## build the extension's zips for every platform into 
 	@.venv-test/bin/python tools/build_package.py
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, speed and batches
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, waiting and batches
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean
