@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -135,25 +135,22 @@ def measured(step: str, clip: Clip, take: Path, detector: Path) -> Cell | str:
     return Cell(spent.wall_s, spent.processor_s, spent.peak_mb, spent.takes)
 
 
-def measure(names: Sequence[str], place: Path, detector: Path) -> Found:
-    """Measure every step of the named clips, whose takes are made in `place`."""
-    run_step("make_character", place)
-    found: Found = {}
-    for name in names:
-        clip, take = CLIPS[name], place / name
-        if clip.frames is None:
-            shutil.copytree(DEMO, take)
-        else:
-            run_step("make_take", take, DEMO, *SIZE, clip.frames)
-        found[name] = {}
-        for step in ROWS:
-            print(f"{name}: {step} ...", file=sys.stderr, flush=True)
-            try:
-                found[name][step] = measured(step, clip, take, detector)
-            except (subprocess.SubprocessError, SystemExit) as error:
-                print(f"{name}: {step} failed: {error}", file=sys.stderr, flush=True)
-                found[name][step] = FAILED
-        shutil.rmtree(take)
+def measure(name: str, place: Path, detector: Path) -> dict[str, Cell | str]:
+    """Measure every step of a clip, whose take is made in `place`, beside the character."""
+    clip, take = CLIPS[name], place / name
+    if clip.frames is None:
+        shutil.copytree(DEMO, take)
+    else:
+        run_step("make_take", take, DEMO, *SIZE, clip.frames)
+    found: dict[str, Cell | str] = {}
+    for step in ROWS:
+        print(f"{name}: {step} ...", file=sys.stderr, flush=True)
+        try:
+            found[step] = measured(step, clip, take, detector)
+        except (subprocess.SubprocessError, SystemExit) as error:
+            print(f"{name}: {step} failed: {error}", file=sys.stderr, flush=True)
+            found[step] = FAILED
+    shutil.rmtree(take)
     return found
 
 
@@ -218,6 +215,18 @@ def to_json(found: Found) -> Mapping[str, Any]:
     }
 
 
+def report(found: Found, others: str, on_page: bool) -> None:
+    """Print and write what is known, and put it into the page if that is wanted."""
+    said = (
+        f"Seconds by the clock and the most memory that the process held, on {machine()}, in Blender as a "
+        f"module.{others}"
+    )
+    text = table(found, said)
+    write_results("waiting", text, json.dumps(to_json(found), indent=1))
+    if on_page:
+        PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), text), encoding="utf-8")
+
+
 def main(arguments: list[str]) -> int:
     """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -233,16 +242,13 @@ def main(arguments: list[str]) -> int:
     if unknown:
         parser.error(f"{', '.join(sorted(unknown))} is none of {', '.join(CLIPS)}")
     began, before = time.perf_counter(), busy_s()
+    found: Found = {}
     with tempfile.TemporaryDirectory() as temporary:
-        found = measure(options.clips or list(CLIPS), Path(temporary), options.detector)
-    said = (
-        f"Seconds by the clock and the most memory that the process held, on {machine()}, in Blender as a "
-        f"module.{others_busy(began, before)}"
-    )
-    text = table(found, said)
-    write_results("waiting", text, json.dumps(to_json(found), indent=1))
-    if options.page:
-        PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), text), encoding="utf-8")
+        run_step("make_character", temporary)
+        for name in options.clips or CLIPS:
+            found[name] = measure(name, Path(temporary), options.detector)
+            # After each clip, so that a run that is broken off leaves what it knows.
+            report(found, others_busy(began, before), options.page)
     return int(any(cell == FAILED for steps in found.values() for cell in steps.values()))
 
 

@@ -105,7 +105,7 @@ def test_a_step_that_fails_leaves_the_others(tmp_path: Path, monkeypatch: pytest
 
     monkeypatch.setattr(waiting, "run_step", run_step)
     monkeypatch.setattr(waiting, "ROWS", {step: "" for step in ("bake", "retarget", waiting.DETECT)})
-    found = waiting.measure(["small"], tmp_path, tmp_path / "nowhere")["small"]
+    found = waiting.measure("small", tmp_path, tmp_path / "nowhere")
     assert found == {
         "bake": waiting.FAILED,
         "retarget": waiting.Cell(1.0, 1.0, 1.0),
