@@ -47,8 +47,8 @@ class Clip:
 
 
 CLIPS = {
-    "small": Clip("4 s at 320 × 240", None, 6),
-    "ten": Clip("10 s at 1920 × 1080", 300, 4),
+    "small": Clip("4 s at 320 × 240", None, 4),
+    "ten": Clip("10 s at 1920 × 1080", 300, 2),
     "sixty": Clip("60 s at 1920 × 1080", 1800, 0),
 }
 SIZE = (1920, 1080)

@@ -61,7 +61,7 @@ def read(folder: Path) -> Callable[[], object]:
 def read_keypoints(folder: Path) -> Callable[[], object]:
     """The same of plain clothes: keypoints from a file, and the pictures."""
     bpy = _blender(folder / OPENED)
-    _know_times(bpy)
+    _put_reading(bpy, folder)  # which knows the times of the frames, as the session does that opened the take
 
     def work() -> None:
         bpy.ops.keymark.load_keypoints(filepath=str(folder / KEYPOINTS), replace=True)
@@ -166,15 +166,6 @@ def _take(bpy: Any) -> Any:
     from keymark.operators.shell.takes import active_take
 
     return active_take(bpy.context.scene)
-
-
-def _know_times(bpy: Any) -> None:
-    """Let the session know the times of the clip's frames, as it does after opening the take."""
-    from keymark.core.footage.clip_times import clip_times
-    from keymark.core.progress import run
-    from keymark.operators.shell.takes import footage_of
-
-    run(clip_times(footage_of(bpy.context.scene, _take(bpy)).open()))
 
 
 def _unposed(folder: Path) -> Any:
