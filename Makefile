@@ -7,7 +7,7 @@ OUTPUT ?= out/demo
 TAKE ?= presets/demo/aerobic
 TESTS ?=
 ZIPS ?=
-BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again speed batch check
+BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again waiting batch check
 
 find_python := sh tools/find_python.sh
 # A variable, because a comma would end an argument of `call`.
@@ -126,7 +126,7 @@ package: .venv-test/ready ## build the extension's zips, one a platform and Pyth
 	@.venv-test/bin/python tools/build_package.py $(ZIPS)
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, speed and batches
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, waiting and batches
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean

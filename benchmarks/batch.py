@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from speed import COLUMNS, StageClock
+from stages import COLUMNS, StageClock
 from takes import chosen_takes, load_project, write_results
 
 USUAL, USUAL_JOBS = "demo/aerobic", 2
@@ -29,7 +29,7 @@ LOOP, ONE, SEVERAL, AGAIN, START, CHECK = "loop", "one", "several", "again", "st
 CONVERSIONS = 5
 """Number of conversions averaged for the breakdown of one."""
 CORE = ("extract", "estimate")
-"""Columns of `speed.py` that are the core's own work; all others are overhead."""
+"""Columns of `stages.py` that are the core's own work; all others are overhead."""
 
 
 @dataclass(frozen=True)
@@ -81,18 +81,23 @@ def cost(takes: int, *commands: Sequence[str]) -> Cost:
     Raises:
         SystemExit: One of them fails.
     """
+    return process_cost(takes, *([sys.executable, __file__, "--keymark", *words] for words in commands))
+
+
+def process_cost(takes: int, *commands: Sequence[str]) -> Cost:
+    """Run any programs one after the other, and measure them and the processes they start.
+
+    Raises:
+        SystemExit: One of them fails.
+    """
     began, before = time.perf_counter(), busy_s()
     processor_s = peak = 0.0
     for words in commands:
-        process = subprocess.Popen(
-            [sys.executable, __file__, "--keymark", *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-        )
+        process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         _, status, used = os.wait4(process.pid, 0)  # includes the processes it has started and waited for
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode:
-            raise SystemExit(f"keymark {' '.join(words)} ended with {process.returncode}")
+            raise SystemExit(f"{' '.join(words)} ended with {process.returncode}")
         processor_s += used.ru_utime + used.ru_stime
         peak = max(peak, used.ru_maxrss / MB_OF_MAXRSS)
     wall_s, after = time.perf_counter() - began, busy_s()

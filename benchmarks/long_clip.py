@@ -1,5 +1,9 @@
-"""Long clips made from a take: cost of ten minutes, cost of a correction, and the seam between windows."""
+"""Long clips made from a take: cost of ten minutes, cost of a correction, and the seam between windows.
 
+Usage: long_clip.py [TAKE] with the name or the folder of a take, by default the first found. See README.md.
+"""
+
+import argparse
 import json
 import math
 import subprocess
@@ -13,7 +17,7 @@ from typing import Any
 import cv2
 import numpy as np
 from clock import peak_memory_mb
-from takes import load_project
+from takes import chosen_takes, load_project, write_results
 
 load_project()
 
@@ -27,6 +31,7 @@ from keymark.core.take.motion_file import write_motion  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take, write_take  # noqa: E402
 
+CONVERT = "--convert"
 LONG_FRAMES = 18_000
 """Ten minutes at 30 frames a second."""
 SEAM_S = 60.0
@@ -72,7 +77,7 @@ def measure_long(folder: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as temporary:
         place = Path(temporary)
         take = lengthened(folder, math.ceil(LONG_FRAMES / frames), place / "long")
-        command = [sys.executable, __file__, str(take), str(place / "motion.json")]
+        command = [sys.executable, __file__, CONVERT, str(take), str(place / "motion.json")]
         done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
         if done.returncode:
             raise SystemExit(done.stderr)
@@ -158,5 +163,19 @@ def table(name: str, row: dict[str, Any]) -> str:
     )
 
 
+def main(arguments: list[str]) -> int:
+    """Measure, print and write the results; with --convert, convert once and print the costs."""
+    if arguments[:1] == [CONVERT]:
+        print(json.dumps(convert_long(Path(arguments[1]), Path(arguments[2]))))
+        return 0
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("take", nargs="?", metavar="TAKE", help="name or folder of a take with truth")
+    wanted = parser.parse_args(arguments).take
+    name, folder = next(iter(chosen_takes([wanted] if wanted else []).items()))
+    row = measure_long(folder)
+    write_results("long_clip", table(name, row), json.dumps({"take": name, **row}, indent=1))
+    return 0
+
+
 if __name__ == "__main__":
-    print(json.dumps(convert_long(Path(sys.argv[1]), Path(sys.argv[2]))))
+    sys.exit(main(sys.argv[1:]))

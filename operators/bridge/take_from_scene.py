@@ -3,11 +3,12 @@
 from dataclasses import replace
 
 import bpy
-import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ...core.progress import Job, Progress
+from ...core.footage.clip_times import clip_times
+from ...core.footage.reading import Reading
+from ...core.progress import Job, within
 from ...core.take.take import Take
 from .actor_lengths import read_body
 from .camera_from_scene import read_camera
@@ -17,13 +18,21 @@ from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 
 READING = "Reading the footage's times"
+NO_EVIDENCE = SceneEvidence()
 
 
-def clip_frames(footage: Footage) -> Job[Array]:
+def clip_frames(
+    footage: Footage, evidence: SceneEvidence = NO_EVIDENCE, kept: Reading | None = None
+) -> Job[Array]:
     """Find the scene frame that shows each frame of the clip.
 
+    Args:
+        footage: The clip.
+        evidence: What is followed in it, ...
+        kept: ... and a cached reading of any clip, which knows the times where it is one of that.
+
     Yields:
-        Progress; a video is read once for its time stamps, since its header may be wrong.
+        Progress; a video is read once a session for its time stamps, since its header may be wrong.
 
     Returns:
         (F,) scene frames, fractional for variable frame rates.
@@ -31,12 +40,9 @@ def clip_frames(footage: Footage) -> Job[Array]:
     Raises:
         InputError: The clip cannot be read.
     """
-    source = footage.open()
-    stamps: list[float] = []
-    for stamp in source.source.time_stamps():
-        stamps.append(stamp)
-        yield Progress(READING, min(len(stamps) / source.frame_count, 1.0))
-    return scene_frames(np.array(stamps), footage.first_frame, footage.rate)
+    times = clip_times(footage.open(), kept, evidence.markers, evidence.ignored_regions)
+    time_s = yield from within(READING, times, 0.0, 1.0)
+    return scene_frames(time_s, footage.first_frame, footage.rate)
 
 
 def read_scene_take(
@@ -45,6 +51,7 @@ def read_scene_take(
     keyframe_action: bpy.types.Action | None,
     evidence: SceneEvidence,
     matches: Matches = NOT_MATCHED,
+    kept: Reading | None = None,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
     """Read a scene as core's take; the scene is as before afterwards.
 
@@ -54,6 +61,7 @@ def read_scene_take(
         keyframe_action: The animator's keyframes; None for none.
         evidence: What is followed in the footage.
         matches: The matched keyframes, and what they were matched with.
+        kept: A cached reading of any clip, for the times of its frames.
 
     Yields:
         Progress.
@@ -65,7 +73,7 @@ def read_scene_take(
         InputError: Something is missing or unusable.
     """
     path = footage.path
-    frames = yield from clip_frames(footage)
+    frames = yield from clip_frames(footage, evidence, kept)
     body = read_body(armature_object, HUMAN)
     take = Take(
         folder=path.parent,

@@ -54,7 +54,7 @@ class KEYMARK_OT_camera_from_walk(JobOperator, bpy.types.Operator):
         take = active_take(scene)
         source, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
         identifier, body = take.identifier, Body(Actor.from_stature(take.stature))
-        frames = yield from clip_frames(source)
+        frames = yield from clip_frames(source, evidence, reading)
         size = (source.clip.size[0], source.clip.size[1])
         tracks = RegionTracks.unmarked((frames - frames[0]) / source.rate, size)
         if reading is not None and evidence.markers and reading.tracks.frame_count == len(frames):

@@ -12,7 +12,9 @@ from ..shell.file_browser import browse, chosen_path
 from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
+from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
+from .evidence import scene_evidence
 from .keypoint_paths import add_keypoint_file
 from .keypoint_readings import clear_readings
 
@@ -83,7 +85,7 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
     from ..bridge.take_from_scene import clip_frames
 
     source = footage_of(scene, take)
-    frames = run(clip_frames(source))
+    frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))
     size = source.clip.size
     return read_keypoint_file(path, len(frames), (size[0], size[1]), source.rate, source.first_frame)
 

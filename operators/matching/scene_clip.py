@@ -50,6 +50,7 @@ def read_known_take(
         settings.keyframe_action,
         scene_evidence(settings),
         undecided_matches(settings),
+        reading_of(settings),
     )
 
 

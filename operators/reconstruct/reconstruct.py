@@ -52,6 +52,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
             settings.keyframe_action,
             scene_evidence(settings),
             known_matches(settings),
+            kept,
         )
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
         _check_enough(len(take.keyframes), notes)

@@ -6,6 +6,8 @@ from pathlib import Path
 import bpy
 
 from ...core.arrays import Array
+from ...core.footage.clip_times import clip_times
+from ...core.progress import run
 from ...core.take.clip_check import check_frame_count, open_clip
 from ...core.take.clip_notes import rate_note
 from ...core.take.description import describe
@@ -54,7 +56,7 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
     keyframes = None if usual else folder / keyframe_file
     take = read_described(description, keyframes, keyframes_required=not usual, whole=True)
     clip = open_clip(take)
-    time_s = clip.time_stamps()
+    time_s = run(clip_times(clip))
     check_frame_count(take, len(time_s))
     rate = rate_note(take, clip)
     notes = (*take.notes, *(note for people in take.keypoints for note in people.notes))
