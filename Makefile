@@ -9,21 +9,26 @@ TESTS ?=
 BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again speed batch check
 
 find_python := sh tools/find_python.sh
-# A variable, because a comma would end an argument of `call`.
+# Variables, because a comma would end an argument of `call`.
 test_parts := --editable '.[blender,dev]'
-# Whole files to a worker, so that what a file's tests share is made once.
-two_at_a_time := --numprocesses 2 --dist loadfile
+demo_size := Blender as a Python module, about 500 MB to download, 1.3 GB on disk, one to five minutes
+test_size := Blender as a Python module and the test tools, about 600 MB to download, 1.6 GB on disk, two to six minutes
+detect_size := MediaPipe, about 1 GB on disk, one to five minutes
+dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
+# Whole files to a worker, so that what a file's tests share is made once; in the order of tests/conftest.py.
+two_at_a_time := --numprocesses 2 --dist loadfile --no-loadscope-reorder
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
 
-# make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL: a new virtual environment, complete once it has `ready`.
+# make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL, WHAT IS SAID: a new virtual environment, complete once it
+# has `ready`.
 define make_venv
 python=$$($(find_python) $(2) $(3)) && \
-{ [ -x $(1)/bin/python ] || "$$python" -m venv --clear $(1); } && \
-echo "Installing into $(1) ..." && \
+if [ -x $(1)/bin/python ]; then echo "$(1) is brought up to date ..."; \
+else echo "$(1) is set up, once: $(5) ..." && "$$python" -m venv --clear $(1); fi && \
 $(1)/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip && \
 $(1)/bin/python -m pip install --quiet --disable-pip-version-check $(4) && \
-touch $(1)/ready
+touch $(1)/ready && echo "$(1) is ready."
 endef
 
 check_libraries = python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/check_libraries.py
@@ -35,25 +40,25 @@ help: ## list the targets
 .venv-demo/ready: $(settings) $(sources)
 	@$(check_libraries)
 	@rm -rf build
-	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]')
+	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]',$(demo_size))
 
 .venv-dev/ready: $(settings)
-	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]')
+	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]',$(dev_size))
 
 .venv-test/ready: $(settings)
 	@$(check_libraries)
-	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts))
+	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts),$(test_size))
 
 # The newest Blender's Python is optional: without it the tests run in the oldest supported Blender only.
 .venv-test-313/ready: $(settings)
-	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts)); fi
+	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts),$(test_size)); fi
 
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
 	.venv-demo/bin/keymark demo --output $(OUTPUT)
 
 .venv-detect/ready: detectors/mediapipe_pose.txt
-	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt)
+	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt,$(detect_size))
 
 # Its own environment, of about a gigabyte: MediaPipe brings another OpenCV, which must not come into ours.
 .PHONY: detect-demo
