@@ -66,6 +66,9 @@ detect-demo: .venv-demo/ready .venv-detect/ready ## run MediaPipe on TAKE, conve
 	.venv-demo/bin/python tools/detect_demo.py $(TAKE) out/detect-demo \
 	    '$(CURDIR)/.venv-detect/bin/python {detectors}/mediapipe_pose.py {clip} --output {output}'
 
+# Tests start dozens of processes, each of which would compile all modules anew where the variable is set.
+test test-core test-faults: export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: test
 test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and, where there is a Python 3.13, in 5.2
 	@status=0; \
