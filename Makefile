@@ -17,6 +17,7 @@ detect_size := MediaPipe, about 1 GB on disk, one to five minutes
 dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
 # Whole files to a worker, so that what a file's tests share is made once; in the order of tests/conftest.py.
 two_at_a_time := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+test_time := all tests take about six minutes on two quiet cores
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
 
@@ -73,17 +74,18 @@ test test-core test-faults: export PYTHONDONTWRITEBYTECODE :=
 test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and, where there is a Python 3.13, in 5.2
 	@status=0; \
 	if [ -e .venv-test-313/ready ]; then \
-	    echo "== Blender 5.2, Python 3.13"; \
+	    echo "== Blender 5.2, Python 3.13: $(test_time)"; \
 	    .venv-test-313/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	else \
 	    echo "== Blender 5.2 is left out: this machine has no Python 3.13"; \
 	fi; \
-	echo "== Blender 4.5, Python 3.11"; \
+	echo "== Blender 4.5, Python 3.11: $(test_time)"; \
 	.venv-test/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	exit $$status
 
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
+	@echo "== Without Blender: about three minutes on two quiet cores"
 	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
 
 # What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.
