@@ -15,8 +15,8 @@ demo_size := Blender as a Python module, about 500 MB to download, 1.3 GB on dis
 test_size := Blender as a Python module and the test tools, about 600 MB to download, 1.6 GB on disk, two to six minutes
 detect_size := MediaPipe, about 1 GB on disk, one to five minutes
 dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
-# Whole files to a worker, so that what a file's tests share is made once; in the order of tests/conftest.py.
-two_at_a_time := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# Whole files to a worker, so that what a file's tests share is made once.
+two_at_a_time := --numprocesses 2 --dist loadfile
 test_time := all tests take about six minutes on two quiet cores
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)

@@ -35,12 +35,6 @@ def pytest_report_header() -> str:
     return f"blender: {bpy.app.version_string}"
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files of slow tests: a worker that came to them last would work alone."""
-    slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
-
-
 @pytest.fixture(scope="session")
 def repository() -> Path:
     """The repository's root folder."""

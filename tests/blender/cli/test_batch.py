@@ -33,13 +33,10 @@ from keymark.operators.cli.main import main
 sys.exit(main(sys.argv[1:]))
 """
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        bool(bpy.app.binary_path),
-        reason="a Blender program's own Python has no bpy; tests/real_blender runs batches in it",
-    ),
-]
+pytestmark = pytest.mark.skipif(
+    bool(bpy.app.binary_path),
+    reason="a Blender program's own Python has no bpy; tests/real_blender runs batches in it",
+)
 
 
 @pytest.fixture(scope="module")

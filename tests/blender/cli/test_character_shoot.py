@@ -18,8 +18,6 @@ from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.actions import curve_digest
 from keymark.operators.cli.main import main
 
-pytestmark = pytest.mark.slow
-
 TAKES = 2
 NAMES = [f"day1/take{number:02d}" for number in range(1, TAKES + 1)]
 MADE = {"character.blend", "conversion.json", "motion.blend", "motion.bvh", "motion.json", "retarget.json"}

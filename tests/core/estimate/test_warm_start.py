@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.warm_start import blend_weight, revised_windows
@@ -14,8 +13,6 @@ from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.progress import Preview
-
-pytestmark = pytest.mark.slow
 
 FRAMES, EVERY, MOVED = 360, 6, 31
 TOLERANCE_MM = 4.0
