@@ -10,21 +10,27 @@ ZIPS ?=
 BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again waiting batch check
 
 find_python := sh tools/find_python.sh
-# A variable, because a comma would end an argument of `call`.
+# Variables, because a comma would end an argument of `call`.
 test_parts := --editable '.[blender,dev]'
+demo_size := Blender as a Python module, about 500 MB to download, 1.3 GB on disk, one to five minutes
+test_size := Blender as a Python module and the test tools, about 600 MB to download, 1.6 GB on disk, two to six minutes
+detect_size := MediaPipe, about 1 GB on disk, one to five minutes
+dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
 # Whole files to a worker, so that what a file's tests share is made once.
 two_at_a_time := --numprocesses 2 --dist loadfile
+test_time := all tests take about six minutes on two quiet cores
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
 
-# make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL: a new virtual environment, complete once it has `ready`.
+# make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL, WHAT IS SAID: a new virtual environment, complete once it
+# has `ready`.
 define make_venv
 python=$$($(find_python) $(2) $(3)) && \
-{ [ -x $(1)/bin/python ] || "$$python" -m venv --clear $(1); } && \
-echo "Installing into $(1) ..." && \
+if [ -x $(1)/bin/python ]; then echo "$(1) is brought up to date ..."; \
+else echo "$(1) is set up, once: $(5) ..." && "$$python" -m venv --clear $(1); fi && \
 $(1)/bin/python -m pip install --quiet --disable-pip-version-check --upgrade pip && \
 $(1)/bin/python -m pip install --quiet --disable-pip-version-check $(4) && \
-touch $(1)/ready
+touch $(1)/ready && echo "$(1) is ready."
 endef
 
 check_libraries = python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/check_libraries.py
@@ -36,25 +42,25 @@ help: ## list the targets
 .venv-demo/ready: $(settings) $(sources)
 	@$(check_libraries)
 	@rm -rf build
-	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]')
+	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]',$(demo_size))
 
 .venv-dev/ready: $(settings)
-	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]')
+	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]',$(dev_size))
 
 .venv-test/ready: $(settings)
 	@$(check_libraries)
-	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts))
+	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts),$(test_size))
 
 # The newest Blender's Python is optional: without it the tests run in the oldest supported Blender only.
 .venv-test-313/ready: $(settings)
-	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts)); fi
+	@if $(find_python) 3.13 >/dev/null 2>&1; then $(call make_venv,.venv-test-313,3.13,,$(test_parts),$(test_size)); fi
 
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
 	.venv-demo/bin/keymark demo --output $(OUTPUT)
 
 .venv-detect/ready: detectors/mediapipe_pose.txt
-	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt)
+	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt,$(detect_size))
 
 # Its own environment, of about a gigabyte: MediaPipe brings another OpenCV, which must not come into ours.
 .PHONY: detect-demo
@@ -62,21 +68,25 @@ detect-demo: .venv-demo/ready .venv-detect/ready ## run MediaPipe on TAKE, conve
 	.venv-demo/bin/python tools/detect_demo.py $(TAKE) out/detect-demo \
 	    '$(CURDIR)/.venv-detect/bin/python {detectors}/mediapipe_pose.py {clip} --output {output}'
 
+# Tests start dozens of processes, each of which would compile all modules anew where the variable is set.
+test test-core test-faults: export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: test
 test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and, where there is a Python 3.13, in 5.2
 	@status=0; \
 	if [ -e .venv-test-313/ready ]; then \
-	    echo "== Blender 5.2, Python 3.13"; \
+	    echo "== Blender 5.2, Python 3.13: $(test_time)"; \
 	    .venv-test-313/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	else \
 	    echo "== Blender 5.2 is left out: this machine has no Python 3.13"; \
 	fi; \
-	echo "== Blender 4.5, Python 3.11"; \
+	echo "== Blender 4.5, Python 3.11: $(test_time)"; \
 	.venv-test/bin/python -m pytest $(two_at_a_time) $(TESTS) || status=$$?; \
 	exit $$status
 
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
+	@echo "== Without Blender: about three minutes on two quiet cores"
 	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
 
 # What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.

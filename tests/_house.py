@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 
@@ -17,13 +18,19 @@ def name_of(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+@cache
+def nodes(source: str) -> tuple[ast.AST, ...]:
+    """Every node of a module's source; each source is parsed once."""
+    return tuple(ast.walk(ast.parse(source)))
+
+
 def imports(name: str, is_package: bool, source: str, known: set[str]) -> Iterator[tuple[int, str]]:
     """Yield (line, dotted name) for each import in `source`, the relative ones resolved from the root.
 
     `from ..body import rotations` yields `core.body.rotations` where that is a module, else `core.body`.
     """
     package = name.split(".") if is_package else name.split(".")[:-1]
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes(source):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name

@@ -82,9 +82,15 @@ class Console:
         if self.quiet:
             print_error(error or "")
             return
+        self.say(" ".join(text.split("\n")))
+
+    def say(self, text: str) -> None:
+        """Write a line at once, before the result; nothing with `--json` or `--quiet`."""
+        if self.as_json or self.quiet:
+            return
         if self._bar is not None:
             self._bar.clear()
-        self._write("\n".join(wrapped(" ".join(text.split("\n")), 0, terminal_columns())))
+        self._write("\n".join(wrapped(text, 0, terminal_columns())))
         if self._bar is not None:
             self._bar.refresh()
 

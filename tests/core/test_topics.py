@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from _house import imports, modules
+from _house import imports, modules, nodes
 
 BASES = {"Operator", "Panel", "UIList", "Menu", "FileHandler"}
 SHARED = ("operators.bridge", "operators.shell")
@@ -52,7 +52,7 @@ def test_every_module_that_registers_is_listed_by_its_topic_once(repository: Pat
 
 def is_private(source: str) -> bool:
     """Whether a module defines what Blender registers as an operator or a part of the interface."""
-    classes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ClassDef)]
+    classes = [node for node in nodes(source) if isinstance(node, ast.ClassDef)]
     return any(
         isinstance(base, ast.Attribute) and base.attr in BASES for node in classes for base in node.bases
     )
@@ -63,7 +63,7 @@ def trespasses(name: str, is_package: bool, source: str, known: set[str], privat
     for line, target in imports(name, is_package, source, known):
         if target in private and topic_of(target) != topic_of(name) and topic_of(target) not in SHARED:
             yield f"{name}:{line} imports {target}, which is an operator or a panel of another topic"
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes(source):
         if isinstance(node, ast.ImportFrom) and (node.level or node.module == "keymark"):
             for alias in node.names:
                 if alias.name.startswith("_"):

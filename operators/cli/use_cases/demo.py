@@ -44,13 +44,21 @@ def demo_command(arguments: argparse.Namespace) -> None:
         )
     require_blender("the demonstration needs")
     with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
+        console.say(
+            "The demonstration, four seconds of video, is converted in four steps: about half a minute."
+        )
+        console.say("Step 1 of 4: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
         character, missing = _character(Path(folder))
         settings = ConversionSettings(KEYFRAMES, evidence=MARKED, character=character)
+        console.say(
+            "Step 2 of 4: the take is converted, by its markers and contours, and put on the character."
+        )
         done = convert_take(describe(DEMO), arguments.output, console, settings, arguments.debug)
+        console.say("Step 3 of 4: the same by the paper's filter, to compare.")
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
-        console.stage("Converting it without its markers")
+        console.say("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
         output: Path = arguments.output
         unmarked_settings = ConversionSettings(KEYFRAMES, evidence=UNMARKED)
         unmarked = convert_take(

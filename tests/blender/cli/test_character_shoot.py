@@ -25,10 +25,10 @@ Out = pytest.CaptureFixture[str]
 Batch = Callable[..., dict[str, int]]
 
 
-@pytest.fixture
-def shoot(cast: Path, tmp_path: Path) -> Path:
-    """Two small takes, and a character in a folder of theirs."""
-    folder = write_shoot(tmp_path / "shoot", TAKES)
+@pytest.fixture(scope="module")
+def pristine(cast: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two small takes, and a character in a folder of theirs; tests must not change it."""
+    folder = write_shoot(tmp_path_factory.mktemp("pristine") / "shoot", TAKES)
     (folder / "cast").mkdir()
     shutil.copyfile(cast / "anna.blend", folder / "cast" / "anna.blend")
     shutil.copyfile(cast / "two.blend", folder / "cast" / "two.blend")
@@ -36,10 +36,32 @@ def shoot(cast: Path, tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.fixture
+def shoot(pristine: Path, tmp_path: Path) -> Path:
+    """A copy for one test."""
+    return Path(shutil.copytree(pristine, tmp_path / "shoot"))
+
+
 def name_character(shoot: Path, **character: object) -> None:
     """Say in shoot.json which character gets the motions."""
     said = json.loads((shoot / "shoot.json").read_text(encoding="utf-8"))
     (shoot / "shoot.json").write_text(json.dumps(said | {"character": character}), encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def first_batch(pristine: Path) -> Path:
+    """What the first batch makes of the takes; tests must not change it."""
+    if bpy.app.binary_path:
+        pytest.skip("a Blender program's own Python has no bpy; tests/real_blender runs batches in it")
+    out = pristine.parent / "out"
+    assert main(["batch", str(pristine), "--output", str(out), "--jobs", "1", "--quiet"]) == 0
+    return out
+
+
+@pytest.fixture
+def converted(first_batch: Path, shoot: Path, tmp_path: Path) -> Path:
+    """The results of the first batch, copied for one test."""
+    return Path(shutil.copytree(first_batch, tmp_path / "out"))
 
 
 @pytest.fixture
@@ -57,9 +79,10 @@ def batch(shoot: Path, tmp_path: Path, capfd: Out) -> Batch:
     return run
 
 
-def test_every_take_gets_the_character(batch: Batch, tmp_path: Path) -> None:
+def test_every_take_gets_the_character(batch: Batch, converted: Path, tmp_path: Path) -> None:
     """Its files are part of the result, which a second batch skips, and the clip is behind the camera."""
-    assert batch() == {"converted": TAKES}
+    lines = (converted / "summary.jsonl").read_text(encoding="utf-8").splitlines()
+    assert [json.loads(line)["status"] for line in lines] == ["converted"] * TAKES
     for name in NAMES:
         folder = tmp_path / "out" / name
         assert {file for file in tree(folder) if not file.startswith(".")} == MADE
@@ -79,10 +102,10 @@ def test_every_take_gets_the_character(batch: Batch, tmp_path: Path) -> None:
 
 
 def test_a_change_of_the_character_converts_anew(
-    batch: Batch, shoot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    batch: Batch, converted: Path, shoot: Path, tmp_path: Path
 ) -> None:
     """Of its file, its options, its map, and of saved maps; without a character its files go."""
-    assert batch() == {"converted": TAKES}
+    assert batch() == {"unchanged": TAKES}
     name_character(shoot, file="cast/anna.blend", legs="fk")
     assert batch() == {"converted": TAKES}
     write_character_map(shoot / "cast" / "anna.json", plain_map(plain_character()))
@@ -144,11 +167,10 @@ def test_check_says_it_beforehand(shoot: Path, capfd: Out) -> None:
     assert {name for name in tree(shoot)} - {"full.json"} == set(before)
 
 
-def test_merge_carries_the_characters_actions(batch: Batch, tmp_path: Path, capfd: Out) -> None:
+def test_merge_carries_the_characters_actions(converted: Path, tmp_path: Path, capfd: Out) -> None:
     """Beside the actors', in catalogs of their own, with curves and slot as they were made."""
-    assert batch() == {"converted": TAKES}
     library = tmp_path / "library.blend"
-    words = ["merge", str(tmp_path / "out"), "--output", str(library), "--name", "Walk"]
+    words = ["merge", str(converted), "--output", str(library), "--name", "Walk"]
     assert main([*words, "--json"]) == 0
     answer = json.loads(capfd.readouterr().out)
     assert answer["motions"] == TAKES and answer["character_actions"] == TAKES
@@ -162,8 +184,8 @@ def test_merge_carries_the_characters_actions(batch: Batch, tmp_path: Path, capf
     catalogs = (tmp_path / "blender_assets.cats.txt").read_text(encoding="utf-8")
     assert f"{own.asset_data.catalog_id}:Keymark Characters/Walk/day1:" in catalogs
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / NAMES[0] / "character.blend"))
-    made = read_retarget_record(tmp_path / "out" / NAMES[0]).files["character.blend"]
+    bpy.ops.wm.open_mainfile(filepath=str(converted / NAMES[0] / "character.blend"))
+    made = read_retarget_record(converted / NAMES[0]).files["character.blend"]
     anna = bpy.context.scene.objects["Anna"]
     with bpy.data.libraries.load(str(library)) as (_, wanted):
         wanted.actions = ["day1 take01 Anna"]
@@ -174,14 +196,13 @@ def test_merge_carries_the_characters_actions(batch: Batch, tmp_path: Path, capf
 
 @pytest.mark.parametrize("file", ["character.blend", "retarget.json"])
 def test_merge_names_a_character_that_was_changed(
-    batch: Batch, tmp_path: Path, capfd: Out, file: str
+    converted: Path, tmp_path: Path, capfd: Out, file: str
 ) -> None:
     """Its take's motion is in the library, the character's Action is not, and the status says so."""
-    assert batch() == {"converted": TAKES}
-    damaged = tmp_path / "out" / NAMES[1] / file
+    damaged = converted / NAMES[1] / file
     damaged.write_bytes(damaged.read_bytes()[: damaged.stat().st_size // 2])
     library = tmp_path / "library.blend"
-    assert main(["merge", str(tmp_path / "out"), "--output", str(library), "--quiet"]) == 1
+    assert main(["merge", str(converted), "--output", str(library), "--quiet"]) == 1
     assert NAMES[1] in one_line(capfd.readouterr().err)
     with bpy.data.libraries.load(str(library), assets_only=True) as (found, _):
         assert sorted(found.actions) == ["day1 take01", "day1 take01 Anna", "day1 take02"]

@@ -11,6 +11,7 @@ from pathlib import Path
 import bpy
 import pytest
 from _shoot import write_shoot
+from keymark.operators.cli.main import main
 
 OPENJD = Path(sys.executable).with_name("openjd.exe" if os.name == "nt" else "openjd")
 pytestmark = [
@@ -92,8 +93,7 @@ def test_the_job_gives_what_a_batch_gives(template: Path, keymark: Path, shoot: 
     step = ("--step", "Merge", "--run-dependencies")
     done = openjd("run", template, *step, *parameters(keymark, shoot, farm))
     assert done.returncode == 0, done.stdout + done.stderr
-    words = [str(keymark), "batch", str(shoot), "--output", str(alone), "--jobs", "1", "--quiet"]
-    subprocess.run(words, check=True)
+    assert main(["batch", str(shoot), "--output", str(alone), "--jobs", "1", "--quiet"]) == 0
     for name in NAMES:
         for file in ("motion.json", "motion.bvh"):
             assert (farm / name / file).read_bytes() == (alone / name / file).read_bytes()

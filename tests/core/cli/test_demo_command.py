@@ -1,5 +1,6 @@
 """`keymark demo`: converts and scores the demonstration take, here a small one in its place."""
 
+import importlib.util
 import json
 import shutil
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
+from keymark.core.errors import ConversionError
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.review.score import read_truth, score_points
@@ -34,11 +36,23 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
     people = People(take.body.skeleton.point_names, "truth", take.camera.resolution, tuple(seen))
     write_keypoints(folder / "keypoints.json", people, take.frame_start)
 
+    monkeypatch.setattr(demo, "require_blender", lambda needing: None)
     monkeypatch.setattr(demo, "DEMO", folder)
     monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
     return folder
 
 
+@pytest.fixture
+def no_character(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No character, as where Rigify is missing."""
+
+    def refuse(_file: Path) -> None:
+        raise ConversionError("Rigify is missing")
+
+    monkeypatch.setattr(demo, "write_demo_character", refuse)
+
+
+@pytest.mark.usefixtures("no_character")
 def test_it_scores_every_method_by_the_motion_it_wrote(
     take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -63,10 +77,20 @@ def test_it_scores_every_method_by_the_motion_it_wrote(
     assert all(scores["mpjpe"] > 0.0 for scores in said["scores_mm"].values())
 
 
-def test_it_says_where_to_look(take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """The text has a row of numbers for each method and names the .blend and the pictures."""
+def test_it_says_what_it_does_and_where_to_look(
+    take: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
+) -> None:
+    """A line for each step, a row of numbers for each method, the .blend, the character and the pictures."""
+    has_blender = importlib.util.find_spec("bpy") is not None
+    if not has_blender:
+        request.getfixturevalue("no_character")
     assert main(["demo", "--output", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
+    steps = [line.partition(":")[0] for line in said.splitlines() if line.startswith("Step ")]
+    assert steps == [f"Step {number} of 4" for number in (1, 2, 3, 4)]
+    character = tmp_path / "out" / "character.blend"
+    assert (str(character) in said) == character.exists() == has_blender
+    assert ("Without a character: Rigify is missing" in said) != has_blender
     rows = {
         line.split()[0]: line.split()[1:]
         for line in said.splitlines()

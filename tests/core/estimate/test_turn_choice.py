@@ -61,18 +61,22 @@ def estimate(
 
 
 @cache
-def long_turn() -> tuple[Posture, RegionTracks, WholeClipResult]:
-    """A turn by -214 degrees, which interpolation takes for one by 146."""
-    truth = turning(-214.0)
+def turned(degrees: float) -> tuple[Posture, RegionTracks, WholeClipResult]:
+    """A turn, its tracks and the estimate from them."""
+    truth = turning(degrees)
     tracks = film(truth, 0.3)
     return truth, tracks, estimate(truth, tracks)[0]
+
+
+def long_turn() -> tuple[Posture, RegionTracks, WholeClipResult]:
+    """A turn by -214 degrees, which interpolation takes for one by 146."""
+    return turned(-214.0)
 
 
 @pytest.mark.parametrize(("degrees", "added"), [(-214.0, -1), (146.0, 0), (300.0, 1), (50.0, 0)])
 def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
     """Also where the short way would be a small step, and a step that was right is left alone."""
-    truth = turning(degrees)
-    result, _ = estimate(truth, film(truth, 0.3))
+    truth, _, result = turned(degrees)
     turns = result.problem.turns.tolist()
     assert turns.pop(GAP) == added
     assert not any(turns)
@@ -81,8 +85,7 @@ def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
 
 def test_a_turn_taken_wrongly_is_taken_back() -> None:
     """Turns can be chosen again, as when more has been seen: the one there is held against the short way."""
-    truth = turning(146.0)
-    problem = estimate(truth, film(truth, 0.3))[0].problem
+    problem = turned(146.0)[2].problem
     wrong = problem.with_turns(np.array([0, -1, 0, 0, 0]))
     window = Window(0, FRAMES, 0, FRAMES)
     part = WindowProblem(wrong, window, wrong.start(window))

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from _house import nodes
 from _synthetic_take import write_synthetic_take
 
 NETWORK = {"ftplib", "http", "imaplib", "nntplib", "poplib", "requests", "smtplib", "socket", "socketserver"}
@@ -63,7 +64,7 @@ def imported(node: ast.AST) -> list[str]:
 
 def faults(module: str, source: str) -> Iterator[str]:
     """Sentences on each use in one module that could reach a network or run data."""
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes(source):
         for name in imported(node):
             if name in NETWORK | CODE_FROM_DATA or not module.startswith(ONLY_IN.get(name, (module,))):
                 yield f"{module}:{node.lineno} loads {name}"  # type: ignore[attr-defined]

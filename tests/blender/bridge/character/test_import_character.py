@@ -1,5 +1,6 @@
 """Characters from files: the armature and what belongs to it; nothing stays in the open file."""
 
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -45,34 +46,42 @@ def add_character(name: str = "Anna") -> bpy.types.Object:
     return armature
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A character in every kind of file, and other files."""
+@pytest.fixture(scope="module")
+def cast(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A character in every kind of file, and other files; tests must not change them."""
+    made = tmp_path_factory.mktemp("cast")
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     armature = add_character()
     bpy.context.scene.collection.objects.link(bpy.data.objects.new("Table", None))
     bpy.data.texts.new("rig_ui.py").use_module = True
     bpy.data.texts.new("notes")
     armature.keyframe_insert("location", frame=1)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "anna.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=str(made / "anna.blend"))
     for one in bpy.context.scene.objects:
         one.select_set(one.name in ("Anna", "Anna body"))
-    bpy.ops.export_scene.fbx(filepath=str(tmp_path / "anna.fbx"), use_selection=True)
+    bpy.ops.export_scene.fbx(filepath=str(made / "anna.fbx"), use_selection=True)
     anna = replace(plain_character(root="root"), name="Anna")
-    write_gltf(anna, tmp_path / "anna.gltf")
+    write_gltf(anna, made / "anna.gltf")
     for name in ("anna.glb", "anna.vrm"):
-        write_glb(anna, tmp_path / name)
+        write_glb(anna, made / name)
     add_character("Ben")
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "two.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=str(made / "two.blend"))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "none.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=str(made / "none.blend"))
     for suffix in (".blend", ".glb", ".gltf", ".fbx", ".vrm"):
-        (tmp_path / f"damaged{suffix}").write_bytes(b"BLENDER-v405RENDH" + bytes(range(256)) * 4)
-        whole = (tmp_path / f"anna{suffix}").read_bytes()
-        (tmp_path / f"half{suffix}").write_bytes(whole[: len(whole) // 2])
-        (tmp_path / f"empty{suffix}").write_bytes(b"")
-    (tmp_path / "folder.blend").mkdir()
+        (made / f"damaged{suffix}").write_bytes(b"BLENDER-v405RENDH" + bytes(range(256)) * 4)
+        whole = (made / f"anna{suffix}").read_bytes()
+        (made / f"half{suffix}").write_bytes(whole[: len(whole) // 2])
+        (made / f"empty{suffix}").write_bytes(b"")
+    (made / "folder.blend").mkdir()
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    return tmp_path
+    return made
+
+
+@pytest.fixture
+def folder(cast: Path, tmp_path: Path) -> Path:
+    """A copy of them for one test."""
+    return Path(shutil.copytree(cast, tmp_path / "cast"))
 
 
 @pytest.fixture
