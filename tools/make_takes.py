@@ -2,9 +2,9 @@
 
 Usage: make_takes.py [--output FOLDER] [--threads N] [--keypoints] [NAME ...], with the Python of a virtual
 environment that has `bpy`; by default all takes of studio/catalogue/ into out/takes. The one called
-`aerobic` is the demonstration of presets/demo, `greeting` the example in plain clothes beside it. A take needs
-some minutes; with --keypoints nothing is filmed, and only what the studio's detector sees is written anew. Equal
-seeds give equal motion, keyframes, keypoints and, in one version of Blender, equal pictures.
+`aerobic` is the demonstration of presets/demo, `greeting` the example in plain clothes beside it. A take
+needs some minutes; with --keypoints nothing is filmed, and only what the studio's detector sees is written
+anew. Equal seeds give equal motion, keyframes, keypoints and, in one version of Blender, equal pictures.
 """
 
 import argparse

@@ -9,20 +9,21 @@ import os
 import sys
 import traceback
 from pathlib import Path
+from runpy import run_path
 
 import bpy
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "bridge" / "character"))
-
-import rigify_human  # noqa: E402
+SHARED = Path(__file__).resolve().parents[2] / "bridge" / "character" / "rigify_human.py"
+"""What the button in Blender uses too; Keymark is not loaded here."""
 
 
 def main(path: str) -> int:
     """Generate and save; returns the exit status."""
     try:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        rigify_human.enable_rigify()
-        rigify_human.add_rigify_human()
+        shared = run_path(str(SHARED))
+        shared["enable_rigify"]()
+        shared["add_rigify_human"]()
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
     except Exception:
         traceback.print_exc()

@@ -30,7 +30,7 @@ FIRST_STEPS = (
     *("start", "panel", "examples", "example", "reconstructed", "played", "review"),
     *("enable_rigify", "character", "retargeted", "taken_back"),
 )
-FIRST_CLICKS, FIRST_KEYS = 8, 8
+FIRST_CLICKS, FIRST_KEYS = 6, 6
 """Tab, example (button and entry), Reconstruct, Add Rigify Human, Retarget; N, Space four times, Enter."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""

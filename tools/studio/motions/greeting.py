@@ -38,7 +38,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
     }  # fmt: skip
     trunk = {
         "pitch": 2.0 - ring + driven({1.5: 0, 1.9: 7, 2.5: 2, 3.1: 9, 3.9: 1}, times, 3.6, 0.7),
-        "roll": -4.0 * walking * np.sin(turn + 0.4) 
+        "roll": -4.0 * walking * np.sin(turn + 0.4)
         + driven({1.0: 0, 1.5: 6, 2.5: 6, 3.0: -7, 4.1: 0}, times),
         "yaw": -11.0 * walking * np.cos(turn + 0.2)
         + driven({0.8: 0, 1.4: 8, 2.5: 6, 3.0: 18, 3.7: 16, 4.3: 2}, times, 3.8, 0.7),
