@@ -2,6 +2,7 @@
 
 import bpy
 
+from ...core.errors import InputError
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import label, say
@@ -38,12 +39,18 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Generate the rig, and make it the chosen character where that has no armature yet."""
-        if not is_rigify_enabled():
-            enable_rigify()
         active = context.view_layer.objects.active
         if active is not None and active.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        rig = add_rigify_human(active_take(context.scene).stature)
+        try:
+            if not is_rigify_enabled():
+                enable_rigify()
+            rig = add_rigify_human(active_take(context.scene).stature)
+        except RuntimeError as error:  # an operator's own error report
+            reason = str(error).removeprefix("Error: ").strip()
+            raise InputError(
+                f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
+            ) from error
         chosen = find_character(context.scene)
         if chosen is None or chosen.armature is not None:
             chosen = add_character(active_take(context.scene), rig)

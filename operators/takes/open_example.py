@@ -28,7 +28,7 @@ EXAMPLES = (
 
 
 class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
-    """Open a take that comes with Keymark, ready to reconstruct"""
+    """Open a take that comes with Keymark, ready to reconstruct; nothing is written unless you copy it"""
 
     bl_idname = "keymark.open_example"
     bl_label = "Open Example"

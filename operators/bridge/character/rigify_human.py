@@ -56,21 +56,25 @@ def add_rigify_human(stature_m: float | None = None) -> bpy.types.Object:
 
     Args:
         stature_m: Height from the floor to the top of the head; by default Rigify's own.
+
+    Raises:
+        RuntimeError: Rigify could not; what it had made is gone again.
     """
     before = set(bpy.data.objects)
-    bpy.ops.object.armature_basic_human_metarig_add()
-    metarig = bpy.context.view_layer.objects.active
-    metarig.matrix_world = Matrix.Identity(4)
-    own_m = max(bone.tail_local.z for bone in metarig.data.bones)
-    size = 1.0 if stature_m is None else stature_m / own_m
-    metarig.data.transform(Matrix.Scale(size, 4))
-    bpy.ops.pose.rigify_generate()
-    rig = next(
-        one for one in bpy.data.objects if one.type == "ARMATURE" and one != metarig and one not in before
-    )
-    metarig_data = metarig.data
-    bpy.data.objects.remove(metarig)
-    bpy.data.armatures.remove(metarig_data)
+    try:
+        bpy.ops.object.armature_basic_human_metarig_add()
+        metarig = bpy.context.view_layer.objects.active
+        metarig.matrix_world = Matrix.Identity(4)
+        own_m = max(bone.tail_local.z for bone in metarig.data.bones)
+        size = 1.0 if stature_m is None else stature_m / own_m
+        metarig.data.transform(Matrix.Scale(size, 4))
+        bpy.ops.pose.rigify_generate()
+    except RuntimeError:
+        bpy.data.batch_remove(set(bpy.data.objects) - before)
+        raise
+    made = (one for one in bpy.data.objects if one.type == "ARMATURE" and one != metarig)
+    rig = next(one for one in made if one not in before)
+    bpy.data.batch_remove([metarig, metarig.data])
     rig.name = rig.data.name = "Human"
     _add_body(rig, size)
     return rig

@@ -1,11 +1,13 @@
 """Add Rigify Human: a rig of the performer's size, recognized, and nothing else left behind."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import _add_rigify_human
 import bpy
 import pytest
 from _rigify import run_script
+from keymark.operators.bridge.character import rigify_human
 from keymark.operators.character import add_rigify_human
 from keymark.operators.character.requirements import recognized
 from keymark.operators.shell.takes import active_take
@@ -70,3 +72,21 @@ def test_a_blender_without_rigify_says_so(
     monkeypatch.setattr(add_rigify_human, "has_rigify", lambda: False)
     with pytest.raises(RuntimeError, match="comes without the add-on Rigify"):
         bpy.ops.keymark.add_rigify_human()
+
+
+def test_where_rigify_fails_nothing_is_left(
+    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its own sentence is passed on, with what to do instead, and what it had made is removed."""
+
+    def fail() -> None:
+        bpy.ops.object.armature_add()
+        raise RuntimeError("Error: Unknown rig type")
+
+    monkeypatch.setattr(add_rigify_human, "is_rigify_enabled", lambda: True)
+    failing = SimpleNamespace(object=SimpleNamespace(armature_basic_human_metarig_add=fail))
+    monkeypatch.setattr(rigify_human, "bpy", SimpleNamespace(ops=failing, data=bpy.data))
+    before = set(bpy.data.objects)
+    with pytest.raises(RuntimeError, match=r"make the rig \(Unknown rig type\); add one by Add > Armature"):
+        bpy.ops.keymark.add_rigify_human()
+    assert set(bpy.data.objects) == before and not len(take.characters)
