@@ -4,7 +4,7 @@ Usage: blender-screen --factory-startup --addons MODULE --enable-event-simulate 
        -- FOLDER
 
 By the README alone, by mouse and keys: every click and key is counted, and each step leaves a picture in
-FOLDER. Nothing is undone on the way but what is undone at the end, where one Ctrl Z takes back one step.
+FOLDER. Afterwards, uncounted, one Ctrl Z takes back one step, and the other example is copied to a folder.
 """
 
 import sys
@@ -40,6 +40,7 @@ def session(folder: Path, camera: Camera) -> Steps[None]:
     (folder / "summary.txt").write_text(summary + "\n", encoding="utf-8")
     print(f"From Blender as it starts to the character: {summary}", flush=True)
     yield from steps_first.take_back(person)
+    yield from steps_first.copy(person)
 
 
 if __name__ == "__main__":

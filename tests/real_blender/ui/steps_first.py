@@ -1,9 +1,13 @@
 """The steps of somebody's first session: an example, its motion, and a character that performs it."""
 
+import shutil
+from pathlib import Path
+
 import bpy
 from driver import JOB_PATIENCE_S, Steps, expect, turns, until
 from hands import NOTCHES
 from person import Person
+from steps_prepare import choose_file
 from steps_reconstruct import job
 
 FRAMES_SEEN = 12
@@ -99,3 +103,23 @@ def take_back(person: Person) -> Steps[None]:
     expect(not len(person.scene.keymark.takes), "the example was not undone")
     expect(not bpy.data.objects["Cube"].hide_get(), "Blender's cube is still hidden")
     yield from person.look("taken_back")
+
+
+def copy(person: Person) -> Steps[None]:
+    """The other example, copied to a folder: cancelled once, which leaves nothing, and then done."""
+    folder = person.folder / "copies"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    yield from choose_file(person, lambda: _ask_for_copy(person), folder, "ESC")
+    expect(not len(person.scene.keymark.takes), "a cancelled copy was opened")
+    expect(not list(folder.iterdir()), "a cancelled copy was written")
+    yield from choose_file(person, lambda: _ask_for_copy(person), folder, "RET")
+    yield from until(lambda: len(person.scene.keymark.takes), "the copy")
+    clip = Path(bpy.path.abspath(person.take.clip.filepath))
+    expect(clip == folder / "greeting" / "clip.mp4", f"the clip is {clip}")
+    yield from person.look("plain_clothes")
+    shutil.rmtree(folder)
+
+
+def _ask_for_copy(person: Person) -> Steps[None]:
+    yield from person.hands.invoke("keymark.open_example", example="GREETING", copy=True)

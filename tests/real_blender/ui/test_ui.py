@@ -28,7 +28,7 @@ CHOOSING_STEPS = ("matched", "posed_all", "from_the_side")
 HURRIED_STEPS = ("posed_all", "decided", "corrected", "unposed")
 FIRST_STEPS = (
     *("start", "panel", "examples", "example", "reconstructed", "played", "review"),
-    *("enable_rigify", "character", "retargeted", "taken_back"),
+    *("enable_rigify", "character", "retargeted", "taken_back", "plain_clothes"),
 )
 FIRST_CLICKS, FIRST_KEYS = 6, 6
 """Tab, example (button and entry), Reconstruct, Add Rigify Human, Retarget; N, Space four times, Enter."""
