@@ -134,7 +134,8 @@ def choose_file(person: Person, ask: Callable[[], Steps[None]], file: Path, key:
     browser = person.hands.area("FILE_BROWSER").spaces.active
     yield from until(lambda: browser.params is not None, "the file browser's folder")
     browser.params.directory = str(file if file.is_dir() else file.parent).encode()
-    browser.params.filename = "" if file.is_dir() else file.name
+    if not file.is_dir():
+        browser.params.filename = file.name
     yield from turns(5)
     yield from person.hands.move_over("FILE_BROWSER")
     if key == "RET":
