@@ -72,6 +72,10 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw which example, beside the folder's picker and in Adjust Last Operation."""
+        self.layout.prop(self, "example", text="")
+
     def run(self, context: bpy.types.Context) -> None:
         """Copy the take if that is wanted, read it, and only then change the scene."""
         from ...core.take.examples import POSED_BY_HAND, copy_example, example_folder
