@@ -8,22 +8,23 @@ as a module), so this one ends at once.
 import os
 import sys
 import traceback
+from importlib import import_module
 from pathlib import Path
-from runpy import run_path
 
 import bpy
 
-SHARED = Path(__file__).resolve().parents[2] / "bridge" / "character" / "rigify_human.py"
-"""What the button in Blender uses too; Keymark is not loaded here."""
+sys.path.append(str(Path(__file__).resolve().parents[2] / "bridge" / "character"))
+
+rigify_human = import_module("rigify_human")
+"""What the button in Blender uses too; Keymark itself is not loaded here."""
 
 
 def main(path: str) -> int:
     """Generate and save; returns the exit status."""
     try:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        shared = run_path(str(SHARED))
-        shared["enable_rigify"]()
-        shared["add_rigify_human"]()
+        rigify_human.enable_rigify()
+        rigify_human.add_rigify_human()
         bpy.ops.wm.save_as_mainfile(filepath=path, compress=True)
     except Exception:
         traceback.print_exc()
