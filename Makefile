@@ -6,6 +6,7 @@
 OUTPUT ?= out/demo
 TAKE ?= presets/demo/aerobic
 TESTS ?=
+ZIPS ?=
 BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again speed batch check
 
 find_python := sh tools/find_python.sh
@@ -114,9 +115,10 @@ format: .venv-dev/ready ## put the code into the project's format
 	@.venv-dev/bin/ruff check --fix --select I .
 	@.venv-dev/bin/ruff format .
 
+# One of them: make package ZIPS='--platform linux-x64 --python 3.13'.
 .PHONY: package
-package: .venv-test/ready ## build the extension's zips for every platform into dist/
-	@.venv-test/bin/python tools/build_package.py
+package: .venv-test/ready ## build the extension's zips, one a platform and Python of Blender, into dist/
+	@.venv-test/bin/python tools/build_package.py $(ZIPS)
 
 .PHONY: bench
 bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, speed and batches

@@ -78,9 +78,12 @@ def test_the_first_minutes(blender_on_screen: Blender, repository: Path) -> None
 
 @pytest.mark.parametrize("name", TAKES)
 def test_a_session_leads_to_the_command_lines_motion(
-    blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path, name: str
+    blender: Blender, blender_on_screen: Blender, package: Path, repository: Path, tmp_path: Path, name: str
 ) -> None:
-    """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does."""
+    """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does.
+
+    The extension has left its own folder as it was installed.
+    """
     folder = repository / "build" / "screenshots" / name
     run_script(blender_on_screen, "session.py", TAKES[name], folder)
     pictures = " ".join(file.name for file in folder.glob("*.png"))
@@ -95,6 +98,7 @@ def test_a_session_leads_to_the_command_lines_motion(
     )
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
+    assert blender.changed_files(package) == set()
 
 
 def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: Path) -> None:
