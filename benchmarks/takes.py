@@ -1,6 +1,7 @@
 """The takes that benchmarks measure: those beside the repository, made ones, and the demonstration."""
 
 import importlib.util
+import json
 import os
 import sys
 from collections.abc import Sequence
@@ -40,15 +41,22 @@ def take_names(plain: bool = False) -> dict[str, Path]:
         GIVEN_PLACES[0],
         ROOT / "out" / "takes",
         *named,
-        *((PLAIN_PLACE,) if plain else ()),
+        PLAIN_PLACE,
         GIVEN_PLACES[1],
     ):
         for truth in sorted(place.glob("*/truth.json")):
             name = truth.parent.name
-            found[f"demo/{name}" if place.name == "demo" else name] = truth.parent
+            if plain or has_markers(truth.parent):
+                found[f"demo/{name}" if place.name == "demo" else name] = truth.parent
     if not found:
         raise SystemExit("no take with truth was found, not even the demonstration's")
     return found
+
+
+def has_markers(folder: Path) -> bool:
+    """Whether a take's own file tells of markers; where it has none, a shoot may."""
+    file = folder / "take.json"
+    return not file.is_file() or "markers" in json.loads(file.read_text(encoding="utf-8"))
 
 
 def chosen_takes(wanted: Sequence[str], plain: bool = False) -> dict[str, Path]:

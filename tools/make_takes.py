@@ -2,9 +2,9 @@
 
 Usage: make_takes.py [--output FOLDER] [--threads N] [--keypoints] [NAME ...], with the Python of a virtual
 environment that has `bpy`; by default all takes of studio/catalogue/ into out/takes. The one called
-`aerobic` is the demonstration of presets/demo. A take needs some minutes; with --keypoints nothing is filmed,
-and only what the studio's detector sees is written anew. Equal seeds give equal motion, keyframes, keypoints
-and, in one version of Blender, equal pictures.
+`aerobic` is the demonstration of presets/demo, `greeting` the example in plain clothes beside it. A take
+needs some minutes; with --keypoints nothing is filmed, and only what the studio's detector sees is written
+anew. Equal seeds give equal motion, keyframes, keypoints and, in one version of Blender, equal pictures.
 """
 
 import argparse
@@ -95,7 +95,7 @@ def make(described: Described, output: Path, threads: int | None) -> None:
     prepare_cycles(described.seed, threads)
     random = np.random.default_rng(described.seed)
     shadow = np.array(described.shadow_per_height)
-    masks = _masks(performer, performance, room, described)
+    masks = None if described.plain else _masks(performer, performance, room, described)
     exposure = {
         "moments": described.moments,
         "shutter_frames": described.shutter_frames,
@@ -115,6 +115,8 @@ def make(described: Described, output: Path, threads: int | None) -> None:
 def detect_again(described: Described, output: Path) -> None:
     """Let the studio's detector look at a take that was filmed before, whose clip stays as it is."""
     write_keypoint_file(output, described.perform(described.seed), described)
+    if described.plain:
+        return
     fields = json.loads((output / "take.json").read_text(encoding="utf-8"))
     actor = fields.pop("actor")
     write_json(output / "take.json", {**fields, "evidence": list(WORN), "actor": actor}, indent=1)
@@ -140,14 +142,17 @@ def _masks(
     return np.stack(frames)
 
 
-def _write_data(output: Path, performance: Performance, masks: BoolArray, described: Described) -> None:
+def _write_data(
+    output: Path, performance: Performance, masks: BoolArray | None, described: Described
+) -> None:
     indices = performance.middles
     body = performance.body
     points = principal_points(performance, indices)
     truth = dict(zip(body.skeleton.point_names, rounded(np.swapaxes(points, 0, 1)), strict=True))
     frames = list(range(FRAME_START, FRAME_START + performance.frame_count))
     _write_json(output / "truth.json", {"frames": frames, "points": truth})
-    _write_json(output / "visibility.json", _visibility(masks))
+    if masks is not None:
+        _write_json(output / "visibility.json", _visibility(masks))
     (output / "LICENSE.txt").write_text(LICENSE, encoding="utf-8")
     at = described.posed_frames(performance.frame_count)
     exact = performance.postures[indices[list(at)]]
@@ -161,12 +166,12 @@ def _write_data(output: Path, performance: Performance, masks: BoolArray, descri
         frame_count=performance.frame_count,
         camera=described.camera,
         body=body,
-        markers=_eyedropper(output / "clip.mp4", masks),
+        markers=() if masks is None else _eyedropper(output / "clip.mp4", masks),
         keyframes=tuple(Keyframe(index, exact[row]) for row, index in enumerate(at)),
     )
     if described.detected:
         write_keypoint_file(output, performance, described)
-    write_take(take, output, WORN if described.detected else None)
+    write_take(take, output, WORN if described.detected and not described.plain else None)
     by_hand = [Keyframe(index, noisy[row]) for row, index in enumerate(at)]
     write_keyframes(output / "keyframes_noisy.json", by_hand, body, FRAME_START)
     if not described.postures:

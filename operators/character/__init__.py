@@ -3,6 +3,7 @@
 PROPERTIES = ("map_properties", "properties")
 MODULES = (
     "add_character",
+    "add_rigify_human",
     "remove_character",
     "make_override",
     "recognize_character",

@@ -41,13 +41,15 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         """Draw the list, the chosen character, and its result."""
         take, character = active_take(context.scene), find_character(context.scene)
         if character is None:
-            row = self.body.row()
-            row.scale_y = 1.2
-            row.operator("keymark.add_character", icon="COMMUNITY")
+            buttons = self.body.column()
+            buttons.scale_y = 1.2
+            buttons.operator("keymark.add_character", icon="COMMUNITY")
+            buttons.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
         column = _draw_choice(self, take, character)
         if character.armature is None:
             draw_sentence(column, context, label("Choose the armature that is to move"), "FORWARD")
+            column.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
         if needs_override(character.armature):
             draw_sentence(column, context, label("It is linked; an override can be animated here"), "LINKED")

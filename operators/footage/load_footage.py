@@ -4,11 +4,10 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import label, say
-from ..shell.notices import give_notices
+from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
-from .occluding_objects import occluding_objects
+from .occluding_objects import warn_of_occluders
 from .take_footage import (
     IMAGES,
     VIDEOS,
@@ -19,8 +18,6 @@ from .take_footage import (
     take_name,
 )
 
-MOST_NAMED = 3
-"""Most objects in front of the footage that are named."""
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
 
@@ -87,17 +84,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
                 "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
                 lens=take.guessed_lens_mm,
             )
-        occluding = occluding_objects(context, take)
-        if not occluding:
-            give_notices(take, "footage", "view")
-            return
-        sentence = label(
-            "In front of the footage: {names}; to see the performer, select what hides them and "
-            "press H (Alt H brings it back)",
-            names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
-        )
-        give_notices(take, "footage", "view", (sentence,), occluding)
-        self.report({"WARNING"}, sentence)
+        warn_of_occluders(self, context, take)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

@@ -4,8 +4,13 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
+from ..shell.messages import label
+from ..shell.notices import give_notices
+
 SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "VOLUME"}
 TRANSPARENT_DISPLAYS = {"WIRE", "BOUNDS"}
+MOST_NAMED = 3
+"""Most objects in front of the footage that are named."""
 
 
 def occluding_objects(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> list[str]:
@@ -23,6 +28,23 @@ def occluding_objects(context: bpy.types.Context, take: bpy.types.PropertyGroup)
         and each.visible_get()
         and _in_picture(scene, camera, each)
     ]
+
+
+def warn_of_occluders(
+    operator: bpy.types.Operator, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Report what hides the footage and keep it as a notice, or take back what an earlier notice said."""
+    occluding = occluding_objects(context, take)
+    if not occluding:
+        give_notices(take, "footage", "view")
+        return
+    sentence = label(
+        "In front of the footage: {names}; to see the performer, select what hides them and "
+        "press H (Alt H brings it back)",
+        names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
+    )
+    give_notices(take, "footage", "view", (sentence,), occluding)
+    operator.report({"WARNING"}, sentence)
 
 
 def _in_picture(scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object) -> bool:

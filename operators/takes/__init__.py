@@ -3,6 +3,7 @@
 PROPERTIES = ("take_properties", "scene_properties")
 MODULES = (
     "open_take",
+    "open_example",
     "save_take",
     "add_performer",
     "remove_take",

@@ -2,13 +2,10 @@
 
 import bpy
 
-from ..footage.take_footage import VIDEOS, look_through_camera, show_range
+from ..footage.take_footage import VIDEOS
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_path
-from ..shell.messages import say
-from ..shell.notices import give_notices
 from ..shell.requirements import idle, object_mode_possible
-from ..shell.takes import active_take
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
@@ -44,17 +41,9 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Read the take, and only then change the scene."""
         from ...core.shoot.discovery.take_path import take_path
-        from .take_to_scene import add_take_to_scene, read_for_scene
+        from .take_to_scene import open_in_scene, read_for_scene
 
-        opened = read_for_scene(take_path(chosen_path(self)), self.keyframes)
-        add_take_to_scene(context, opened)
-        look_through_camera(context, active_take(context.scene))
-        show_range(context)
-        give_notices(active_take(context.scene), "footage", "files", opened.notes)
-        for note in opened.notes:
-            self.report({"WARNING"}, note)
-        count = len(opened.take.keyframes)
-        say(self, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
+        open_in_scene(self, context, read_for_scene(take_path(chosen_path(self)), self.keyframes))
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

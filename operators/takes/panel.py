@@ -51,6 +51,7 @@ class KEYMARK_MT_add_take(bpy.types.Menu):
         layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")
         layout.operator("keymark.open_take", icon="FILE_FOLDER")
+        layout.operator("keymark.open_example", icon="PLAY")
 
 
 class KEYMARK_MT_take_specials(bpy.types.Menu):
@@ -117,6 +118,7 @@ def _draw_beginning(layout: bpy.types.UILayout) -> None:
     column.scale_y = BUTTON_SCALE
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
     column.operator("keymark.open_take", icon="FILE_FOLDER")
+    column.operator("keymark.open_example", icon="PLAY")
     column.popover("KEYMARK_PT_guide", icon="HELP")
     if bpy.data.movieclips:
         layout.menu("KEYMARK_MT_clips", icon="TRACKER")

@@ -10,7 +10,7 @@ from ...core.footage.clip_times import clip_times
 from ...core.progress import run
 from ...core.take.clip_check import check_frame_count, open_clip
 from ...core.take.clip_notes import rate_note
-from ...core.take.description import describe
+from ...core.take.description import KEYFRAME_FILE, describe
 from ...core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from ...core.take.take import Take
 from ...core.take.take_file import read_described
@@ -20,12 +20,16 @@ from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
+from ..footage.occluding_objects import warn_of_occluders
+from ..footage.take_footage import look_through_camera, show_range
 from ..keypoints.keypoint_paths import add_keypoint_file
 from ..markers.ignored_regions import add_ignored_regions
 from ..markers.marker_styles import set_marker_color
 from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
-from ..shell.takes import add_take
+from ..shell.messages import say
+from ..shell.notices import give_notices
+from ..shell.takes import active_take, add_take
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +45,7 @@ class OpenedTake:
     """Sentences to report."""
 
 
-def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
+def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
     """Read a take and check it against its clip.
 
     Args:
@@ -51,7 +55,7 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
     Raises:
         InputError: The take or its clip is unusable.
     """
-    usual = keyframe_file == "keyframes.json"
+    usual = keyframe_file == KEYFRAME_FILE
     description = describe(folder)
     keyframes = None if usual else folder / keyframe_file
     take = read_described(description, keyframes, keyframes_required=not usual, whole=True)
@@ -62,6 +66,24 @@ def read_for_scene(folder: Path, keyframe_file: str) -> OpenedTake:
     notes = (*take.notes, *(note for people in take.keypoints for note in people.notes))
     kinds = description.settings.evidence or EVIDENCE
     return OpenedTake(take, time_s, kinds, (*notes, *([rate] if rate else [])))
+
+
+def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
+    """Add a take to the scene, show its footage and its range, and report what a person should know of it.
+
+    Raises:
+        InputError: Blender cannot read the clip; the scene is unchanged.
+    """
+    add_take_to_scene(context, opened)
+    take = active_take(context.scene)
+    look_through_camera(context, take)
+    show_range(context)
+    give_notices(take, "footage", "files", opened.notes)
+    for note in opened.notes:
+        operator.report({"WARNING"}, note)
+    count = len(opened.take.keyframes)
+    say(operator, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
+    warn_of_occluders(operator, context, take)
 
 
 def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:

@@ -16,7 +16,7 @@ from keymark.core.review.score import read_truth
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 
 from studio import curves  # noqa: E402
-from studio.catalogue import DEMONSTRATION, TAKES  # noqa: E402
+from studio.catalogue import DEMONSTRATION, GREETING, TAKES  # noqa: E402
 from studio.described import Described, posed_frames  # noqa: E402
 from studio.limbs import foot_clearance  # noqa: E402
 from studio.look import MARKERS  # noqa: E402
@@ -41,12 +41,13 @@ def _points(performance: Performance) -> Array:
     return principal_points(performance, performance.middles)
 
 
-def test_the_demonstration_is_still_composed_as_it_was(
-    performances: dict[str, Performance], repository: Path
+@pytest.mark.parametrize("name", [DEMONSTRATION.name, GREETING.name])
+def test_the_examples_are_still_composed_as_they_were(
+    performances: dict[str, Performance], repository: Path, name: str
 ) -> None:
     """The committed truth comes out again, to the decimals it is written with."""
-    points = _points(performances[DEMONSTRATION.name])
-    truth = read_truth(repository / "presets" / "demo" / "aerobic" / "truth.json", 1, len(points))
+    points = _points(performances[name])
+    truth = read_truth(repository / "presets" / "demo" / name / "truth.json", 1, len(points))
     assert np.abs(points - truth).max() < 1e-6
 
 

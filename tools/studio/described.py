@@ -66,6 +66,8 @@ class Described:
     """A second camera, for reference only."""
     detected: bool = False
     """Whether the studio's detector looks at it too; take.json then names the other evidence as its own."""
+    plain: bool = False
+    """Whether no garment is a marker; `detected` it is held against keypoints and contours then."""
     shadow_per_height: tuple[float, float, float] = SHADOW_CLOSE_BY
     """Offset of a point's shadow on the floor, per meter of height."""
 

@@ -16,6 +16,7 @@ CLOTHES: dict[str, Color] = {
     "hair": (58, 42, 34),
     "shoe": (206, 206, 202),
     "eye": (40, 30, 28),
+    "sleeve": (52, 53, 58),
 }
 """Painted colors (sRGB), before light and camera."""
 MARKERS = tuple(CLOTHES)[:5]

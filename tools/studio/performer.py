@@ -186,8 +186,11 @@ def _dress(name: str, body: Body, local: Array) -> NDArray[np.str_]:
         worn[(height > 1.02 * lengths["trunk"]) & (from_neck < NECKLINE_M)] = "skin"
     elif kind == "girdle":
         worn[:] = "trunk"
+    elif kind == "shoulder":
+        worn[:] = "sleeve"
     elif kind == "forearm":
         share = np.abs(local[:, 0]) / lengths[name]
+        worn[:] = "sleeve"
         worn[(share > 0.07) & (share < 0.94)] = name
         worn[share >= 0.94] = "skin"
     elif kind == "shin":

@@ -5,7 +5,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from ....core.errors import ConversionError, InputError
+from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
@@ -13,6 +13,7 @@ from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
+from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..console import arguments_console
@@ -20,13 +21,9 @@ from ..conversion.blender_files import BLEND
 from ..conversion.character_result import CHARACTER_BLEND
 from ..conversion.convert_take import REPORT, convert_take
 from ..require_blender import require_blender
-from ..version import ROOT
 from .convert import conversion_summary
 from .demo_character import write_demo_character
 
-DEMO = ROOT / "presets" / "demo" / "aerobic"
-KEYFRAMES = DEMO / "keyframes_noisy.json"
-"""Keyframes with the errors that a person makes when posing."""
 MARKED = (MARKERS, CONTOURS)
 """Evidence of the paper's example."""
 UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
@@ -38,10 +35,7 @@ COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image":
 
 def demo_command(arguments: argparse.Namespace) -> None:
     """Convert the demonstration take, once more without its markers, and print the error of each method."""
-    if not DEMO.is_dir():
-        raise InputError(
-            f"{DEMO}: the demonstration take is missing from this installation; install Keymark anew"
-        )
+    demo = example_folder(AEROBIC)
     require_blender("the demonstration needs")
     with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
         console.say(
@@ -50,19 +44,19 @@ def demo_command(arguments: argparse.Namespace) -> None:
         console.say("Step 1 of 4: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
         character, missing = _character(Path(folder))
-        settings = ConversionSettings(KEYFRAMES, evidence=MARKED, character=character)
+        settings = ConversionSettings(demo / POSED_BY_HAND, evidence=MARKED, character=character)
         console.say(
             "Step 2 of 4: the take is converted, by its markers and contours, and put on the character."
         )
-        done = convert_take(describe(DEMO), arguments.output, console, settings, arguments.debug)
+        done = convert_take(describe(demo), arguments.output, console, settings, arguments.debug)
         console.say("Step 3 of 4: the same by the paper's filter, to compare.")
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
         console.say("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
         output: Path = arguments.output
-        unmarked_settings = ConversionSettings(KEYFRAMES, evidence=UNMARKED)
+        unmarked_settings = ConversionSettings(demo / POSED_BY_HAND, evidence=UNMARKED)
         unmarked = convert_take(
-            describe(DEMO), output / UNMARKED_FOLDER, console, unmarked_settings, arguments.debug
+            describe(demo), output / UNMARKED_FOLDER, console, unmarked_settings, arguments.debug
         )
         scores = {
             "interpolation": _score(done.take, done.reconstruction.interpolation),
@@ -97,7 +91,7 @@ def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
 
 
 def _score(take: Take, motion: Motion) -> Score:
-    truth = read_truth(DEMO / "truth.json", motion.frame_start, len(motion.time_s))
+    truth = read_truth(take.folder / "truth.json", motion.frame_start, len(motion.time_s))
     known = motion.method != "interpolation"
     sigma = motion.sigma_m if known else None
     return score_points(motion.points, truth, motion.keyframe_indices, take.camera, sigma)

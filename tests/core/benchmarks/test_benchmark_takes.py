@@ -33,3 +33,9 @@ def test_folders_named_in_the_environment_are_found(
     assert {name for name in found if name not in before} == {"hop", "skip"}
     assert found["skip"] == tmp_path / "second" / "skip"
     assert "demo/aerobic" in found
+
+
+def test_takes_without_markers_come_on_request(takes: ModuleType) -> None:
+    """Not every method can use them."""
+    assert "demo/greeting" not in takes.take_names()
+    assert {"demo/greeting", "demo/aerobic"} <= set(takes.take_names(plain=True))

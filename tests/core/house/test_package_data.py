@@ -5,6 +5,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from keymark.core.take.examples import AEROBIC, GREETING
 
 
 @pytest.fixture
@@ -18,6 +19,7 @@ def package_data(repository: Path) -> set[Path]:
     relative = {path.relative_to(repository) for path in files}
     assert any(path.match("presets/keyframes/*.json") for path in relative)
     assert Path("detectors/mediapipe_pose.py") in relative
+    assert {Path(f"presets/demo/{name}/clip.mp4") for name in (AEROBIC, GREETING)} <= relative
     assert {Path("core/report/summary/style.css"), Path("core/report/summary/script.js")} <= relative
     return relative
 

@@ -1,4 +1,4 @@
-"""The demonstration take: valid, small, and telling the truth about its own footage."""
+"""The examples that come along: valid, small, and telling the truth about their own footage."""
 
 import json
 from pathlib import Path
@@ -11,10 +11,13 @@ from keymark.core.body.human import HUMAN
 from keymark.core.footage.camera import Camera
 from keymark.core.review.score import read_truth
 from keymark.core.take.clip_check import open_clip
+from keymark.core.take.evidence import evidence_of
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 
-LARGEST_FOLDER_BYTES = 500_000
+LARGEST_FOLDER_BYTES = {"aerobic": 500_000, "greeting": 400_000}
+each_example = pytest.mark.parametrize("folder", LARGEST_FOLDER_BYTES, indirect=True)
+"""Runs a test with the demonstration and with the example in plain clothes; others see the first alone."""
 MARKER_ENDS = {
     "trunk": (("hip.L", "hip.R"), ("shoulder.L", "shoulder.R")),
     "forearm.L": (("elbow.L",), ("wrist.L",)),
@@ -27,9 +30,9 @@ WHOLE_SHARE = 0.85
 
 
 @pytest.fixture(scope="module")
-def folder(repository: Path) -> Path:
+def folder(repository: Path, request: pytest.FixtureRequest) -> Path:
     """The take's folder."""
-    return repository / "presets" / "demo" / "aerobic"
+    return repository / "presets" / "demo" / getattr(request, "param", "aerobic")
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +61,28 @@ def _posed_points(take: Take) -> Array:
     return np.stack([take.body.points(take.body.pose(keyframe.posture)) for keyframe in take.keyframes])
 
 
+@each_example
 def test_the_folder_is_small(folder: Path) -> None:
-    """All files together stay under half a megabyte, since every clone and package carries them."""
-    assert sum(file.stat().st_size for file in folder.iterdir()) < LARGEST_FOLDER_BYTES
+    """Every clone and package carries all its files."""
+    assert sum(file.stat().st_size for file in folder.iterdir()) < LARGEST_FOLDER_BYTES[folder.name]
+
+
+@each_example
+def test_the_folder_says_what_is_allowed(folder: Path) -> None:
+    """Its footage is as free as the program."""
+    assert "GPL-3.0-or-later" in (folder / "LICENSE.txt").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("folder", ["greeting"], indirect=True)
+def test_in_plain_clothes_there_are_keypoints_and_contours(folder: Path) -> None:
+    """The clip is as long as the take says, nobody wears a marker, and the detector saw the performer."""
+    take = read_take(folder, whole=True)
+    clip = open_clip(take)
+    assert (clip.frame_count, clip.size, clip.fps) == (132, (320, 240), 30.0)
+    assert evidence_of(take) == ("keypoints", "depth_hints", "contours")
+    (people,) = take.keypoints
+    assert np.mean([len(frame.pixel) == 1 for frame in people.frames]) > 0.95
+    assert len(take.keyframes) == 10
 
 
 def test_the_clip_is_what_the_take_says(take: Take) -> None:
@@ -121,6 +143,7 @@ def test_the_footage_shows_each_color_where_it_is_said_to_be(folder: Path, take:
         assert np.mean(near) > 0.9, style.name
 
 
+@each_example
 def test_planted_feet_stand_still(truth: Array) -> None:
     """Both ankles stand exactly still at ankle height for a good part of the clip, and never go below it."""
     for name in ("ankle.L", "ankle.R"):
@@ -136,12 +159,14 @@ def test_nothing_moves_faster_than_people_do(take: Take, truth: Array) -> None:
     assert np.linalg.norm(np.diff(truth, 2, axis=0), axis=-1).max() * take.fps**2 < 60.0
 
 
+@each_example
 def test_exact_keyframes_are_the_truth(take: Take, truth: Array) -> None:
     """The postures of keyframes.json put all points where truth.json has them, to 0.01 mm."""
     indices = [keyframe.index for keyframe in take.keyframes]
     assert np.abs(_posed_points(take) - truth[indices]).max() < 1e-5
 
 
+@each_example
 def test_hand_posed_keyframes_err_as_people_do(folder: Path, take: Take, truth: Array) -> None:
     """keyframes_noisy.json is 25 mm RMS off, more in depth than across, in the same frames, lengths kept."""
     by_hand = read_take(folder, folder / "keyframes_noisy.json")

@@ -1,10 +1,9 @@
 """The session's last step: the motion given to a character."""
 
-import addon_utils
 import bpy
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from driver import JOB_PATIENCE_S, Steps, expect, turns, until
-from person import Person
+from person import Person, keymark
 from steps_reconstruct import cancelled, job
 
 RETARGET = "keymark.retarget"
@@ -23,7 +22,9 @@ def character(person: Person) -> Steps[None]:
     clicks = person.hands.clicks - before
     added = person.take.characters[0]
     yield from person.hands.scroll("VIEW_3D", "WHEELDOWNMOUSE", 12)
-    expect(added.armature.name == "rig" and not added.problem, f"the rig was not recognized: {added.problem}")
+    expect(
+        added.armature.name == "Human" and not added.problem, f"the rig was not recognized: {added.problem}"
+    )
     yield from person.look("character")
     yield from person.changes_nothing("cancelling the retargeting", lambda: cancelled(person, RETARGET))
     before = person.hands.clicks
@@ -115,7 +116,7 @@ def _another(person: Person) -> Steps[None]:
     yield from turns(3)
     yield from person.undoable("adding another", lambda: _choose(person))
     names = [each.armature.name for each in person.take.characters]
-    expect(len(names) == 2 and names[1] in ("rig.001", "rig.002"), f"the characters are {names}")
+    expect(len(names) == 2 and names[1] in ("Human.001", "Human.002"), f"the characters are {names}")
     yield from person.look("characters")
     yield from person.undoable("removing one", lambda: person.hands.invoke("keymark.remove_character"))
     expect(names[1] in bpy.data.objects, "the armature is gone")
@@ -132,14 +133,12 @@ def _choose(person: Person) -> Steps[None]:
 
 def _basic_human(person: Person) -> Steps[None]:
     """Rigify's basic human, generated beside the performer, selected."""
-    addon_utils.enable("rigify", default_set=True)
+    rigify_human = keymark("operators.bridge.character.rigify_human")
+    rigify_human.enable_rigify()
     window, area = person.hands.window, person.hands.area("VIEW_3D")
     with bpy.context.temp_override(window=window, area=area, region=person.hands.region("VIEW_3D", "WINDOW")):
         if bpy.context.view_layer.objects.active is not None:
             bpy.ops.object.mode_set(mode="OBJECT")
-        bpy.ops.object.armature_basic_human_metarig_add()
-        metarig = bpy.context.view_layer.objects.active
-        bpy.ops.pose.rigify_generate()
-    bpy.data.objects.remove(metarig)
+        rigify_human.add_rigify_human()
     person.step_done("Generate the character")
     yield from turns(5)

@@ -1,5 +1,6 @@
 """The session's first three steps: footage, markers, actor."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -121,14 +122,20 @@ def actor(person: Person) -> Steps[None]:
 
 def browse(person: Person, command: str, file: Path, key: str) -> Steps[None]:
     """Open the file browser by its button, go to a file, and press a key there."""
+    yield from choose_file(person, lambda: person.hands.click_button(command), file, key)
+
+
+def choose_file(person: Person, ask: Callable[[], Steps[None]], file: Path, key: str) -> Steps[None]:
+    """Do what opens the file browser, go to a file, or a folder, and press a key there."""
     bpy.context.preferences.view.filebrowser_display_type = "SCREEN"
-    yield from person.hands.click_button(command)
+    yield from ask()
     kinds = {"FILE_BROWSER"}
     yield from until(lambda: kinds & {a.type for a in person.hands.window.screen.areas}, "the file browser")
     browser = person.hands.area("FILE_BROWSER").spaces.active
     yield from until(lambda: browser.params is not None, "the file browser's folder")
-    browser.params.directory = str(file.parent).encode()
-    browser.params.filename = file.name
+    browser.params.directory = str(file if file.is_dir() else file.parent).encode()
+    if not file.is_dir():
+        browser.params.filename = file.name
     yield from turns(5)
     yield from person.hands.move_over("FILE_BROWSER")
     if key == "RET":

@@ -26,6 +26,12 @@ STEPS = (
 PLAIN_STEPS = ("keypoints", "clicking", "clicked", "tracks", "fitted_pose", "reconstructed", "review")
 CHOOSING_STEPS = ("matched", "posed_all", "from_the_side")
 HURRIED_STEPS = ("posed_all", "decided", "corrected", "unposed")
+FIRST_STEPS = (
+    *("start", "panel", "examples", "example", "reconstructed", "played", "review"),
+    *("enable_rigify", "character", "retargeted", "taken_back", "plain_clothes"),
+)
+FIRST_CLICKS, FIRST_KEYS = 6, 6
+"""Tab, example (button and entry), Reconstruct, Add Rigify Human, Retarget; N, Space four times, Enter."""
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
 SHELF_STEPS = ("libraries", "assets")
@@ -58,6 +64,16 @@ def run_script(blender: Blender, name: str, *words: Path | str) -> None:
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     assert "Traceback" not in done.stdout + done.stderr, done.stdout[-4000:] + done.stderr[-4000:]
     assert "The script went through" in done.stdout
+
+
+def test_the_first_minutes(blender_on_screen: Blender, repository: Path) -> None:
+    """From Blender as it starts to an example on a Rigify character, in few clicks, and all of it undone."""
+    folder = repository / "build" / "screenshots" / "first"
+    run_script(blender_on_screen, "first_session.py", folder)
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in FIRST_STEPS if f"_{step}" not in pictures] == []
+    clicks, _, _, keys = (folder / "summary.txt").read_text(encoding="utf-8").split()[:4]
+    assert int(clicks) <= FIRST_CLICKS and int(keys) <= FIRST_KEYS
 
 
 @pytest.mark.parametrize("name", TAKES)
