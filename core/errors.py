@@ -4,6 +4,11 @@
 class KeymarkError(Exception):
     """Base of every error Keymark raises on purpose; its text is one sentence for a person."""
 
+    def __init__(self, sentence: str) -> None:
+        super().__init__(sentence)
+        self.sentence = sentence
+        """As it was given: one of `text.Sentence` can be translated."""
+
 
 class InputError(KeymarkError):
     """The input cannot be used: the sentence names file, field, value and what would be valid."""

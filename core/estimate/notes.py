@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
+from ..take.clip_notes import VARIABLE_RATE
 from ..take.take import Take
 from ..text import Sentence
 from .keyframe_evidence import KeyframeEvidence
@@ -21,9 +22,6 @@ DOUBTED_TURN = 0.1
 """Probability of another turn than the one taken that gets a note."""
 MOST_NAMED = 3
 """Largest number of frames that a note names."""
-VARIABLE_RATE = Sentence(
-    "the clip has a variable frame rate: keys lie at the true times, between whole frames"
-)
 
 
 def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from ..matching.library_match import LibraryMatch, PreparedLibrary, match_librar
 from ..matching.match_input import MatchInput, match_input
 from ..progress import Job, Progress, stretch, within
 from ..take.take import Take
+from ..text import Sentence
 from .found_poses import FoundPoses
 from .second_reading import is_better, read_again
 
@@ -68,7 +69,9 @@ def _found(
     """The match of a library that is prepared."""
     job = match_library(given, prepared, floor_m)
     match: LibraryMatch = yield from within(f"Matching {prepared.library.title}", job, begun, done)
-    reason = f"{match.library.title} explains {match.fit:.0%} of the footage"
+    reason = Sentence(
+        "{library} explains {fit:.0%} of the footage", library=match.library.title, fit=match.fit
+    )
     return FoundPoses(
         match.frames, match.postures, match.fit, match.floor_m, reason, library=match.library.identifier
     )

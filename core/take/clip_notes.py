@@ -12,6 +12,9 @@ NOTICEABLE_RATE = 0.02
 """Difference of two frame rates that is worth a note, as a share of the take's."""
 LONGEST_INTERVAL = 2.5
 """Time between two frames, as a multiple of the median, from which on frames seem to be missing."""
+VARIABLE_RATE = Sentence(
+    "the clip has a variable frame rate: keys lie at the true times, between whole frames"
+)
 
 
 def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:

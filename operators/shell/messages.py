@@ -8,6 +8,8 @@ from typing import Any
 
 import bpy
 
+from ...core.text import Sentence
+
 
 def say(operator: bpy.types.Operator, kind: str, template: str, **values: Any) -> None:
     """Report a sentence in the status bar.
@@ -25,6 +27,26 @@ def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup
     """Warn that a take's final Action, which is about to be used, was baked from an earlier motion."""
     if take.finish.action is not None and take.finish.outdated:
         say(operator, "WARNING", "The final Action is of an earlier motion; bake it again for the newest")
+
+
+def told(sentence: str) -> str:
+    """Return a sentence of core's, translated, with a capital letter unless it begins with a name.
+
+    What is no `Sentence`, as an error that tells of a file or a note that was stored, stays in English.
+    """
+    begins = sentence.template if isinstance(sentence, Sentence) else sentence
+    text = _translated(sentence)
+    return text[:1].upper() + text[1:] if begins.partition(" ")[0].isalpha() else text
+
+
+def _translated(sentence: str) -> str:
+    if not isinstance(sentence, Sentence):
+        return str(bpy.app.translations.pgettext_rpt(sentence))  # plain literals are their own templates
+    parts = {
+        name: _translated(value) if isinstance(value, Sentence) else value
+        for name, value in sentence.values.items()
+    }
+    return str(bpy.app.translations.pgettext_rpt(sentence.template)).format(**parts)
 
 
 def label(template: str, **values: Any) -> str:

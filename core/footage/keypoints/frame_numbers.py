@@ -19,7 +19,7 @@ class Alignment:
     """Number of the clip's first frame in the result."""
     frame_count: int
     """Frames of the clip."""
-    notes: tuple[str, ...] = ()
+    notes: tuple[Sentence, ...] = ()
     """Sentences on what was taken for granted."""
 
 
@@ -82,7 +82,7 @@ def align_numbered(
     if length == frame_count:
         return Alignment(lowest, frame_count, _hole_notes(numbers, lowest, frame_count, where, complete))
     fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Sentence, ...] = ()
     if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
         notes = (
             Sentence(
@@ -129,7 +129,7 @@ def _without_clip(lowest: int, highest: int, bases: list[int], where: str) -> Al
 
 def _hole_notes(
     numbers: Collection[int], first: int, frame_count: int, where: str, complete: bool
-) -> tuple[str, ...]:
+) -> tuple[Sentence, ...]:
     missing = frame_count - sum(0 <= number - first < frame_count for number in set(numbers))
     if not complete or not missing:
         return ()

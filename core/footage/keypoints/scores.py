@@ -9,7 +9,7 @@ HIGH_SHARE = 0.95
 """Share of all scores that lie below the one that counts as certain: a few outliers set no scale."""
 
 
-def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
+def confidences(scores: Array, where: str) -> tuple[Array, tuple[Sentence, ...]]:
     """Scores as confidences, and a sentence where they had to be changed.
 
     Probabilities stay as they are; a negative one among them stands for nothing found. Negative scores beside

@@ -15,6 +15,7 @@ from ....core.files.json_file import shown
 from ....core.files.paths import real_path
 from ....core.files.regular_file import regular_file_size
 from ....core.take.character_settings import CharacterFile
+from ....core.text import Sentence
 from ..blend_reader import check_blend
 from ..blend_writer import one_line
 from ..own_scene import showing_scene
@@ -174,7 +175,10 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
     for track in playing:
         track.mute = True
     names = listed((shown(track.name) for track in playing), MOST_NAMED)
-    return (f"NLA tracks of '{armature.name}' are muted in the copy: {names}",) if playing else ()
+    said = Sentence(
+        "NLA tracks of '{armature}' are muted in the copy: {tracks}", armature=armature.name, tracks=names
+    )
+    return (said,) if playing else ()
 
 
 def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:

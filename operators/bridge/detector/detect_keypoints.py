@@ -18,6 +18,7 @@ from ....core.footage.keypoints.keypoint_file import read_keypoints
 from ....core.footage.keypoints.people import People
 from ....core.progress import Job, Progress
 from ....core.take.clip_check import LONGEST_FRAMES, open_footage
+from ....core.text import Sentence
 from .detector_command import FOLDER
 from .detector_output import OUTPUT_NAME, find_output, folder_excess
 from .detector_process import DetectorProcess
@@ -166,7 +167,6 @@ def _read(path: Path, clip: Clip, count: int, frame_start: int, name: str) -> Pe
         people,
         source=name if people.source == path.name else people.source,
         file="",
-        notes=tuple(note.replace(str(path), path.name) for note in people.notes),
     )
 
 
@@ -195,8 +195,12 @@ class _Beside:
         if not new:
             return ()
         return (
-            f"{self._clip.with_name(new[0])} appeared while the detector {detector} ran; its command should "
-            "hand it {output} or {output_folder} for all that it writes",
+            Sentence(
+                "{file} appeared while the detector {detector} ran; its command should hand it {{output}} "
+                "or {{output_folder}} for all that it writes",
+                file=self._clip.with_name(new[0]),
+                detector=detector,
+            ),
         )
 
     def _listed(self) -> set[str]:
