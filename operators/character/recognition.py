@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.roles import ROLES
 from ..library import user_folder
-from ..shell.messages import told
+from ..shell.messages import translated
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 from .results import drop_results_of_others
@@ -27,7 +27,7 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     if not may_be_character(armature_object):
         raise InputError(_not_a_character(armature_object))
     found = recognize(read_character(armature_object))
-    by_role = {_role_of(sentence): told(sentence) for sentence in found.doubts}
+    by_role = {_role_of(sentence): translated(sentence) for sentence in found.doubts}
     show_map(character.character_map, found.character_map, by_role)
     show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
     character.problem = ""
@@ -38,7 +38,7 @@ def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()
     character.doubts.clear()
     for sentence in doubts:
         line = character.doubts.add()
-        line.text, line.level = told(sentence), "ERROR"
+        line.text, line.level = translated(sentence), "ERROR"
 
 
 def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
@@ -73,7 +73,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
             recognize_bones(character)
             suggest_map(character)
         except KeymarkError as error:
-            character.problem = told(error.sentence)
+            character.problem = translated(error.sentence)
 
 
 def suggest_map(character: bpy.types.PropertyGroup) -> None:

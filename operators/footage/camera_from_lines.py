@@ -10,7 +10,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import FootageView, view_of_footage_under
-from ..shell.messages import label, say, told
+from ..shell.messages import label, say, warn
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take
@@ -139,7 +139,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             try:
                 drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
             except KeymarkError as error:
-                self.report({"WARNING"}, told(error.sentence))
+                warn(self, error.sentence)
         wanted = (
             PERFORMER_REQUEST if drawing.of_performer and drawing.kind == HEIGHT else REQUESTS[drawing.kind]
         )

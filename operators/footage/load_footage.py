@@ -2,9 +2,10 @@
 
 import bpy
 
+from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import label, say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
@@ -91,13 +92,12 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         if not occluding:
             give_notices(take, "footage", "view")
             return
-        sentence = label(
-            "In front of the footage: {names}; to see the performer, select what hides them and "
-            "press H (Alt H brings it back)",
+        sentence = Sentence(
+            "In front of the footage: {names}; to see the performer, select what hides them and press H "
+            "(Alt H brings it back)",
             names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
         )
-        give_notices(take, "footage", "view", (sentence,), occluding)
-        self.report({"WARNING"}, sentence)
+        give_notices(take, "footage", "view", (warn(self, sentence),), occluding)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

@@ -3,9 +3,10 @@
 import bpy
 
 from ...core.errors import InputError
+from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import chosen_file
-from ..shell.messages import label, say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -61,7 +62,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             give_notices(take, "footage", "clip")
             say(self, "INFO", "Found {name}", name=clip.name)
             return
-        sentence = label(
+        sentence = Sentence(
             "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
             "{old_width} x {old_height}; is it the right one?",
             file=path.name,
@@ -72,8 +73,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             old_width=size[0],
             old_height=size[1],
         )
-        give_notices(take, "footage", "clip", (sentence,))
-        self.report({"WARNING"}, sentence)
+        give_notices(take, "footage", "clip", (warn(self, sentence),))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_relocate_clip,))

@@ -9,7 +9,7 @@ from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
 from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, told
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
@@ -85,10 +85,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         for frame in result.frames:
             take.proposals.add().frame = frame
         say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
-        notes = [told(result.note)] if result.note else []
+        notes = [warn(self, result.note)] if result.note else []
         give_notices(take, "keyframes", "proposals", notes)
-        for note in notes:
-            self.report({"WARNING"}, note)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

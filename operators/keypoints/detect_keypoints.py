@@ -9,7 +9,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, told
+from ..shell.messages import say, warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -72,7 +72,7 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         clear_readings()
         redraw_footage(bpy.context)
         for note in found.notes:
-            self.report({"WARNING"}, told(note))
+            warn(self, note)
         say(
             self,
             "INFO",

@@ -11,7 +11,7 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import anything_to_follow
 from ..matching.matches import known_matches
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, told
+from ..shell.messages import say, warn
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
 from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
@@ -80,9 +80,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
-            sentence = told(note)
-            take.notes.add().text = sentence
-            self.report({"WARNING"}, sentence)
+            take.notes.add().text = warn(self, note)
         say(
             self,
             "INFO",

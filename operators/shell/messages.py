@@ -29,7 +29,14 @@ def warn_if_outdated(operator: bpy.types.Operator, take: bpy.types.PropertyGroup
         say(operator, "WARNING", "The final Action is of an earlier motion; bake it again for the newest")
 
 
-def told(sentence: str) -> str:
+def warn(operator: bpy.types.Operator, sentence: str) -> str:
+    """Report a sentence of core's, or a notice, as a warning; return it as it was shown."""
+    text = translated(sentence)
+    operator.report({"WARNING"}, text)
+    return text
+
+
+def translated(sentence: str) -> str:
     """Return a sentence of core's, translated, with a capital letter unless it begins with a name.
 
     What is no `Sentence`, as an error that tells of a file or a note that was stored, stays in English.

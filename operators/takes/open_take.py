@@ -5,7 +5,7 @@ import bpy
 from ..footage.take_footage import VIDEOS, look_through_camera, show_range
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_path
-from ..shell.messages import say, told
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import idle, object_mode_possible
 from ..shell.takes import active_take
@@ -50,10 +50,8 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
         add_take_to_scene(context, opened)
         look_through_camera(context, active_take(context.scene))
         show_range(context)
-        notes = [told(note) for note in opened.notes]
+        notes = [warn(self, note) for note in opened.notes]
         give_notices(active_take(context.scene), "footage", "files", notes)
-        for note in notes:
-            self.report({"WARNING"}, note)
         count = len(opened.take.keyframes)
         say(self, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
 

@@ -153,7 +153,9 @@ def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, flo
     return detected.fps, fps
 
 
-def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[Sentence, ...]]:
+def _scale(
+    detected: DetectedFrames, place: Array, size: tuple[int, int]
+) -> tuple[Array, tuple[Sentence, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
     known = place[np.isfinite(place)]
     if detected.shares and (not len(known) or np.median(np.abs(known)) <= LARGEST_SHARE):
