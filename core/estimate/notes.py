@@ -51,8 +51,8 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
         notes.append(
             Sentence(
-                "the lens is {lens:.1f} mm by keyframes and footage, not {stated:.1f} mm as stated; the "
-                "estimate used the former",
+                "the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that instead of "
+                "{stated:.1f} mm as stated; check the camera",
                 lens=lens,
                 stated=stated,
             )
@@ -131,7 +131,7 @@ def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
         return ()
     return (
         Sentence(
-            "left out {count} of {found} found keyframes: interpolation between the posed ones is more "
+            "{count} of {found} found keyframes were left out: interpolation between the posed ones is more "
             "accurate there",
             count=count,
             found=found,

@@ -21,7 +21,7 @@ def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:
         kind = "marker" if name in markers else "keypoint"
         notes.append(
             Sentence(
-                "frame {frames}: no plausible posture explains {kind} {name}",
+                "frame {frames}: no plausible pose explains {kind} {name}",
                 frames=listed([str(frame) for frame in frames[name]], MOST_NAMED),
                 kind=kind,
                 name=name,

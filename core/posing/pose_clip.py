@@ -133,7 +133,7 @@ class _Search:
             postures,
             fit,
             composed.floor_m,
-            Sentence("the postures explain {fit:.0%} of the footage", fit=fit),
+            Sentence("the found poses explain {fit:.0%} of the footage", fit=fit),
             _contradictions(take, work, sampled, off),
             between=self.between,
         )

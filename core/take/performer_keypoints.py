@@ -204,9 +204,7 @@ def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, han
     voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     if voices:
         return f"the performer is the one that {' and '.join(voices)} show"
-    return (
-        "the performer is taken to be the largest who is there longest; click a point of another to change it"
-    )
+    return "the performer is taken to be the largest who is there longest; click on another to change it"
 
 
 def _elsewhere(source: str) -> Sentence:

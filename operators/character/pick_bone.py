@@ -72,7 +72,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
         """Give the bone to the role; wait on where there is none."""
         if bone is None:
-            say(self, "WARNING", "There is no bone of the character; click on one")
+            say(self, "WARNING", "That is no bone of the character; click on one")
             return {"RUNNING_MODAL"}
         self.bone = bone
         self.cancel(context)

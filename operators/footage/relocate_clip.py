@@ -64,7 +64,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             return
         sentence = Sentence(
             "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
-            "{old_width} x {old_height}; is it the right one?",
+            "{old_width} x {old_height}; check that it is the right one",
             file=path.name,
             count=clip.frame_duration,
             width=found.size[0],

@@ -48,7 +48,7 @@ class KEYMARK_OT_match_library(FindOperator, bpy.types.Operator):
         found = yield from stretch(job, READ, 1.0)
         if found.fit < WELL:
             reason = Sentence(
-                "{library} explains {fit:.0%} of the footage; it probably shows something else",
+                "{library} explains {fit:.0%} of the footage; the footage probably shows something else",
                 library=library.title,
                 fit=found.fit,
             )

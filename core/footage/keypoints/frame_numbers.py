@@ -110,7 +110,8 @@ def align_numbered(
     if len(touching or fitting) > 1 and missing:
         notes += (
             Sentence(
-                "{file}: its frames were taken to count from {first}; no frame tells for certain",
+                "{file}: its frames were taken to count from {first}; no frame tells for certain, so check "
+                "that they lie on the performer",
                 file=where,
                 first=first,
             ),

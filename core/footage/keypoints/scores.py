@@ -30,7 +30,7 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[Sentence, ...]]
         return np.maximum(scores, 0.0), ()
     if low < 0.0:
         note = Sentence(
-            "{file}: its scores, {low:.3g} to {high:.3g}, were taken for logits",
+            "{file}: its scores, {low:.3g} to {high:.3g}, were taken for logits and made confidences",
             file=where,
             low=low,
             high=high,

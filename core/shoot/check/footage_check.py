@@ -165,8 +165,8 @@ def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findi
         return nearby
     findings.warn(
         Sentence(
-            "seen far from where keyframes and camera put it: {markers}; check that the keyframes are this "
-            "clip's, where the camera stands, and which marker is on which side",
+            "markers are seen far from where keyframes and camera put them: {markers}; check that the "
+            "keyframes are this clip's, where the camera stands, and which marker is on which side",
             markers=", ".join(astray),
         )
     )

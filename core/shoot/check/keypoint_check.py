@@ -127,7 +127,7 @@ def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Find
                 file=name,
                 distance=plain,
                 height=height_px,
-                reason=best if explained else "are they of this clip and this person?",
+                reason=best if explained else "check that they are of this clip and this person",
             )
         )
     return plain

@@ -21,7 +21,9 @@ def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     for check, size, rate in zip(checks, _outliers(sizes), _outliers(rates), strict=True):
         more = [
             Sentence(
-                "it has {own}, nearly all others have {usual}: is it this camera's?", own=own, usual=usual
+                "the clip has {own}, nearly all others have {usual}; check that it is this camera's",
+                own=own,
+                usual=usual,
             )
             for own, usual in filter(None, (size, rate))
         ]

@@ -27,8 +27,8 @@ from .keypoint_check import KeypointReadout, check_keypoints
 from .unfilled_fields import find_unfilled_fields
 
 CONTOURS_ALONE = Sentence(
-    "held against contours alone, which tell least of all evidence; keypoints of a detector, as of keymark "
-    "detect, or garments in strong colors tell more"
+    "the motion is held against contours alone, which tell least of all evidence; keypoints of a detector, "
+    "as of keymark detect, or garments in strong colors tell more"
 )
 
 

@@ -210,7 +210,7 @@ def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, c
     other = write_clip(tmp_path / "other.mp4", 9, 24.0)
     bpy.ops.keymark.relocate_clip(filepath=str(other))
     assert active_take(bpy.context.scene).clip.frame_duration == 9
-    assert "is it the right one?" in capsys.readouterr().out
+    assert "check that it is the right one" in capsys.readouterr().out
 
 
 def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:

@@ -129,7 +129,7 @@ def test_nothing_says_it(take: Take) -> None:
         bool((found.pixel[index] == people.frames[index].pixel[row]).all()) for index, row in enumerate(truth)
     ]
     assert all(same) or not any(same)
-    assert "click a point of another" in found.notes[0]
+    assert "click on another" in found.notes[0]
 
 
 def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
