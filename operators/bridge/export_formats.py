@@ -60,7 +60,9 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
-            raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
+            raise ConversionError(
+                "{path}: Blender's BVH exporter failed ({reason})", path=path, reason=str(error).strip()
+            ) from error
 
 
 def _write_fbx(_: bpy.types.Object, path: Path) -> None:

@@ -133,11 +133,16 @@ def frame_in_footage(
     if abs(float(frames[index]) - current) > NEAREST + 1e-6:
         if frames[0] < current < frames[-1]:
             raise InputError(
-                f"the footage, whose rate varies, has no frame of its own at {current:g}; "
-                f"go to frame {round(float(frames[index]))}"
+                "the footage, whose rate varies, has no frame of its own at {current:g}; go to frame "
+                "{frames}",
+                current=current,
+                frames=round(float(frames[index])),
             )
         raise InputError(
-            f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
+            "frame {current:g} lies outside the footage, whose frames are {first:g} to {last:g}",
+            current=current,
+            first=frames[0],
+            last=frames[-1],
         )
     return FrameInFootage(footage, evidence, reading, frames, index)
 

@@ -55,7 +55,9 @@ def _override_object(context: bpy.types.Context, original: bpy.types.Object) -> 
         return original
     made = original.override_hierarchy_create(context.scene, context.view_layer, do_fully_editable=True)
     if made is None or made.type != "ARMATURE":
-        raise InputError(f"Blender makes no library override of '{original.name}'; append it instead")
+        raise InputError(
+            "Blender makes no library override of '{original}'; append it instead", original=original.name
+        )
     return made
 
 
@@ -75,8 +77,10 @@ def _override_instance(
     found = next((each for each in overrides if each.override_library.reference == original), None)
     if made is None or found is None:
         raise InputError(
-            f"Blender makes no library override of collection '{collection.name}', which holds "
-            f"'{original.name}'; append it instead"
+            "Blender makes no library override of collection '{collection}', which holds '{original}'; "
+            "append it instead",
+            collection=collection.name,
+            original=original.name,
         )
     return found
 

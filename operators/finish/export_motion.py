@@ -63,7 +63,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         chosen = FORMATS[self.format]
         missing = chosen.missing()
         if missing:
-            raise InputError(f"{chosen.name} cannot be written: {missing}")
+            raise InputError("{chosen} cannot be written: {missing}", chosen=chosen.name, missing=missing)
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
         frames = motion_frames(take.armature, action, read_body(take.armature, HUMAN))

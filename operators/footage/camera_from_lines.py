@@ -181,7 +181,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         lines = read_lines(take)
         if not lines:
-            raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
+            raise InputError("take '{take}' has no lines to find its camera by; draw some", take=take.name)
         fit = fit_take(take, evidence_of(lines, take.stature))
         write_fit(take, fit)
         say(self, "INFO", "{values}", values=values(fit))

@@ -46,8 +46,9 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
         if clip.library is not None:
             raise InputError(
-                f"clip '{clip.name}' is linked from {clip.library.filepath}; "
-                "find it in that file, or load it here"
+                "clip '{clip}' is linked from {library}; find it in that file, or load it here",
+                clip=clip.name,
+                library=clip.library.filepath,
             )
         found = Clip.open(path)
         size, count = (clip.size[0], clip.size[1]), clip.frame_duration

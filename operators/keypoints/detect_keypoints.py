@@ -93,7 +93,9 @@ def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
 
     wanted = sidecar_file(clip, KEYPOINT_FILE)
     if not access(wanted.parent, W_OK | X_OK):
-        raise InputError(f"{wanted.parent}: cannot be written; the keypoints belong beside the clip")
+        raise InputError(
+            "{parent}: cannot be written; the keypoints belong beside the clip", parent=wanted.parent
+        )
     known = {keypoint_path(entry) for entry in take.follow.files}
     names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, MOST_TRIED))]
     return next((name for name in names if name in known or not name.exists()), wanted)

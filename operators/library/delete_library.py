@@ -42,7 +42,9 @@ class KEYMARK_OT_discard_library(BaseOperator, bpy.types.Operator):
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
-            raise ConversionError(f"{path}: cannot be deleted ({error.strerror or error})") from error
+            raise ConversionError(
+                "{path}: cannot be deleted ({strerror})", path=path, strerror=error.strerror or error
+            ) from error
         refresh()
         say(self, "INFO", "Deleted '{title}'", title=title)
 

@@ -94,5 +94,9 @@ def _own_file(folder: Path, identifier: str) -> Path:
     damaged = next((each for each in there if each.path == found and each.library is None), None)
     if other is not None or damaged is not None:
         holds = f"the library '{other.title}'" if other is not None else "something that is no library"
-        raise InputError(f"{found}: holds {holds}, which would be lost; give that file another name first")
+        raise InputError(
+            "{found}: holds {holds}, which would be lost; give that file another name first",
+            found=found,
+            holds=holds,
+        )
     return found

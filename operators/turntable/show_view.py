@@ -39,8 +39,10 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
         camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
         if camera is None or camera.name not in context.view_layer.objects:
             raise InputError(
-                f"take '{take.name}' has no camera for the view {self.view.title()}; "
-                "set up the turntable, or choose the footage's camera"
+                "take '{take}' has no camera for the view {view}; set up the turntable, or choose the "
+                "footage's camera",
+                take=take.name,
+                view=self.view.title(),
             )
         own = context.space_data
         in_viewport = isinstance(own, bpy.types.SpaceView3D)

@@ -75,8 +75,9 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
-            f"{file.path}: is open in this Blender, which appends nothing from it; name a copy of it, or run "
-            "the command without opening it"
+            "{file}: is open in this Blender, which appends nothing from it; name a copy of it, or run "
+            "the command without opening it",
+            file=file.path,
         )
     try:
         with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
@@ -120,7 +121,9 @@ def _unreadable(path: Path, error: Exception) -> InputError:
     lines = [line for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
     reason = one_line(RuntimeError(lines[-1] if lines else str(error))).removeprefix("Error: ")
     return InputError(
-        f"{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off"
+        "{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off",
+        path=path,
+        reason=reason,
     )
 
 
@@ -130,17 +133,30 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves, "
-            "and one that is linked from another file is named by that file"
+            "{file}: holds no armature; a character is an armature with the meshes that it moves, and "
+            "one that is linked from another file is named by that file",
+            file=file.path,
         )
     if file.object is not None:
         if file.object not in armatures:
             what = "is no armature" if file.object in found else "is not in it"
-            raise InputError(f"{file.path}: {shown(file.object)} {what}; its armatures are {names}")
+            raise InputError(
+                "{file}: {object} {what}; its armatures are {names}",
+                file=file.path,
+                object=shown(file.object),
+                what=what,
+                names=names,
+            )
         return armatures[file.object]
     if len(armatures) > 1:
         example = CharacterFile(file.path, min(armatures))
-        raise InputError(f"{file.path}: holds {len(armatures)} armatures, {names}; name one, as in {example}")
+        raise InputError(
+            "{file}: holds {armatures} armatures, {names}; name one, as in {example}",
+            file=file.path,
+            armatures=len(armatures),
+            names=names,
+            example=example,
+        )
     return next(iter(armatures.values()))
 
 

@@ -65,10 +65,7 @@ def channel_notes(
             "Locked and keyed all the same: bone {bones}; unlock it to change it by hand",
             bones=_listed(one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
         ),
-        Sentence(
-            "Scaled in its pose: bone {bones}; the motion keys its scale at 1",
-            bones=_listed(scaled),
-        ),
+        Sentence("Scaled in its pose: bone {bones}; the motion keys its scale at 1", bones=_listed(scaled)),
         Sentence(
             "Connected to its parent or not to be moved: bone {bones} stays off its place; disconnect it",
             bones=_listed(_held_back(armature_object, motion)),
