@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import needs_override
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of, show_map
@@ -17,7 +17,11 @@ def linked(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
+    return (
+        None
+        if needs_override(active_character(context.scene).armature)
+        else label("The character is not linked")
+    )
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):

@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.roles import ROLES
 from ..library import user_folder
-from ..shell.messages import translated
+from ..shell.messages import label, translated
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 from .results import drop_results_of_others
@@ -92,7 +92,7 @@ def map_folders() -> list[Path]:
 
 def _not_a_character(armature_object: bpy.types.Object | None) -> str:
     if armature_object is None:
-        return "no armature is chosen; choose the character's"
+        return label("no armature is chosen; choose the character's")
     if armature_object.type != "ARMATURE":
         return f"'{armature_object.name}' is no armature; choose the character's"
     return (

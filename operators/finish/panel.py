@@ -56,8 +56,8 @@ def _draw_result(
     column.separator()
     row = column.row(align=True)
     for which, action, text in (
-        ("MOTION", take.motion_action, "Motion"),
-        ("FINAL", settings.action, "Final"),
+        ("MOTION", take.motion_action, label("Motion")),
+        ("FINAL", settings.action, label("Final")),
     ):
         depress = action is not None and action == shown
         row.operator("keymark.show_action", text=text, depress=depress).which = which

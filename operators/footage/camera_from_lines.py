@@ -10,7 +10,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import FootageView, view_of_footage_under
-from ..shell.messages import label, say, warn
+from ..shell.messages import label, say, tooltip, warn
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take
@@ -62,11 +62,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Describe the button by the lines it begins with."""
         if properties.kind == HEIGHT:
-            return label(
+            return tooltip(
                 "Find the camera from the performer: click on the floor between the feet, then on the top of "
                 "the head, where the performer stands upright; in other frames too, nearer and farther away"
             )
-        return label(
+        return tooltip(
             "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
         )
 
@@ -140,10 +140,9 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
                 drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
             except KeymarkError as error:
                 warn(self, error.sentence)
-        wanted = (
-            PERFORMER_REQUEST if drawing.of_performer and drawing.kind == HEIGHT else REQUESTS[drawing.kind]
-        )
-        request = label(KEYS, request=label(wanted))
+        by_performer = drawing.of_performer and drawing.kind == HEIGHT
+        wanted = label(PERFORMER_REQUEST if by_performer else REQUESTS[drawing.kind])
+        request = label(KEYS, request=wanted)
         context.workspace.status_text_set(request)
         redraw_footage(context)
 

@@ -5,7 +5,7 @@ import bpy
 from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import SAME_FRAME, invalidate_keyed_frames, keyframes_of
-from ..shell.messages import label, say
+from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle, keyframes
 from ..shell.takes import active_take
 from .corrections import set_corrected, shown_pose
@@ -31,7 +31,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
-        return label(next(text for name, _, text in DIRECTIONS if name == properties.direction))
+        return tooltip(next(text for name, _, text in DIRECTIONS if name == properties.direction))
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Copy everything but the place."""

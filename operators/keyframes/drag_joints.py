@@ -34,7 +34,7 @@ DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |  
 def not_dragging(context: bpy.types.Context) -> str | None:
     """Joints are not being dragged already."""
     running = job_is_running(context, DRAGGING)
-    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
+    return label("Joints can be dragged already; Enter in the viewport ends it") if running else None
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):

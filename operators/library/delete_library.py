@@ -14,7 +14,7 @@ from .registry import chosen_entry, refresh
 def _an_own_library(context: bpy.types.Context) -> str | None:
     item = chosen_entry(context)
     own = item is not None and item.is_own
-    return None if own else "This library comes with Keymark and stays"
+    return None if own else label("This library comes with Keymark and stays")
 
 
 class KEYMARK_OT_discard_library(BaseOperator, bpy.types.Operator):

@@ -61,6 +61,11 @@ def label(template: str, **values: Any) -> str:
     return str(bpy.app.translations.pgettext_iface(template)).format(**values)
 
 
+def tooltip(template: str, **values: Any) -> str:
+    """A translated tooltip, for an operator's `description`."""
+    return str(bpy.app.translations.pgettext_tip(template)).format(**values)
+
+
 def count_label(count: int, one: str, many: str) -> str:
     """A line of a panel from one of two templates: `1 posture`, else `{count} postures`."""
     return label(one if count == 1 else many, count=count)

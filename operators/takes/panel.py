@@ -79,7 +79,7 @@ class KEYMARK_PT_guide(bpy.types.Panel):
         """Draw the steps."""
         column = self.layout.column(align=True)
         for icon, text in STEPS:
-            column.label(text=text, icon=icon)
+            column.label(text=label(text), icon=icon, translate=False)
 
 
 class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
@@ -103,7 +103,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             return
         _draw_takes(layout, context.scene.keymark)
         # As high as the sentence, so that nothing moves when a job begins or ends.
-        sentence = label(next_step(take))
+        sentence = next_step(take)
         row = layout.row()
         row.scale_y = sentence_height(context, sentence)
         if not draw_progress(row, context):
