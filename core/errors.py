@@ -8,7 +8,7 @@ from .text import Sentence
 class KeymarkError(Exception):
     """Base of every error Keymark raises on purpose; its text is one sentence for a person."""
 
-    def __init__(self, sentence: str, **values: Any) -> None:
+    def __init__(self, sentence: str, /, **values: Any) -> None:
         """Take a sentence, or a template and the values for its braces, by which Blender can translate it."""
         self.sentence = Sentence(sentence, **values) if values else sentence
         super().__init__(self.sentence)

@@ -14,7 +14,7 @@ class Sentence(str):
     values: dict[str, Any]
     """The values by name; words among them stay as they are unless they are sentences themselves."""
 
-    def __new__(cls, template: str, **values: Any) -> "Sentence":
+    def __new__(cls, template: str, /, **values: Any) -> "Sentence":
         """Fill in the values."""
         made = super().__new__(cls, template.format(**values))
         made.template, made.values = template, values

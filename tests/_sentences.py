@@ -6,7 +6,9 @@ from pathlib import Path
 
 from _house import modules
 
-ERRORS = ("InputError", "ConversionError", "BusyError")
+ERRORS = frozenset({"InputError", "ConversionError", "BusyError"})
+STAGES = frozenset({"within", "Progress"})
+"""Calls that name the stage of a job."""
 WARNING_ARGUMENT, TEMPLATE_ARGUMENT = 1, 2
 """Of `messages.say`: how grave it is, and the sentence."""
 
@@ -23,12 +25,11 @@ def literal(node: ast.AST) -> str | None:
 
 def notes_and_warnings(source: str) -> Iterator[str]:
     """Templates of the notes and warnings of a module: what it says beside its errors."""
-    tree = ast.parse(source)
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    in_errors = {part for call in calls if name_of(call) in ERRORS for part in ast.walk(call)}
+    calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
+    others = {part for call in calls if name_of(call) in ERRORS | STAGES for part in ast.walk(call)}
     for call in calls:
         template = None
-        if name_of(call) == "Sentence" and call not in in_errors:
+        if name_of(call) == "Sentence" and call not in others:
             template = literal(call.args[0])
         elif name_of(call) == "say" and literal(call.args[WARNING_ARGUMENT]) == "WARNING":
             template = literal(call.args[TEMPLATE_ARGUMENT])
@@ -38,8 +39,8 @@ def notes_and_warnings(source: str) -> Iterator[str]:
 
 def all_notes_and_warnings(repository: Path) -> dict[str, str]:
     """Those of the whole program, each with the module that says it."""
-    found = {}
-    for name, file in modules(repository, "core", "operators").items():
-        for template in notes_and_warnings(file.read_text(encoding="utf-8")):
-            found[template] = name
-    return found
+    return {
+        template: name
+        for name, file in modules(repository, "core", "operators").items()
+        for template in notes_and_warnings(file.read_text(encoding="utf-8"))
+    }

@@ -1,21 +1,21 @@
 """Texts of operators that translators would not find, or that are put together before they are translated.
 
-Blender itself extracts labels, descriptions, names of properties and of enumerations from what is registered, and
-literals given to its layouts. All other texts go through `shell/messages`, or are a `core.text.Sentence`.
+Blender itself extracts labels, descriptions, names of properties and of enumerations from what is registered,
+and literals given to its layouts. All other texts go through `shell/messages`, or are a `core.text.Sentence`.
 """
 
 import ast
 import re
 from collections.abc import Iterable, Iterator
 
-from _sentences import ERRORS, name_of
+from _sentences import ERRORS, STAGES, name_of
 
 WORDS = re.compile(r"[a-z]{2,}[,;:.]? +[('{]*[A-Za-z]{2,}|^[A-Z][a-z]+ |^[A-Z][a-z]{2,}$")
 """What reads like words: two of them, or one with a capital."""
-TRANSLATED = frozenset({"label", "count_label", "say", "warn", "translated", "Sentence"})
+TRANSLATED = frozenset(
+    {"label", "tooltip", "count_label", "say", "warn", "translated", "Sentence", "pgettext_n"}
+)
 """Functions of Keymark's that translate their literals, or keep them as templates until they are shown."""
-STAGES = frozenset({"within", "Progress"})
-"""Whose literals name the stage of a job, which is translated where it is drawn."""
 DRAWN = frozenset({"text", "heading", "placeholder", "title", "message", "confirm_text"})
 """Arguments of Blender's layouts and dialogs, whose literals it extracts and translates."""
 REGISTERED = frozenset({"bl_label", "bl_description", "bl_category", "bl_options", "bl_parent_id"})
@@ -83,12 +83,14 @@ def _literals(node: ast.AST) -> list[ast.Constant | ast.JoinedStr]:
 
 def _translates(call: ast.Call) -> bool:
     name = name_of(call)
-    return name in TRANSLATED | STAGES or name.endswith("Property")
+    if isinstance(call.func, ast.Name) and name in TRANSLATED | STAGES | ERRORS:
+        return True  # a layout's method `label` is another one
+    return name.endswith("Property")
 
 
 def _in_call(call: ast.Call) -> list[ast.Constant | ast.JoinedStr]:
     """The texts of a call that are translated."""
-    if _translates(call) or name_of(call) in ERRORS:
+    if _translates(call):
         return [text for part in (*call.args, *call.keywords) for text in _literals(part)]
     if any(keyword.arg == "translate" for keyword in call.keywords):
         return []

@@ -100,8 +100,8 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     misfit = float(np.abs(matrix @ lengths - vector).max())
     if misfit > LARGEST_MISFIT * body.actor.stature_m:
         raise InputError(
-            "armature '{armature}' has bones {misfit:.0f} mm off Keymark's skeleton; build an actor "
-            "with Keymark and change its lengths only",
+            "armature '{armature}' has bones {misfit:.0f} mm off Keymark's skeleton; build an actor with "
+            "Keymark and change its lengths only",
             armature=armature_object.name,
             misfit=1000 * misfit,
         )

@@ -214,7 +214,7 @@ def fit_to_frame(
     points = ObservedKeypoints.of(keypoints)
     here = points[np.array([frame.index])]
     if not (regions.visible.any() or here.seen.any()):
-        raise InputError(_nothing_seen(frame, keypoints))
+        raise _nothing_seen(frame, keypoints)
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     evidence = replace(uncalibrated(model), keypoints=usual)
     if posed and (frame.reading is not None or not frame.styles):
@@ -235,14 +235,18 @@ def fit_to_frame(
     return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
 
 
-def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:
+def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
     shown = f"{frame.clip_frames[frame.index]:g}"
     if not (frame.styles or keypoints.names):
-        return "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
+        return InputError(
+            "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
+        )
     wanted = " and ".join(
         name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
     )
-    return f"none of the {wanted} is seen in frame {shown}; pose the actor by hand"
+    return InputError(
+        "none of the {wanted} is seen in frame {frame}; pose the actor by hand", wanted=wanted, frame=shown
+    )
 
 
 def _keyframes(

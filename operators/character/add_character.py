@@ -70,8 +70,8 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         named = bpy.data.objects.get(self.armature)
         if not may_be_character(named):
             raise InputError(
-                "'{armature}' is no armature of a character in this file; give the name of an "
-                "armature's object that is no actor of Keymark's",
+                "'{armature}' is no armature of a character in this file; give the name of an armature's "
+                "object that is no actor of Keymark's",
                 armature=self.armature,
             )
         return named

@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.roles import ROLES
 from ..library import user_folder
-from ..shell.messages import label, translated
+from ..shell.messages import translated
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 from .results import drop_results_of_others
@@ -25,7 +25,7 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
 
     armature_object = character.armature
     if not may_be_character(armature_object):
-        raise InputError(_not_a_character(armature_object))
+        raise _not_a_character(armature_object)
     found = recognize(read_character(armature_object))
     by_role = {_role_of(sentence): translated(sentence) for sentence in found.doubts}
     show_map(character.character_map, found.character_map, by_role)
@@ -90,12 +90,14 @@ def map_folders() -> list[Path]:
     return [user_folder.own_folder()]
 
 
-def _not_a_character(armature_object: bpy.types.Object | None) -> str:
+def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
     if armature_object is None:
-        return label("no armature is chosen; choose the character's")
+        return InputError("no armature is chosen; choose the character's")
+    name = armature_object.name
     if armature_object.type != "ARMATURE":
-        return f"'{armature_object.name}' is no armature; choose the character's"
-    return (
-        f"'{armature_object.name}' is an actor of Keymark's, which shows the motion already; "
-        "choose the armature of another character"
+        return InputError("'{name}' is no armature; choose the character's", name=name)
+    return InputError(
+        "'{name}' is an actor of Keymark's, which shows the motion already; choose the armature of another "
+        "character",
+        name=name,
     )

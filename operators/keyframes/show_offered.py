@@ -30,7 +30,7 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         said = candidate_title(offered, offered.candidates[properties.candidate])
         return tooltip(
             "{candidate}. Pose the actor like this; nothing is keyed until you store it", candidate=said

@@ -33,10 +33,10 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
         if matching is None or matching.shown_match >= len(matching.matches):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         said = candidate_title(match, match.candidates[properties.candidate])
         return tooltip(
             "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said

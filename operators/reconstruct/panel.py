@@ -38,7 +38,7 @@ def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
         ("MOTION", take.motion_action, label("Motion")),
     ):
         depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress).which = which
+        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
 
 
 class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):

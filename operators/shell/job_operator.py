@@ -13,7 +13,7 @@ from .base_operator import BaseOperator
 from .cancel_on_esc import cancel_job
 from .error_reports import reported
 from .job_progress import time_left
-from .messages import label
+from .messages import label, translated
 from .redraw import redraw_sidebars, redraw_sidebars_soon
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class JobOperator(BaseOperator):
                         break
                 if preview is not None:
                     self.watch(preview)
-                self._show(context, progress.stage, progress.fraction)
+                self._show(context, translated(progress.stage), progress.fraction)
                 self._slice_end = monotonic()
             except StopIteration as stop:
                 self.cancel(context)

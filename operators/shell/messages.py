@@ -10,6 +10,9 @@ import bpy
 
 from ...core.text import Sentence
 
+pgettext_n = bpy.app.translations.pgettext_n
+"""Marks a template for Blender's tools where it is kept, in a table say, and translated later."""
+
 
 def say(operator: bpy.types.Operator, kind: str, template: str, **values: Any) -> None:
     """Report a sentence in the status bar.

@@ -59,8 +59,8 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
             operator = bpy.ops.keymark.load_keypoints
         else:
             raise InputError(
-                "{path}: is neither a take's take.json nor a keyframe library; keypoints need the "
-                "footage that they are of, so load that first",
+                "{path}: is neither a take's take.json nor a keyframe library; keypoints need the footage "
+                "that they are of, so load that first",
                 path=path,
             )
         try:

@@ -5,6 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator
+from ..shell.messages import tooltip
 from ..shell.requirements import footage
 from ..shell.takes import active_take
 
@@ -31,7 +32,7 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip of the button's view."""
-        return cls.bl_rna.properties["view"].enum_items[properties.view].description
+        return tooltip(cls.bl_rna.properties["view"].enum_items[properties.view].description)
 
     def run(self, context: bpy.types.Context) -> None:
         """Set the context's viewport, or all of them if the context is another editor."""

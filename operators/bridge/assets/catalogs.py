@@ -32,8 +32,8 @@ def catalog_file() -> Path:
     """
     if not bpy.data.filepath:
         raise InputError(
-            "the asset catalog is kept beside the .blend, which has not been saved; save it first, "
-            "or leave Catalog empty"
+            "the asset catalog is kept beside the .blend, which has not been saved; save it first, or leave "
+            "Catalog empty"
         )
     folder = Path(bpy.data.filepath).parent
     for library in bpy.context.preferences.filepaths.asset_libraries:
@@ -92,8 +92,8 @@ def _clean(catalog: str) -> str:
     path = "/".join(part for part in parts if part)
     if not path or ":" in path or any(ord(letter) < 32 for letter in path):
         raise InputError(
-            "catalog '{catalog}' is not a path of names with slashes between them, without colons, such "
-            "as Keymark/Walking",
+            "catalog '{catalog}' is not a path of names with slashes between them, without colons, such as "
+            "Keymark/Walking",
             catalog=catalog,
         )
     return path

@@ -49,7 +49,10 @@ def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Acti
             reason=one_line(error),
         ) from error
     action = next((one for one in wanted.actions if one is not None), None)
-    if action is None or action_digest(action) != curves:
-        what = "lacks its Action" if action is None else "is not the file that the conversion wrote"
-        raise InputError("{blend}: {what}; convert the take again", blend=blend, what=what)
+    if action is None:
+        raise InputError("{blend}: lacks its Action; convert the take again", blend=blend)
+    if action_digest(action) != curves:
+        raise InputError(
+            "{blend}: is not the file that the conversion wrote; convert the take again", blend=blend
+        )
     return action

@@ -75,8 +75,8 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
-            "{file}: is open in this Blender, which appends nothing from it; name a copy of it, or run "
-            "the command without opening it",
+            "{file}: is open in this Blender, which appends nothing from it; name a copy of it, or run the "
+            "command without opening it",
             file=file.path,
         )
     try:
@@ -133,18 +133,16 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            "{file}: holds no armature; a character is an armature with the meshes that it moves, and "
-            "one that is linked from another file is named by that file",
+            "{file}: holds no armature; a character is an armature with the meshes that it moves, and one "
+            "that is linked from another file is named by that file",
             file=file.path,
         )
     if file.object is not None:
         if file.object not in armatures:
-            what = "is no armature" if file.object in found else "is not in it"
             raise InputError(
-                "{file}: {object} {what}; its armatures are {names}",
+                "{file}: {object} is no armature in it; its armatures are {names}",
                 file=file.path,
                 object=shown(file.object),
-                what=what,
                 names=names,
             )
         return armatures[file.object]

@@ -57,8 +57,8 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
     working = [one.name for one in armature_object.constraints if not one.mute and one.influence > 0.0]
     if working:
         raise InputError(
-            "armature '{name}' stands where its constraint '{working}' puts it; mute it, or let the "
-            "motion begin where the character stands",
+            "armature '{name}' stands where its constraint '{working}' puts it; mute it, or let the motion "
+            "begin where the character stands",
             name=name,
             working=working[0],
         )

@@ -39,8 +39,8 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
         )
     if needs_override(armature_object):
         raise InputError(
-            "armature '{name}' is linked from {armature} and keeps no keys; make a library override of "
-            "it (Object > Library Override > Make)",
+            "armature '{name}' is linked from {armature} and keeps no keys; make a library override of it "
+            "(Object > Library Override > Make)",
             name=name,
             armature=_library_name(armature_object),
         )
@@ -61,8 +61,8 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
     cycle = dependency_cycle(armature_object)
     if cycle:
         raise InputError(
-            "armature '{name}' has a dependency cycle, {cycle}, whose pose Blender cannot determine; "
-            "remove one of these drivers or constraints",
+            "armature '{name}' has a dependency cycle, {cycle}, whose pose Blender cannot determine; remove "
+            "one of these drivers or constraints",
             name=name,
             cycle=" > ".join(cycle),
         )
@@ -113,8 +113,8 @@ def _require_even_scale(armature_object: bpy.types.Object) -> None:
     matrix = np.array(armature_object.matrix_world, dtype=np.float64)
     if not np.isfinite(matrix).all():
         raise InputError(
-            "armature '{armature}' has a transform that is not a number; clear its location, rotation "
-            "and scale",
+            "armature '{armature}' has a transform that is not a number; clear its location, rotation and "
+            "scale",
             armature=armature_object.name,
         )
     if np.linalg.norm(matrix[:3, :3], axis=0).min() < SMALLEST_SCALE:
@@ -133,8 +133,8 @@ def _require_evaluated(armature_object: bpy.types.Object) -> None:
     layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
     if not armature_object.visible_get(view_layer=layer):
         raise InputError(
-            "armature '{name}' is hidden in view layer '{layer}', where Blender evaluates no pose; show "
-            "it while the motion is made",
+            "armature '{name}' is hidden in view layer '{layer}', where Blender evaluates no pose; show it "
+            "while the motion is made",
             name=name,
             layer=layer.name,
         )

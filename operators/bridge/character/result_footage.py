@@ -52,8 +52,8 @@ def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
             wanted.scenes = list(inside.scenes)
     except (OSError, RuntimeError, UnicodeDecodeError) as error:
         raise InputError(
-            "{blend}: Blender cannot read it ({reason}); convert the take again, or name its "
-            "motion.json instead",
+            "{blend}: Blender cannot read it ({reason}); convert the take again, or name its motion.json "
+            "instead",
             blend=blend,
             reason=one_line(error),
         ) from error

@@ -51,16 +51,16 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
         holding = _folders_with_json(folder)
         if not holding:
             raise ConversionError(
-                "{clip}: the detector {detector} ended well and wrote no keypoints; its command must "
-                "hand it {{output}}, the file to write, or {{output_folder}}",
+                "{clip}: the detector {detector} ended well and wrote no keypoints; its command must hand "
+                "it {{output}}, the file to write, or {{output_folder}}",
                 clip=clip,
                 detector=detector,
             )
         if len(holding) > 1:
             names = [str(place.relative_to(folder)) for place in holding]
             raise InputError(
-                "{clip}: the detector {detector} wrote JSON files into several folders ({names}); one "
-                "of them must be left out by its options",
+                "{clip}: the detector {detector} wrote JSON files into several folders ({names}); one of "
+                "them must be left out by its options",
                 clip=clip,
                 detector=detector,
                 names=listed(names, MOST_NAMED),
