@@ -72,6 +72,7 @@ def untranslated(tree: ast.Module, known: set[str]) -> Iterator[tuple[int, str]]
         elif isinstance(node, ast.Compare | ast.Subscript | ast.Dict):
             keys = node.keys if isinstance(node, ast.Dict) else [node]
             fine |= {text for key in keys if key is not None for text in _literals(key)}
+    yield from _put_together(tree)
     for text in texts(tree):
         if text not in fine and WORDS.search(words_of(text)):
             yield text.lineno, words_of(text)
@@ -96,6 +97,15 @@ def _in_call(call: ast.Call) -> list[ast.Constant | ast.JoinedStr]:
         return []
     drawn = [keyword.value for keyword in call.keywords if keyword.arg in DRAWN]
     return [text for part in drawn for text in _literals(part)]
+
+
+def _put_together(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Templates that are added up, of which translators find the parts."""
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and name_of(call) in TRANSLATED:
+            for part in (part for argument in call.args for part in ast.walk(argument)):
+                if isinstance(part, ast.BinOp) and (_literals(part.left) or _literals(part.right)):
+                    yield part.lineno, ast.unparse(part)
 
 
 def _documentation(tree: ast.Module) -> Iterator[ast.Constant | ast.JoinedStr]:

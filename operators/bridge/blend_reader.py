@@ -39,4 +39,4 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
             largest_bytes=largest_bytes >> 20,
         )
     if not magic.startswith(BLEND_MAGIC):
-        raise InputError("{path}: is no .blend; it begins as none does", path=path)
+        raise InputError("{path}: is no .blend; it must be a file that Blender saved", path=path)

@@ -12,9 +12,7 @@ def still_areas(context: bpy.types.Context) -> str | None:
     known = take is not None and any(
         marker.has_readout(take) and len(marker.still_areas) for marker in take.markers
     )
-    return (
-        None if known else label("Check the markers first; no still area is known that is surely no marker")
-    )
+    return None if known else label("Check the markers first; no still area of a marker's color is known")
 
 
 def some_ignored(context: bpy.types.Context) -> str | None:

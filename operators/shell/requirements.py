@@ -146,7 +146,11 @@ def bones_editable(context: bpy.types.Context) -> str | None:
 
 def idle(context: bpy.types.Context) -> str | None:
     """No job of Keymark's runs."""
-    return label("Another of Keymark's jobs is running") if job_is_running(context) else None
+    return (
+        label("Another of Keymark's jobs is running; wait for it, or stop it with Esc")
+        if job_is_running(context)
+        else None
+    )
 
 
 def all_met(

@@ -28,7 +28,7 @@ from .unfilled_fields import find_unfilled_fields
 
 CONTOURS_ALONE = Sentence(
     "the motion is held against contours alone, which tell least of all evidence; keypoints of a detector, "
-    "as of keymark detect, or garments in strong colors tell more"
+    "as of keymark detect, or markers in strong colors tell more"
 )
 
 

@@ -84,6 +84,7 @@ PLANTED = {
     "a literal that is only handed on": 'def f():\n    return "Load the footage first"\n',
     "a formatted label": 'def f(row, n):\n    row.label(text=f"{n} keyframes posed")\n',
     "a formatted template": 'def f(n):\n    return label(f"{n} keyframes posed")\n',
+    "a template that is added up": 'def f(n):\n    return label("Keyframes: " + n)\n',
     "a formatted error": 'def f(n):\n    raise InputError(f"take {n} has no clip")\n',
     "a literal kept as it is": 'def f(row):\n    row.label(text="Not Posed", translate=False)\n',
     "a table": 'STEPS = (("A", "Load the footage"),)\n',
