@@ -48,6 +48,7 @@ COMBINATIONS: Mapping[str, tuple[str, ...]] = {
 }
 """Kinds of evidence by name in the table; all with contours, as a user has them."""
 INTERPOLATION, TRACKS, NETWORK = "interpolation", "six tracks", "the network's own"
+FILTER = "the paper's filter"
 UNWORN, NO_KEYPOINTS = "without markers", ", no keypoints"
 """Parts of the names of rows with wrong keypoints."""
 
@@ -87,6 +88,8 @@ def measure(trial: Trial) -> dict[str, Measured]:
         worn = MARKERS not in kinds or take.markers
         if worn and (KEYPOINTS not in kinds or take.keypoints):
             found[name] = estimated(trial, with_evidence(take, kinds))[1]
+    if take.markers:
+        found[FILTER] = estimated(trial, with_evidence(take, (MARKERS,)), "ekf")[1]
     tracked = replace(take, keypoints=(tracked_people(trial),))
     found[TRACKS] = estimated(trial, with_evidence(tracked, (KEYPOINTS, CONTOURS)))[1]
     if take.keypoints:
