@@ -241,9 +241,9 @@ def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> Non
 
 def test_nothing_chosen_is_said_and_the_folder_kept(tiny_take: Take, tmp_path: Path) -> None:
     """The browser's button without a file in it: one sentence, no take, and the same folder the next time."""
-    with pytest.raises(RuntimeError, match="no file is chosen; choose a video"):
+    with pytest.raises(RuntimeError, match="No file is chosen; choose a video"):
         bpy.ops.keymark.load_footage(filepath="")
-    with pytest.raises(RuntimeError, match=f"no file is chosen in {tmp_path}; choose a video"):
+    with pytest.raises(RuntimeError, match=f"No file is chosen in {tmp_path}; choose a video"):
         bpy.ops.keymark.load_footage(filepath=f"{tmp_path}/")
     assert not len(bpy.context.scene.keymark.takes)
     assert _browsed(KEYMARK_OT_load_footage) == f"{tmp_path}/"
