@@ -41,7 +41,7 @@ def words_of(text: ast.Constant | ast.JoinedStr) -> str:
 
 def translated_names(trees: Iterable[ast.Module]) -> set[str]:
     """Names of constants that are given to what translates: templates, and items of enumerations."""
-    return {
+    names = (
         part.id if isinstance(part, ast.Name) else part.attr
         for tree in trees
         for call in ast.walk(tree)
@@ -49,7 +49,8 @@ def translated_names(trees: Iterable[ast.Module]) -> set[str]:
         for argument in (*call.args, *(keyword.value for keyword in call.keywords))
         for part in ast.walk(argument)
         if isinstance(part, ast.Name | ast.Attribute)
-    }
+    )
+    return {name for name in names if name.isupper()}  # a variable may be another one elsewhere
 
 
 def untranslated(tree: ast.Module, known: set[str]) -> Iterator[tuple[int, str]]:

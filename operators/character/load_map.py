@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import say, tooltip
+from ..shell.messages import label, say, tooltip
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import show_map
@@ -56,7 +56,9 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
 
         character = active_character(context.scene)
         named = (
-            self.title if self.title and not self.filepath else chosen_file(self, "a character map, .json")
+            self.title
+            if self.title and not self.filepath
+            else chosen_file(self, label("a character map, .json"))
         )
         found = find_map(named, map_folders())
         character_map = found.character_map

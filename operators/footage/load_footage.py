@@ -5,7 +5,7 @@ import bpy
 from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import say, warn
+from ..shell.messages import label, say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
@@ -61,7 +61,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
-        path = chosen_file(self, "a video, or one image of a numbered sequence")
+        path = chosen_file(self, label("a video, or one image of a numbered sequence"))
         clip = load_footage(path)
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(path))

@@ -6,7 +6,7 @@ from ...core.errors import InputError
 from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import chosen_file
-from ..shell.messages import say, warn
+from ..shell.messages import label, say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -43,7 +43,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)
-        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
+        clip, path = take.clip, chosen_file(self, label("the video, or one image of the sequence"))
         if clip.library is not None:
             raise InputError(
                 "clip '{clip}' is linked from {library}; find it in that file, or load it here",

@@ -43,8 +43,10 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
         if neighbor is None:
-            said = {"NEXT": "There is no keyframe after this frame"}
-            say(self, "INFO", said.get(self.direction, "There is no keyframe before this frame"))
+            if self.direction == "NEXT":
+                say(self, "INFO", "There is no keyframe after this frame")
+            else:
+                say(self, "INFO", "There is no keyframe before this frame")
             return {"CANCELLED"}
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:

@@ -36,6 +36,7 @@ ENGLISH = {
     "operators.shell.lru_cache": "a type",
     "operators.shell.preferences": "the place of an error of core's",
     "operators.shell.takes": "a name of data",
+    "operators.takes.upgrade": "a name of data",
 }
 """Modules with texts that stay as they are, and why; `operators.cli` is English throughout."""
 REPORTING = {"operators.shell.messages", "operators.shell.error_reports"}
@@ -88,6 +89,7 @@ PLANTED = {
     "a formatted error": 'def f(n):\n    raise InputError(f"take {n} has no clip")\n',
     "a literal kept as it is": 'def f(row):\n    row.label(text="Not Posed", translate=False)\n',
     "a table": 'STEPS = (("A", "Load the footage"),)\n',
+    "a variable that is drawn": 'def f():\n    text = "Build Actor"\n    g(label(text))\n',
     "a title": 'def f(row):\n    draw(row, "Area")\n',
 }
 FINE = """
