@@ -140,7 +140,9 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     if file.object is not None:
         if file.object not in armatures:
             raise InputError(
-                "{file}: {object} is no armature in it; its armatures are {names}",
+                "{file}: {object} is no armature; its armatures are {names}"
+                if file.object in found
+                else "{file}: {object} is not in it; its armatures are {names}",
                 file=file.path,
                 object=shown(file.object),
                 names=names,

@@ -184,9 +184,9 @@ def _split_words(text: str, origin: str) -> list[str]:
     shell = [word for word in words if word in SHELL_WORDS]
     if shell:
         raise InputError(
-            "{origin}: {shell} is for a shell, and none runs the command; put such steps into a script",
+            "{origin}: {word} is for a shell, and none runs the command; put such steps into a script",
             origin=origin,
-            shell=shown(shell[0]),
+            word=shown(shell[0]),
         )
     return words
 
