@@ -6,6 +6,7 @@
 OUTPUT ?= out/demo
 TAKE ?= presets/demo/aerobic
 TESTS ?=
+ZIPS ?=
 BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again speed batch check
 
 find_python := sh tools/find_python.sh
@@ -101,6 +102,11 @@ test-ui: .venv-test/ready ## go through all steps by mouse and keys in a real Bl
 	echo "== A session in $$blender"; \
 	BLENDER="$$blender" .venv-test/bin/python -m pytest -m ui tests/real_blender/ui $(TESTS)
 
+# Pictures of Blender are cut from what `make test-ui` took; NAMES="filming keymark" draws those alone.
+.PHONY: pictures
+pictures: .venv-test/ready ## draw all pictures of the docs anew, from the screenshots of test-ui and the demonstration
+	@.venv-test/bin/python tools/draw_pictures.py $(NAMES)
+
 .PHONY: lint
 lint: .venv-dev/ready ## check style, formatting and types
 	@status=0; \
@@ -114,9 +120,10 @@ format: .venv-dev/ready ## put the code into the project's format
 	@.venv-dev/bin/ruff check --fix --select I .
 	@.venv-dev/bin/ruff format .
 
+# One of them: make package ZIPS='--platform linux-x64 --python 3.13'.
 .PHONY: package
-package: .venv-test/ready ## build the extension's zips for every platform into dist/
-	@.venv-test/bin/python tools/build_package.py
+package: .venv-test/ready ## build the extension's zips, one a platform and Python of Blender, into dist/
+	@.venv-test/bin/python tools/build_package.py $(ZIPS)
 
 .PHONY: bench
 bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, speed and batches

@@ -2,8 +2,10 @@
 
 import os
 import subprocess
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import ZipFile
 
 
 @dataclass(frozen=True)
@@ -35,3 +37,15 @@ class Blender:
         return self.run(
             "--command", "extension", "install-file", "--repo", "user_default", "--enable", package
         )
+
+    def changed_files(self, package: Path) -> set[str]:
+        """Files in which the installed extension differs from its zip, but for Python's own cache."""
+        folder = self.user / "extensions" / "user_default" / "keymark"
+        with ZipFile(package) as zipped:
+            packed = {item.filename: item.CRC for item in zipped.infolist() if not item.is_dir()}
+        there = {
+            file.relative_to(folder).as_posix(): zlib.crc32(file.read_bytes())
+            for file in folder.rglob("*")
+            if file.is_file() and "__pycache__" not in file.parts
+        }
+        return {name for name, _ in packed.items() ^ there.items()}

@@ -5,12 +5,13 @@ import platform
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from installed_blender import Blender
 
-SYSTEMS = {"Linux": "linux-x64", "Windows": "windows-x64", "Darwin": "macos-arm64"}
+PLATFORM = {"Linux": "linux-x64", "Windows": "windows-x64", "Darwin": "macos-arm64"}[platform.system()]
 SCREEN = ["xvfb-run", "-a", "-s", "-screen 0 1600x1000x24 +extension GLX"]
 
 
@@ -27,14 +28,33 @@ def blender_binary() -> Path:
 
 
 @pytest.fixture(scope="session")
-def package(repository: Path) -> Path:
-    """The zip of the extension for this machine, built from the tree as it stands."""
-    builder = [sys.executable, str(repository / "tools" / "build_package.py")]
-    done = subprocess.run(
-        [*builder, "--platform", SYSTEMS[platform.system()]], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return Path(done.stdout.strip())
+def python_of_blender(blender_binary: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The version of Blender's own Python, as `3.13`, by which a zip is chosen."""
+    script = "import sys; print('ANSWER', '%d.%d' % sys.version_info[:2])"
+    asked = Blender((str(blender_binary),), tmp_path_factory.mktemp("asked"))
+    done = asked.run("-b", "--factory-startup", "--python-exit-code", "1", "--python-expr", script)
+    (answer,) = [line for line in done.stdout.splitlines() if line.startswith("ANSWER")]
+    return answer.split(" ")[1]
+
+
+@pytest.fixture(scope="session")
+def built_package(repository: Path) -> Callable[[str], Path]:
+    """Builds the zip of the extension for this machine and a Python, from the tree as it stands."""
+
+    def build(python: str) -> Path:
+        words = ["--platform", PLATFORM, "--python", python]
+        builder = [sys.executable, str(repository / "tools" / "build_package.py"), *words]
+        done = subprocess.run(builder, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return Path(done.stdout.strip())
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def package(built_package: Callable[[str], Path], python_of_blender: str) -> Path:
+    """The zip for this machine and this Blender."""
+    return built_package(python_of_blender)
 
 
 @pytest.fixture

@@ -131,3 +131,9 @@ def test_the_shipped_libraries_come_with_it(blender: Blender, repository: Path) 
     shipped = {file.stem for file in (repository / "presets" / "keyframes").glob("*.json")}
     assert "walking" in shipped and shipped <= set(listed)
     assert all(listed[name]["problem"] == "" and listed[name]["postures"] >= 10 for name in shipped)
+
+
+def test_nothing_is_written_into_its_own_folder(blender: Blender, converted: Path, package: Path) -> None:
+    """After converting a take it holds what the zip holds, byte for byte, but for Python's own cache."""
+    assert (converted / "motion.json").is_file()
+    assert blender.changed_files(package) == set()

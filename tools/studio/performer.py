@@ -69,7 +69,7 @@ def build_performer(body: Body, look: Look) -> Performer:
     placed = movers(body, pose, {side: np.eye(3)[None] for side in ("L", "R")})
     parts = body_parts(body, look.girths)
     meshes = [part_mesh(part, placed[part.mover][0][0], placed[part.mover][1][0]) for part in parts]
-    thing = _one_surface(meshes)
+    thing = one_surface(meshes)
     mesh = thing.data
     places, normals = _read(mesh.vertices, "co"), _read(mesh.vertices, "normal")
     names = tuple(dict.fromkeys(part.mover for part in parts))
@@ -77,7 +77,7 @@ def build_performer(body: Body, look: Look) -> Performer:
         name: np.concatenate([m[0] for part, m in zip(parts, meshes, strict=True) if part.mover == name])
         for name in names
     }
-    weights = _weights(mesh, places, [samples[name] for name in names])
+    weights = skin_weights(mesh, places, [samples[name] for name in names])
     dressed = _paint(mesh, body, look.painted, places, weights, names, placed)
     thickness = np.array([look.cloth_m.get(name.split(".")[0], 0.0) for name in dressed])
     places = places + (thickness * (1.0 + look.folds * _folds(places)))[:, None] * normals
@@ -108,8 +108,8 @@ def _modeling_posture(body: Body) -> Posture:
     return Posture(body.skeleton, posture.translation, rotation, posture.angles)
 
 
-def _one_surface(meshes: list[tuple[Array, list[list[int]]]]) -> bpy.types.Object:
-    """Join closed meshes into one smooth surface."""
+def one_surface(meshes: list[tuple[Array, list[list[int]]]], voxel_m: float = VOXEL_M) -> bpy.types.Object:
+    """Join closed meshes, vertices (N, 3) and faces, into one smooth surface of quads of about `voxel_m`."""
     vertices, faces, count = [], [], 0
     for places, quads in meshes:
         vertices.append(places)
@@ -120,7 +120,7 @@ def _one_surface(meshes: list[tuple[Array, list[list[int]]]]) -> bpy.types.Objec
     thing = bpy.data.objects.new("Performer", mesh)
     bpy.context.scene.collection.objects.link(thing)
     remesh = thing.modifiers.new("One surface", "REMESH")
-    remesh.mode, remesh.voxel_size = "VOXEL", VOXEL_M
+    remesh.mode, remesh.voxel_size = "VOXEL", voxel_m
     smooth = thing.modifiers.new("Smooth", "SMOOTH")
     smooth.iterations = SMOOTHING_PASSES
     evaluated = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -131,7 +131,7 @@ def _one_surface(meshes: list[tuple[Array, list[list[int]]]]) -> bpy.types.Objec
     return thing
 
 
-def _weights(mesh: bpy.types.Mesh, places: Array, samples: list[Array]) -> Array:
+def skin_weights(mesh: bpy.types.Mesh, places: Array, samples: list[Array]) -> Array:
     """Skinning weights (V, N) by distance to each mover's parts, blended along the surface."""
     distance = np.stack([cKDTree(sample).query(places)[0] for sample in samples], axis=-1)
     distance -= distance.min(axis=1, keepdims=True)

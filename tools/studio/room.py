@@ -7,9 +7,8 @@ import numpy as np
 from mathutils import Vector
 from numpy.typing import NDArray
 
-from .surroundings import Lamp, Room, Thing, Triple
+from .surroundings import WALL_BEHIND_Y, WALL_RIGHT_X, Lamp, Room, Thing, Triple
 
-WALL_BEHIND_Y, WALL_RIGHT_X = 1.75, -2.75
 SKIRTING = (0.80, 0.79, 0.76)
 WOOD = (0.30, 0.20, 0.12)
 GRAY = (0.24, 0.25, 0.27)

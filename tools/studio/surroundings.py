@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 Triple = tuple[float, float, float]
 Array = NDArray[np.float64]
+WALL_BEHIND_Y, WALL_RIGHT_X = 1.75, -2.75
+"""Where the room's walls stand [m]."""
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ CHOOSING_STEPS = ("matched", "posed_all", "from_the_side")
 HURRIED_STEPS = ("posed_all", "decided", "corrected", "unposed")
 MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
+SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
 CLICKS_MM = 4.0
 """What a clicked point and a track in a single frame may change."""
@@ -37,11 +38,10 @@ PATIENCE_S = 3000.0
 
 
 def takes(repository: Path) -> dict[str, Path]:
-    """The takes of the session by name: those beside the repository, else the demonstration take."""
-    shared = repository.parent / "shared" / "takes"
-    found = {name: shared / name for name in ("aerobic", "real_balance")}
-    there = {name: folder for name, folder in found.items() if (folder / "take.json").is_file()}
-    return there or {"demo": repository / "presets" / "demo" / "aerobic"}
+    """The takes of the session by name: the demonstration, whose pictures the docs show, and real footage."""
+    found = {"demo": repository / "presets" / "demo" / "aerobic"}
+    real = repository.parent / "shared" / "takes" / "real_balance"
+    return found | ({real.name: real} if (real / "take.json").is_file() else {})
 
 
 TAKES = takes(Path(__file__).resolve().parents[3])
@@ -62,9 +62,12 @@ def run_script(blender: Blender, name: str, *words: Path | str) -> None:
 
 @pytest.mark.parametrize("name", TAKES)
 def test_a_session_leads_to_the_command_lines_motion(
-    blender: Blender, blender_on_screen: Blender, repository: Path, tmp_path: Path, name: str
+    blender: Blender, blender_on_screen: Blender, package: Path, repository: Path, tmp_path: Path, name: str
 ) -> None:
-    """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does."""
+    """All steps go through, each is pictured, and the finished armature scores as `keymark convert` does.
+
+    The extension has left its own folder as it was installed.
+    """
     folder = repository / "build" / "screenshots" / name
     run_script(blender_on_screen, "session.py", TAKES[name], folder)
     pictures = " ".join(file.name for file in folder.glob("*.png"))
@@ -79,6 +82,7 @@ def test_a_session_leads_to_the_command_lines_motion(
     )
     assert by_hand.mpjpe == pytest.approx(by_command.mpjpe, abs=AGREEMENT_MM)
     assert by_hand.depth == pytest.approx(by_command.depth, abs=2.0 * AGREEMENT_MM)
+    assert blender.changed_files(package) == set()
 
 
 def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: Path) -> None:
@@ -131,6 +135,15 @@ def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, t
     run_script(blender_on_screen, "markers_session.py", take, folder, ",".join(map(str, PANEL)))
     pictures = " ".join(file.name for file in folder.glob("*.png"))
     assert [step for step in MARKER_STEPS if f"_{step}" not in pictures] == []
+
+
+def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> None:
+    """One that is learned in the panel, and those that come with Keymark in the asset browser."""
+    take = repository / "presets" / "demo" / "aerobic"
+    folder = repository / "build" / "screenshots" / "shelf"
+    run_script(blender_on_screen, "shelf_session.py", take, folder)
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in SHELF_STEPS if f"_{step}" not in pictures] == []
 
 
 def plain_take(demo: Path, folder: Path) -> Path:

@@ -1,14 +1,12 @@
-"""Draw the demonstration take's motion by each method over both cameras. Usage: draw_comparison.py PICTURE.
+"""The demonstration's motion by each method over both cameras.
 
 The upper rows show the footage used, the lower ones the reference camera from the side, which no method saw.
 """
 
 import json
-import sys
-from pathlib import Path
 
-import cv2
 import numpy as np
+from keymark.core.arrays import Image
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.clips.clip import Clip
@@ -19,7 +17,8 @@ from keymark.core.take.methods import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take_file import read_take
 
-TAKE = Path(__file__).resolve().parents[1] / "presets" / "demo" / "aerobic"
+from .results import DEMO, KEYFRAMES
+
 FRAMES = (19, 36, 60, 75, 88, 100)
 CELL = (200, 150)
 GAP, TITLE = 6, 26
@@ -44,13 +43,13 @@ def draw_rows(canvas: Canvas, top: int, clip: Clip, camera: Camera, motion: Moti
         canvas.paste(tile.image(), GAP + column * (CELL[0] + GAP), top + TITLE, *CELL)
 
 
-def main(output: str) -> None:
+def draw_comparison() -> Image:
     """Reconstruct with every method and draw."""
-    take = read_take(TAKE, TAKE / "keyframes_noisy.json")
-    side = json.loads((TAKE / "side.json").read_text(encoding="utf-8"))
+    take = read_take(DEMO, KEYFRAMES)
+    side = json.loads((DEMO / "side.json").read_text(encoding="utf-8"))
     views = (
         ("front", Clip.open(take.clip, fps=take.fps), take.camera),
-        ("side, not used", Clip.open(TAKE / side["clip"], fps=take.fps), Camera.from_dict(side["camera"])),
+        ("side, not used", Clip.open(DEMO / side["clip"], fps=take.fps), Camera.from_dict(side["camera"])),
     )
     methods = METHODS[::-1]
     row = TITLE + CELL[1] + GAP
@@ -62,8 +61,4 @@ def main(output: str) -> None:
         for j, (view, clip, camera) in enumerate(views):
             title = f"{NAMES[method]} ({view})"
             draw_rows(canvas, (j * len(methods) + i) * row, clip, camera, motion, title)
-    cv2.imwrite(output, canvas.image(), [cv2.IMWRITE_JPEG_QUALITY, 82])
-
-
-if __name__ == "__main__":
-    main(sys.argv[1])
+    return canvas.image()

@@ -1,13 +1,7 @@
-"""Draw some postures of every shipped library, for the docs. Usage: draw_libraries.py PICTURE.
+"""Some postures of every shipped library; `keymark library show NAME --sheet FILE` draws all of one."""
 
-`keymark library show NAME --sheet FILE` draws all postures of one library.
-"""
-
-import sys
-from pathlib import Path
-
-import cv2
 import numpy as np
+from keymark.core.arrays import Image
 from keymark.core.body.kinematics import Body
 from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.library.registry import SHIPPED, registered_libraries
@@ -16,7 +10,6 @@ from keymark.core.report.posture_picture import posture_picture
 
 FIGURES, CELL = 8, 116
 TITLE, GAP = 190, 4
-QUALITY = 82
 
 
 def some_postures(library: Library) -> list[LibraryPosture]:
@@ -25,7 +18,7 @@ def some_postures(library: Library) -> list[LibraryPosture]:
     return [library.postures[place] for place in places]
 
 
-def main(output: str) -> None:
+def draw_libraries() -> Image:
     """Draw a row a library."""
     libraries = [found.library for found in registered_libraries([SHIPPED]) if found.library is not None]
     row = CELL + GAP
@@ -37,12 +30,4 @@ def main(output: str) -> None:
         for column, posture in enumerate(some_postures(library)):
             picture = posture_picture(body, posture.posture)
             canvas.paste(picture, TITLE + column * (CELL + GAP), top, CELL, CELL)
-    done, data = cv2.imencode(Path(output).suffix, canvas.image(), [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
-    if not done:
-        raise SystemExit(f"{output}: cannot be drawn; end the name in .jpg or .png")
-    Path(output).write_bytes(data.tobytes())
-    print(output)
-
-
-if __name__ == "__main__":
-    main(sys.argv[1])
+    return canvas.image()

@@ -1,0 +1,74 @@
+"""Every picture of the docs is in the script's table, and every picture of the table is shown."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
+
+from pictures.filming_scenes import PAIRS, SIZE  # noqa: E402
+from pictures.table import ALL, POINTS, SCREENSHOTS, Screenshot  # noqa: E402
+
+SHOWN = re.compile(r"!\[[^\]]+\]\(((?:\.\./)?[\w./-]*pictures/[\w.-]+)\)")
+LARGEST_BYTES = {"filming_": 80_000, "keymark.webp": 2_500_000, "": 200_000}
+"""By the beginning of a name, the first that fits."""
+
+
+def shown_pictures(repository: Path) -> dict[Path, list[str]]:
+    """The pages that show each picture."""
+    shown: dict[Path, list[str]] = {}
+    for page in (repository / "README.md", *sorted((repository / "docs").glob("*.md"))):
+        for name in SHOWN.findall(page.read_text(encoding="utf-8")):
+            shown.setdefault((page.parent / name).resolve(), []).append(page.name)
+    return shown
+
+
+def test_pages_show_what_the_script_makes(repository: Path) -> None:
+    """No page shows a picture that is made by hand, and none is made that no page shows."""
+    shown = {file.name for file in shown_pictures(repository)}
+    assert len(shown) > 25
+    assert shown == set(ALL)
+    assert len(set(ALL)) == len(ALL)
+
+
+def test_pictures_are_there_and_small(repository: Path) -> None:
+    """Each file exists where pages look for it; the folder has no others."""
+    folder = repository / "docs" / "pictures"
+    assert {file.parent for file in shown_pictures(repository)} == {folder}
+    assert {file.name for file in folder.iterdir()} == set(ALL)
+    for name in ALL:
+        most = next(size for begin, size in LARGEST_BYTES.items() if name.startswith(begin))
+        assert 5_000 < (folder / name).stat().st_size <= most, name
+
+
+def test_sessions_take_the_screenshots(repository: Path) -> None:
+    """Each screenshot of the table is taken by a session that `make test-ui` runs."""
+    scripts = repository / "tests" / "real_blender" / "ui"
+    steps = "\n".join(file.read_text(encoding="utf-8") for file in scripts.glob("*.py"))
+    for name, screenshot in SCREENSHOTS.items():
+        taken = re.search(rf'\.(look|shoot)\("{screenshot.name}"\)', steps)
+        assert taken, f"{name}: no session takes `{screenshot.name}`"
+        assert f'"{screenshot.session}"' in (scripts / "test_ui.py").read_text(encoding="utf-8"), name
+
+
+def test_a_missing_screenshot_is_one_sentence(tmp_path: Path) -> None:
+    """It names the folder and what takes it; numbers of other steps do not matter."""
+    wanted = Screenshot("demo", "review")
+    with pytest.raises(
+        SystemExit, match=r"demo: the screenshot `review` is missing; `make test-ui` takes it$"
+    ):
+        wanted.file(tmp_path)
+    for name in ("03_preview.png", "04_review_side.png", "17_review.png"):
+        (tmp_path / "demo").mkdir(exist_ok=True)
+        (tmp_path / "demo" / name).touch()
+    assert wanted.file(tmp_path).name == "17_review.png"
+
+
+def test_every_point_has_two_photographs() -> None:
+    """Of one size, with words that fit below them."""
+    assert tuple(PAIRS) == POINTS
+    for good, bad in PAIRS.values():
+        assert good.take.camera.resolution == bad.take.camera.resolution == SIZE
+        assert good.words != bad.words

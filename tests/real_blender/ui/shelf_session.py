@@ -1,0 +1,72 @@
+"""A person looks at keyframe libraries: the panel, one that is made in the file, and the asset browser.
+
+Usage: as of session.py, without a step.
+"""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1])]
+
+import bpy  # noqa: E402
+import steps_prepare  # noqa: E402
+from driver import Camera, Steps, drive, expect, turns  # noqa: E402
+from person import Person  # noqa: E402
+
+PANELS = ("KEYMARK_PT_libraries", "KEYMARK_PT_library_here")
+TITLE = "Anna Exercising"
+SHELF = "Studio"
+
+
+def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
+    """Learn a library of a motion, look at it and at all others, and install these as assets."""
+    unfold(PANELS)
+    person = Person(take, folder, camera)
+    yield from steps_prepare.start_empty(person)
+    yield from steps_prepare.opened(person, reconstructed=True)
+    bpy.ops.keymark.learn_library(title=TITLE, author="Anna")
+    registry = bpy.context.window_manager.keymark_shelf
+    expect(registry.libraries[registry.active].title == TITLE, "the library that was learned is not chosen")
+    yield from person.hands.find_button("keymark.edit_library")
+    yield from person.hands.scroll("VIEW_3D", "WHEELDOWNMOUSE", 30)
+    yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 2)
+    yield from person.look("libraries")
+    yield from assets(person)
+
+
+def unfold(panels: tuple[str, ...]) -> None:
+    """Let panels be open from the beginning: where a panel's header is no script can see."""
+    classes = [getattr(bpy.types, name) for name in panels]
+    for one in reversed(classes):
+        bpy.utils.unregister_class(one)
+    for one in classes:
+        one.bl_options = set()
+        bpy.utils.register_class(one)
+
+
+def assets(person: Person) -> Steps[None]:
+    """All shipped libraries in an asset library, and the asset browser in place of the viewport."""
+    shelf = person.folder / SHELF
+    shelf.mkdir(exist_ok=True)
+    known = bpy.context.preferences.filepaths.asset_libraries
+    known.new(name=SHELF, directory=str(shelf))
+    while len(known) > 1:
+        known.remove(known[0])
+    yield from person.hands.invoke("keymark.install_shipped_libraries", asset_library=SHELF)
+    yield from person.wait_for_job()
+    expect(list(shelf.glob("**/*.blend")), "nothing was installed")
+    area = person.hands.area("VIEW_3D")
+    area.ui_type = "ASSETS"
+    yield from turns(5)
+    browser = person.hands.area("FILE_BROWSER").spaces.active
+    browser.params.asset_library_reference = SHELF
+    browser.params.display_size = 72
+    yield from turns(60)  # pictures are read by and by
+    yield from person.look("assets")
+
+
+if __name__ == "__main__":
+    take_name, folder_name = sys.argv[sys.argv.index("--") + 1 :]
+    taking = Camera(Path(folder_name))
+    drive(session(Path(take_name), Path(folder_name), taking), taking)

@@ -1,0 +1,1 @@
+"""The extension's zips: for which Blenders, with which wheels, of which files."""

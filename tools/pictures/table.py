@@ -1,0 +1,78 @@
+"""Which picture of the docs comes from where; docs/pictures has these and no others."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+MOVING = "keymark.webp"
+FILMING = "filming_"
+POINTS = (
+    *("distance", "height", "direction", "still", "light", "shutter"),
+    *("clothes", "colors", "whole", "alone", "room", "start"),
+)
+"""Points of the guide to filming that have a picture."""
+DRAWN = (
+    MOVING,
+    "batch_summary.jpg",
+    "character.jpg",
+    "comparison.jpg",
+    "libraries.jpg",
+    "libraries_learned.jpg",
+    "libraries_matches.jpg",
+    "listing_featured.jpg",
+    "listing_icon.png",
+    *(f"{FILMING}{point}.jpg" for point in POINTS),
+)
+"""Pictures that draw_pictures.py makes itself."""
+
+Box = tuple[int, int, int, int]
+VIEWPORT: Box = (0, 27, 1315, 980)
+"""Left, top, right and bottom, on a session's screen, of the viewport with sidebar and timeline [px]."""
+SIDEBAR: Box = (1029, 78, 1315, 804)
+BROWSER: Box = (0, 27, 1315, 802)
+SHOWN_WIDTH = 1053
+"""Width to which a part of the screen is reduced, where it is wider [px]."""
+
+
+@dataclass(frozen=True)
+class Screenshot:
+    """A part of a picture that `make test-ui` takes of the screen."""
+
+    session: str
+    """Its folder in build/screenshots."""
+    name: str
+    """Its name without the number, which changes where a session gets another step."""
+    box: Box = VIEWPORT
+
+    def file(self, screenshots: Path) -> Path:
+        """The picture of the screen.
+
+        Raises:
+            SystemExit: It is missing.
+        """
+        found = sorted((screenshots / self.session).glob(f"[0-9][0-9]_{self.name}.png"))
+        if not found:
+            folder = screenshots / self.session
+            raise SystemExit(f"{folder}: the screenshot `{self.name}` is missing; `make test-ui` takes it")
+        return found[-1]
+
+
+SCREENSHOTS: Mapping[str, Screenshot] = {
+    "workflow_camera.jpg": Screenshot("library", "lines"),
+    "workflow_footage.jpg": Screenshot("library", "footage"),
+    "workflow_follow.jpg": Screenshot("plain", "clicked"),
+    "workflow_markers.jpg": Screenshot("library", "markers"),
+    "workflow_actor.jpg": Screenshot("library", "actor"),
+    "workflow_side.jpg": Screenshot("library", "from_the_side"),
+    "workflow_keyframes.jpg": Screenshot("demo", "keyframes"),
+    "workflow_correct.jpg": Screenshot("demo", "dragging"),
+    "workflow_reconstructing.jpg": Screenshot("demo", "reconstructing"),
+    "workflow_review.jpg": Screenshot("demo", "review"),
+    "workflow_finish.jpg": Screenshot("demo", "finish"),
+    "workflow_character.jpg": Screenshot("demo", "retargeted"),
+    "libraries_match.jpg": Screenshot("library", "posed_all"),
+    "libraries_panel.jpg": Screenshot("shelf", "libraries", SIDEBAR),
+    "libraries_assets.jpg": Screenshot("shelf", "assets", BROWSER),
+}
+"""Pictures that show Blender."""
+ALL = (*DRAWN, *SCREENSHOTS)
