@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
+from ..take.clip_notes import VARIABLE_RATE
 from ..take.take import Take
+from ..text import Sentence
 from .keyframe_evidence import KeyframeEvidence
 from .undecided import Undecided
 
@@ -28,9 +30,17 @@ def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
     for marker, name in enumerate(tracks.names):
         seen = int(tracks.visible[:, marker].sum())
         if seen < 0.5 * tracks.frame_count:
-            notes.append(f"marker {name} was found in {seen} of {tracks.frame_count} frames only")
+            notes.append(
+                Sentence(
+                    "marker {marker} was found in {seen} of {frames} frames only; check its color, or pose "
+                    "keyframes where it is hidden",
+                    marker=name,
+                    seen=seen,
+                    frames=tracks.frame_count,
+                )
+            )
     if tracks.variable_frame_rate:
-        notes.append("the clip has a variable frame rate: keys lie at the true times, between whole frames")
+        notes.append(VARIABLE_RATE)
     return tuple(notes)
 
 
@@ -40,24 +50,37 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
         notes.append(
-            f"the lens is {lens:.1f} mm by keyframes and footage, not {stated:.1f} mm as stated; "
-            "the estimate used the former"
+            Sentence(
+                "the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that instead of "
+                "{stated:.1f} mm as stated; check the camera",
+                lens=lens,
+                stated=stated,
+            )
         )
     if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
         notes.append(
-            f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the footage; "
-            "check the frames they are set at"
+            Sentence(
+                "the keyframes are about {frames:.0f} frames early or late by the footage; check the frames "
+                "they are set at",
+                frames=evidence.timing_frames,
+            )
         )
     if evidence.posing_scale > DOUBTED_POSING:
         notes.append(
-            "the keyframes differ from the footage by much more than the usual posing error; "
-            f"check the camera, the actor's lengths{_and_what_is_seen(take)}"
+            Sentence(
+                "the keyframes differ from the footage by much more than the usual posing error; check the "
+                "camera, the actor's lengths{and_what_is_seen}",
+                and_what_is_seen=_and_what_is_seen(take),
+            )
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > DOUBTED_MARKER:
             notes.append(
-                f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
-                "check whether another thing has its color"
+                Sentence(
+                    "marker {marker} is seldom where the keyframes put it and counts for little; check "
+                    "whether another thing has its color",
+                    marker=marker.name,
+                )
             )
     return tuple(notes)
 
@@ -74,8 +97,10 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     if followed or not take.contours or take.markers or take.keypoints:
         return ()
     return (
-        "contours were not followed: too little of the background stands still; between keyframes the motion "
-        "is their interpolation alone; hold the camera still, or add keypoints or markers",
+        Sentence(
+            "contours were not followed: too little of the background stands still; between keyframes the "
+            "motion is their interpolation alone; hold the camera still, or add keypoints or markers"
+        ),
     )
 
 
@@ -88,8 +113,13 @@ def turn_notes(take: Take, stretches: Sequence[Undecided]) -> tuple[str, ...]:
                 index + take.frame_start for index in (one.frame[0], one.frame[-1], one.telling_frame)
             )
             notes.append(
-                f"from frame {first} to {last} the body may turn the other way round; "
-                f"a keyframe at frame {telling} decides"
+                Sentence(
+                    "from frame {first} to {last} the body may turn the other way round; a keyframe at "
+                    "frame {telling} decides",
+                    first=first,
+                    last=last,
+                    telling=telling,
+                )
             )
     return tuple(notes)
 
@@ -99,9 +129,14 @@ def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
     found = sum(keyframe.matched is not None for keyframe in take.keyframes)
     if count == 0:
         return ()
-    were = "was" if count == 1 else "were"
-    which = "the found keyframes were" if count == found else f"{count} of {found} found keyframes {were}"
-    return (f"{which} left out: interpolation between the posed keyframes is more accurate there",)
+    return (
+        Sentence(
+            "{count} of {found} found keyframes were left out: interpolation between the posed ones is more "
+            "accurate there",
+            count=count,
+            found=found,
+        ),
+    )
 
 
 def found_notes(take: Take) -> tuple[str, ...]:
@@ -112,22 +147,38 @@ def found_notes(take: Take) -> tuple[str, ...]:
     posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
     if posed == 0:
         notes = [
-            f"no keyframe was posed: the motion rests on {len(found)} {origin}, other performers'; what the "
-            "footage does not show, depth above all, is like theirs"
+            Sentence(
+                "no keyframe was posed: the motion rests on {count} {origin}, other performers'; what the "
+                "footage does not show, depth above all, is like theirs",
+                count=len(found),
+                origin=origin,
+            )
         ]
     else:
         matched = any(not said.is_composed for _, said in found)
         moved = ", changed the way the posed ones differ from them" if matched else ""
-        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
+        notes = [
+            Sentence(
+                "{posed} of {count} keyframes are posed; the others are {origin}{moved}",
+                posed=posed,
+                count=len(take.keyframes),
+                origin=origin,
+                moved=moved,
+            )
+        ]
     doubtful = [(keyframe, said) for keyframe, said in found if said.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
         named = listed([str(frame) for frame in frames], MOST_NAMED)
-        which, them = f"{len(doubtful)} of {len(found)} found keyframes are", "them"
-        if len(found) == 1:
-            which, them = "the found keyframe is", "it"
-        notes.append(f"{which} doubtful; pose frame {named} to set {them} right")
+        notes.append(
+            Sentence(
+                "{doubtful} of {found} found keyframes are doubtful; pose frame {frames} to set them right",
+                doubtful=len(doubtful),
+                found=len(found),
+                frames=named,
+            )
+        )
     return tuple(notes)
 
 
@@ -143,11 +194,18 @@ def filter_notes(take: Take) -> tuple[str, ...]:
     """Notes on what the paper's filter does not know of: keypoints, and other people's keyframes."""
     notes: tuple[str, ...] = ()
     if take.keypoints:
-        notes = ("method ekf follows markers alone and leaves keypoints aside; method map follows both",)
+        notes = (
+            Sentence(
+                "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; method "
+                "map (Whole Clip) follows both"
+            ),
+        )
     if all(keyframe.matched is None for keyframe in take.keyframes):
         return notes
     return (
         *notes,
-        "method ekf takes found keyframes for posed ones; method map allows for the larger errors of found "
-        "keyframes",
+        Sentence(
+            "method ekf (Fuzzy Kalman Filter) takes found keyframes for posed ones; method map (Whole Clip) "
+            "allows for the larger errors of found keyframes"
+        ),
     )

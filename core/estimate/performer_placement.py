@@ -191,8 +191,8 @@ def ground_place(
     far, *_ = np.linalg.lstsq(np.stack([-down, up], axis=1), vertical, rcond=None)
     if not (np.isfinite(far).all() and far.min() > 0.0):
         raise InputError(
-            "the top of the head lies below the ground in the picture; "
-            "pick the top of the head first, then the ground between the feet"
+            "the top of the head lies below the ground in the picture; pick the top of the head first, then "
+            "the ground between the feet"
         )
     return np.asarray(location + far[0] * down)
 

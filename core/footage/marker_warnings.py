@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from ..text import Sentence
+
 FEW = 0.6
 """Share of the sampled frames below which a marker is detected too seldom."""
 ENOUGH = 6
@@ -43,33 +45,57 @@ def marker_warnings(
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
-        f"{name} and {other} have colors too alike: {_percent(share)} of {name} would pass for {other}"
+        Sentence(
+            "{marker} and {other} have colors too alike: {percent:.0f} % of {marker} would pass for {other}",
+            marker=name,
+            other=other,
+            percent=100.0 * share,
+        )
         for other, share in likeness.claimed
         if share >= MUCH
     ]
     if likeness.background >= MUCH:
         sentences.append(
-            f"the background has the color of {name}: {_percent(likeness.background)} of the marker would "
-            "pass for background"
+            Sentence(
+                "the background has the color of {marker}: {percent:.0f} % of the marker would pass for "
+                "background",
+                marker=name,
+                percent=100.0 * likeness.background,
+            )
         )
     if likeness.clutter >= MUCH:
         sentences.append(
-            f"{_percent(likeness.clutter)} of the pixels with the color of {name} are something else in the "
-            "picture"
+            Sentence(
+                "{percent:.0f} % of the pixels with the color of {marker} are something else in the picture",
+                percent=100.0 * likeness.clutter,
+                marker=name,
+            )
         )
     if still:
         sentences.append(
-            f"the color of {name} also stays still {' and '.join(still)} of the picture, which is surely no "
-            "marker"
+            Sentence(
+                "the color of {marker} also stays still {places} of the picture, which is surely no marker",
+                marker=name,
+                places=" and ".join(still),
+            )
         )
     if sampled >= ENOUGH and found < FEW * sampled:
         sentences.append(
-            f"{name} is found in only {found} of {sampled} frames; if it is visible in one of the others, "
-            "pick its color there"
+            Sentence(
+                "{marker} is found in only {found} of {sampled} frames; if it is visible in one of the "
+                "others, pick its color there",
+                marker=name,
+                found=found,
+                sampled=sampled,
+            )
         )
     if grid_area < SMALL_PX:
         sentences.append(
-            f"{name} is small in the picture, so its position and direction are uncertain; film from nearer"
+            Sentence(
+                "{marker} is small in the picture, so its position and direction are uncertain; film from "
+                "nearer",
+                marker=name,
+            )
         )
     return tuple(sentences)
 
@@ -79,9 +105,9 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     if not alike:
         return []
     return [
-        f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell them apart"
+        Sentence(
+            "{marker} has almost the same color as {others}; only keyframes and paths tell them apart",
+            marker=name,
+            others=" and ".join(alike),
+        )
     ]
-
-
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.0f} %"

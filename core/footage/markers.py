@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, Image
+from ..text import Sentence
 from .association import gather_candidates, viterbi_path
 from .clips.clip import Clip
 from .colors.streaming_color_learning import StreamingColorLearner
@@ -180,7 +181,11 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
     """Sentences on markers that look alike."""
     how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
     return tuple(
-        f"markers {' and '.join(styles[marker].name for marker in group)} have almost the same color; {how}"
+        Sentence(
+            "markers {markers} have almost the same color; {how}",
+            markers=" and ".join(styles[marker].name for marker in group),
+            how=how,
+        )
         for group in groups
         if len(group) > 1
     )

@@ -2,6 +2,7 @@
 
 from ..files.fields import listed
 from ..take.take import Take
+from ..text import Sentence
 from .found_poses import FoundPoses
 
 MOST_NAMED = 3
@@ -17,7 +18,13 @@ def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:
     markers = {marker.name for marker in take.markers}
     notes = []
     for name in sorted(frames, key=lambda name: (-len(frames[name]), name))[:MOST_NAMED]:
-        kind, seen = "marker" if name in markers else "keypoint", frames[name]
-        where = f"frame{'s' if len(seen) > 1 else ''} {listed([str(frame) for frame in seen], MOST_NAMED)}"
-        notes.append(f"{where}: no plausible posture explains {kind} {name}")
+        kind = "marker" if name in markers else "keypoint"
+        notes.append(
+            Sentence(
+                "frame {frames}: no plausible pose explains {kind} {name}",
+                frames=listed([str(frame) for frame in frames[name]], MOST_NAMED),
+                kind=kind,
+                name=name,
+            )
+        )
     return tuple(notes)

@@ -11,6 +11,7 @@ from ..matching.library_match import LibraryMatch, PreparedLibrary, match_librar
 from ..matching.match_input import MatchInput, match_input
 from ..progress import Job, Progress, stretch, within
 from ..take.take import Take
+from ..text import Sentence
 from .found_poses import FoundPoses
 from .second_reading import is_better, read_again
 
@@ -49,7 +50,7 @@ def match_clip(
         raise InputError(f"the library {library.title} has no posture; at least one is needed to match with")
     with threadpool_limits(limits=1, user_api="blas"):
         given = match_input(take, reading, keyframe_count)
-        yield Progress(f"Looking for {library.title}", 0.0)
+        yield Progress(Sentence("Looking for {library}", library=library.title), 0.0)
         prepared = prepare_library(given, library)
         found = yield from _found(given, prepared, floor_m, PREPARED_SHARE, FIRST_ROUND_SHARE)
         reading_again = read_again(take, reading, found)
@@ -58,7 +59,7 @@ def match_clip(
             given = match_input(take, better, keyframe_count)
             again = yield from _found(given, prepared, floor_m, FIRST_ROUND_SHARE, 1.0)
             found = replace(again, reading=better) if is_better(again, found) else found
-    yield Progress(f"Matching {library.title}", 1.0)
+    yield Progress(Sentence("Matching {library}", library=library.title), 1.0)
     return found
 
 
@@ -67,8 +68,12 @@ def _found(
 ) -> Job[FoundPoses]:
     """The match of a library that is prepared."""
     job = match_library(given, prepared, floor_m)
-    match: LibraryMatch = yield from within(f"Matching {prepared.library.title}", job, begun, done)
-    reason = f"{match.library.title} explains {match.fit:.0%} of the footage"
+    match: LibraryMatch = yield from within(
+        Sentence("Matching {library}", library=prepared.library.title), job, begun, done
+    )
+    reason = Sentence(
+        "{library} explains {fit:.0%} of the footage", library=match.library.title, fit=match.fit
+    )
     return FoundPoses(
         match.frames, match.postures, match.fit, match.floor_m, reason, library=match.library.identifier
     )

@@ -25,6 +25,7 @@ from ..prior.keyframes import Keyframe
 from ..progress import Job, Progress, stretch, within
 from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take
+from ..text import Sentence
 from .compose_clip import Composition, compose_frames
 from .composed_candidates import composed_candidates
 from .explained import contradicting, explained_shares
@@ -132,7 +133,7 @@ class _Search:
             postures,
             fit,
             composed.floor_m,
-            f"the postures explain {fit:.0%} of the footage",
+            Sentence("the found poses explain {fit:.0%} of the footage", fit=fit),
             _contradictions(take, work, sampled, off),
             between=self.between,
         )

@@ -14,7 +14,7 @@ from ..footage.keypoints.people import People
 from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import SPEED_M_PER_S
-from ..text import pluralize
+from ..text import Sentence, pluralize
 from .take import Take
 
 MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}
@@ -29,10 +29,6 @@ POSED_WEIGHT, HAND_WEIGHT = 3.0, 5.0
 """Of the frames in which a person has said where the performer is; all others count once."""
 FEWEST_KEYFRAMES, FEWEST_FITTING = 3, 0.5
 """Posed keyframes that can tell of a whole source, and their share that must show a person who fits."""
-ELSEWHERE = (
-    "nobody in it is where most of the posed keyframes have the performer, so it is left out; it must be of "
-    "this clip"
-)
 TRUNK_ENDS = ("shoulder.L", "shoulder.R", "hip.L", "hip.R")
 ENDS = {
     "upper_arm": ("shoulder", "elbow"),
@@ -66,7 +62,7 @@ def performer_keypoints(take: Take, prior: Posture | None, tracks: RegionTracks 
                 chosen = choose_performer(seen, expected, take.fps)
                 if _is_somebody_else(take, people, chosen):
                     chosen = np.full(frames, NOBODY, dtype=np.intp)
-                    notes += (f"{people.source}: {ELSEWHERE}",)
+                    notes += (_elsewhere(people.source),)
                 else:
                     notes += _notes(people, chosen, _said_by(take, prior, tracks, hand))
         parts.append(_of_one(people, chosen, notes, frames))
@@ -208,8 +204,14 @@ def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, han
     voices += ["the markers"] if not voices and tracks is not None and take.markers else []
     if voices:
         return f"the performer is the one that {' and '.join(voices)} show"
-    return (
-        "the performer is taken to be the largest who is there longest; click a point of another to change it"
+    return "the performer is taken to be the largest who is there longest; click on another to change it"
+
+
+def _elsewhere(source: str) -> Sentence:
+    return Sentence(
+        "{source}: nobody in it is where most of the posed keyframes have the performer, so it is left out; "
+        "it must be of this clip",
+        source=source,
     )
 
 
@@ -221,11 +223,22 @@ def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
     notes = []
     if several:
         notes.append(
-            f"{people.source}: up to {people.most_people} people in {pluralize(several, 'frame')}; {why}"
+            Sentence(
+                "{source}: up to {most} people in {frames}; {why}",
+                source=people.source,
+                most=people.most_people,
+                frames=pluralize(several, "frame"),
+                why=why,
+            )
         )
     if left_out:
         notes.append(
-            f"{people.source}: {pluralize(left_out, 'frame')} of {int((counts > 0).sum())} with people "
-            "show somebody else than the performer and are left out"
+            Sentence(
+                "{source}: {left_out} of {count} frames with people show somebody else than the performer "
+                "and are left out",
+                source=people.source,
+                left_out=left_out,
+                count=int((counts > 0).sum()),
+            )
         )
     return tuple(notes)

@@ -9,6 +9,7 @@ from ..footage.ignored_regions import IgnoredRegion
 from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
 from ..prior.keyframes import Keyframe
+from ..text import Sentence
 from .description import TAKE_FILE
 
 POORLY_FITTED_M = 0.06
@@ -67,8 +68,12 @@ class Take:
     def notes(self) -> tuple[str, ...]:
         """Sentences on keyframes that are usable but look wrong."""
         return tuple(
-            f"keyframe {keyframe.index + self.frame_start}: its points are {100 * keyframe.residual_m:.0f} "
-            "cm on average from any posture of this actor; check them and the actor's segment lengths"
+            Sentence(
+                "keyframe {frame}: its points are {distance:.0f} cm on average from any posture of this "
+                "actor; check them and the actor's lengths",
+                frame=keyframe.index + self.frame_start,
+                distance=100 * keyframe.residual_m,
+            )
             for keyframe in self.keyframes
             if keyframe.residual_m > POORLY_FITTED_M
         )

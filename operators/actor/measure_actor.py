@@ -2,13 +2,14 @@
 
 import bpy
 
+from ...core.text import Sentence
 from ..keypoints.evidence import scene_evidence
 from ..overlays.measuring import Clicks, show
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.notices import give_notices
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import bones_editable, camera, footage, idle
@@ -117,12 +118,11 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         if not has_keyframes(take):
             write_posture(take.armature, measured.posture)
         if not measured.stands:
-            sentence = label(
+            sentence = Sentence(
                 "The footage does not fit a performer who stands upright, so the lengths are little better "
                 "than average; go to a frame in which the performer stands, and check the height"
             )
-            give_notices(take, "actor", "lengths", (sentence,))
-            self.report({"WARNING"}, sentence)
+            give_notices(take, "actor", "lengths", (warn(self, sentence),))
         else:
             say(
                 self,

@@ -34,8 +34,8 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
         column.prop(take, "stature")
         row = column.row(align=True)
         row.scale_y = 1.2
-        text = "Build Actor" if take.armature is None else "Use Average Proportions"
-        row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE")
+        text = label("Build Actor") if take.armature is None else label("Use Average Proportions")
+        row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE", translate=False)
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.separator()
         column.prop(take, "armature")

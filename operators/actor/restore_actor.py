@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take, find_take, has_lost_actor
 
@@ -11,7 +11,7 @@ from ..shell.takes import active_take, find_take, has_lost_actor
 def lost_actor(context: bpy.types.Context) -> str | None:
     """The take's actor is gone."""
     take = find_take(context.scene)
-    return None if take is not None and has_lost_actor(take) else "The take's actor is in the scene"
+    return None if take is not None and has_lost_actor(take) else label("The take's actor is in the scene")
 
 
 class KEYMARK_OT_restore_actor(BaseOperator, bpy.types.Operator):

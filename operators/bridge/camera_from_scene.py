@@ -40,12 +40,17 @@ def read_lens(footage: Footage) -> Camera:
     data = camera_object.data
     if data.type != "PERSP":
         raise InputError(
-            f"camera '{camera_object.name}' is of type {data.type}; footage needs a perspective one"
+            "camera '{camera}' is of type {type}; footage needs a perspective one",
+            camera=camera_object.name,
+            type=data.type,
         )
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         raise InputError(
-            f"scene '{scene.name}' has the pixel aspect {scene.render.pixel_aspect_x:g} to "
-            f"{scene.render.pixel_aspect_y:g}; only square pixels are supported"
+            "scene '{scene}' has the pixel aspect {pixel_aspect_x:g} to {pixel_aspect_y:g}; only square "
+            "pixels are supported",
+            scene=scene.name,
+            pixel_aspect_x=scene.render.pixel_aspect_x,
+            pixel_aspect_y=scene.render.pixel_aspect_y,
         )
     width, height = clip.size
     sensor_width, unit = _horizontal_sensor(data, width, height)
@@ -83,7 +88,9 @@ def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
     }
     if any(untouched.get(tracking.distortion_model, ())):
         raise InputError(
-            f"clip '{clip.name}' has the distortion model {tracking.distortion_model}; choose Polynomial"
+            "clip '{clip}' has the distortion model {distortion_model}; choose Polynomial",
+            clip=clip.name,
+            distortion_model=tracking.distortion_model,
         )
     return (0.0, 0.0, 0.0)
 

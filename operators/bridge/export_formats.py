@@ -11,6 +11,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import ConversionError
+from ...core.text import Sentence
 
 BVH_ORDER = "ZXY"
 """One order of rotation channels for all joints: some readers take the first joint's for all."""
@@ -31,12 +32,15 @@ class ExportFormat:
     addon: str = ""
     """Name of the add-on, as in the Preferences."""
 
-    def missing(self) -> str:
-        """Why this Blender cannot write the format; empty where it can."""
+    def missing(self) -> Sentence | None:
+        """Why this Blender cannot write the format; None where it can."""
         if self.operator_type:
-            registered = hasattr(bpy.types, self.operator_type)
-            return "" if registered else f"Enable the add-on {self.addon} in the Preferences"
-        return "" if bpy.app.build_options.usd else f"This Blender is built without {self.name}"
+            if hasattr(bpy.types, self.operator_type):
+                return None
+            return Sentence("Enable the add-on {addon} in the Preferences", addon=self.addon)
+        if bpy.app.build_options.usd:
+            return None
+        return Sentence("This Blender is built without {format}", format=self.name)
 
 
 def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
@@ -60,7 +64,9 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
-            raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
+            raise ConversionError(
+                "{path}: Blender's BVH exporter failed ({reason})", path=path, reason=str(error).strip()
+            ) from error
 
 
 def _write_fbx(_: bpy.types.Object, path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 import numpy as np
@@ -18,6 +17,7 @@ from ...core.finish.natural_extremities import natural_extremities
 from ...core.finish.planted_feet import PlantedFeet, plant_feet, point_tolerances
 from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
+from ...core.text import Sentence
 from .actor_lengths import read_body
 from .extremity_curves import turned_extremities
 from .final_motion import (
@@ -32,19 +32,11 @@ from .final_motion import (
 )
 from .rig import read_rig
 
-Note = tuple[str, dict[str, Any]]
-"""A sentence's template, and what fills its braces."""
-
 PLANTING = "Planting the feet"
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
 NOTICEABLE_M = 0.005
 """Distance between a pose and its nearest posture above which a note is made [m]."""
-BEYOND = (
-    "The motion goes up to {distance:.0f} mm beyond what the skeleton's legs can do; planting the feet uses "
-    "the nearest posture"
-)
-NO_REST = "No foot rests long enough to be planted; raise Foot Stray to hold feet that sway"
 
 
 @dataclass(frozen=True)
@@ -73,7 +65,7 @@ class Finished:
     """The largest distance from the motion that reducing the keys makes [m]."""
     contacts: tuple[Contact, ...]
     """The planted feet."""
-    notes: tuple[Note, ...]
+    notes: tuple[str, ...]
 
     @property
     def keys_before(self) -> int:
@@ -129,7 +121,7 @@ def finish_motion(
     time_s = (frames - frames[0]) * frame_s
     shown = rig.pose(values)
     planted = PlantedFeet(shown_postures(armature_object, rig, shown, body), ())
-    notes: tuple[Note, ...] = ()
+    notes: tuple[str, ...] = ()
     yield Progress(PLANTING, SEEN)
     if options.stray_m is not None:
         before = planted.posture
@@ -153,8 +145,16 @@ def finish_motion(
 
 def _planting_notes(
     rig: Rig, shown: RigPose, body: Body, before: Posture, planted: PlantedFeet
-) -> tuple[Note, ...]:
+) -> tuple[str, ...]:
     if not planted.contacts:
-        return ((NO_REST, {}),)
+        return (Sentence("No foot rests long enough to be planted; raise Foot Stray to hold feet that sway"),)
     beyond_m = largest_leg_distance_m(rig, shown, body, before)
-    return ((BEYOND, {"distance": 1000.0 * beyond_m}),) if beyond_m > NOTICEABLE_M else ()
+    if beyond_m <= NOTICEABLE_M:
+        return ()
+    return (
+        Sentence(
+            "The motion goes up to {distance:.0f} mm beyond what the skeleton's legs can do; planting the "
+            "feet uses the nearest posture",
+            distance=1000.0 * beyond_m,
+        ),
+    )

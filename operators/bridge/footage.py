@@ -28,7 +28,9 @@ class Footage:
             InputError: There is none.
         """
         if self.movie_clip is None:
-            raise InputError(f"the take in scene '{self.scene.name}' has no footage; load a clip first")
+            raise InputError(
+                "the take in scene '{scene}' has no footage; load a clip first", scene=self.scene.name
+            )
         return self.movie_clip
 
     @property
@@ -40,8 +42,8 @@ class Footage:
         """
         if self.camera_object is None or self.camera_object.type != "CAMERA":
             raise InputError(
-                f"the take in scene '{self.scene.name}' has no camera; "
-                "add one where the footage was taken from"
+                "the take in scene '{scene}' has no camera; add one where the footage was taken from",
+                scene=self.scene.name,
             )
         return self.camera_object
 
@@ -94,7 +96,8 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
         raise InputError(
-            f"{path}: the footage is not there; say where it is now with Find Clip in the Footage panel"
+            "{path}: the footage is not there; say where it is now with Find Clip in the Footage panel",
+            path=path,
         )
     return path
 

@@ -46,9 +46,11 @@ def export_motion(
             try:
                 export_format.write(armature_object, beside)
             except RuntimeError as error:
-                raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
+                raise ConversionError(
+                    "{path}: the exporter failed ({reason})", path=path, reason=str(error).strip()
+                ) from error
             if not beside.exists():
-                raise ConversionError(f"{path}: the exporter wrote nothing")
+                raise ConversionError("{path}: the exporter wrote nothing", path=path)
 
         write_atomically(path, write)
 
@@ -81,7 +83,10 @@ def _only(
         _set_mode("OBJECT", mode)
         chosen.hide_set(False, view_layer=layer)
         if not chosen.visible_get(view_layer=layer):
-            raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
+            raise InputError(
+                "'{chosen}' is hidden with its collection; show it to export its motion",
+                chosen=chosen.name,
+            )
         for one in selected:
             one.select_set(False, view_layer=layer)
         for one in (*along, chosen):

@@ -133,11 +133,16 @@ def frame_in_footage(
     if abs(float(frames[index]) - current) > NEAREST + 1e-6:
         if frames[0] < current < frames[-1]:
             raise InputError(
-                f"the footage, whose rate varies, has no frame of its own at {current:g}; "
-                f"go to frame {round(float(frames[index]))}"
+                "the footage, whose rate varies, has no frame of its own at {current:g}; go to frame "
+                "{frames}",
+                current=current,
+                frames=round(float(frames[index])),
             )
         raise InputError(
-            f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
+            "frame {current:g} lies outside the footage, whose frames are {first:g} to {last:g}",
+            current=current,
+            first=frames[0],
+            last=frames[-1],
         )
     return FrameInFootage(footage, evidence, reading, frames, index)
 
@@ -209,7 +214,7 @@ def fit_to_frame(
     points = ObservedKeypoints.of(keypoints)
     here = points[np.array([frame.index])]
     if not (regions.visible.any() or here.seen.any()):
-        raise InputError(_nothing_seen(frame, keypoints))
+        raise _nothing_seen(frame, keypoints)
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     evidence = replace(uncalibrated(model), keypoints=usual)
     if posed and (frame.reading is not None or not frame.styles):
@@ -230,14 +235,18 @@ def fit_to_frame(
     return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
 
 
-def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> str:
+def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
     shown = f"{frame.clip_frames[frame.index]:g}"
     if not (frame.styles or keypoints.names):
-        return "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
+        return InputError(
+            "neither markers nor keypoints are followed, which a pose is fitted to; pose the actor by hand"
+        )
     wanted = " and ".join(
         name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
     )
-    return f"none of the {wanted} is seen in frame {shown}; pose the actor by hand"
+    return InputError(
+        "none of the {wanted} is seen in frame {frame}; pose the actor by hand", wanted=wanted, frame=shown
+    )
 
 
 def _keyframes(

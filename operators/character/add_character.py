@@ -4,7 +4,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import idle
 from ..shell.takes import active_take
 from .characters import add_character, candidates, may_be_character
@@ -50,7 +50,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         chosen = self._chosen(context)
         character = add_character(active_take(context.scene), chosen)
         if character.problem:
-            say(self, "WARNING", "{problem}", problem=character.problem)
+            warn(self, character.problem)
         elif chosen is None:
             say(self, "INFO", "Choose the character's armature")
         elif all_doubts(character):
@@ -70,8 +70,9 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         named = bpy.data.objects.get(self.armature)
         if not may_be_character(named):
             raise InputError(
-                f"'{self.armature}' is no armature of a character in this file; "
-                "give the name of an armature's object that is no actor of Keymark's"
+                "'{armature}' is no armature of a character in this file; give the name of an armature's "
+                "object that is no actor of Keymark's",
+                armature=self.armature,
             )
         return named
 

@@ -53,7 +53,7 @@ def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     """
     character = find_character(scene)
     if character is None:
-        raise InputError(f"scene '{scene.name}' has no character; add one to the take first")
+        raise InputError("scene '{scene}' has no character; add one to the take first", scene=scene.name)
     return character
 
 

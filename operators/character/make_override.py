@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import needs_override
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of, show_map
@@ -17,7 +17,11 @@ def linked(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
+    return (
+        None
+        if needs_override(active_character(context.scene).armature)
+        else label("The character is not linked")
+    )
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
@@ -55,7 +59,9 @@ def _override_object(context: bpy.types.Context, original: bpy.types.Object) -> 
         return original
     made = original.override_hierarchy_create(context.scene, context.view_layer, do_fully_editable=True)
     if made is None or made.type != "ARMATURE":
-        raise InputError(f"Blender makes no library override of '{original.name}'; append it instead")
+        raise InputError(
+            "Blender makes no library override of '{original}'; append it instead", original=original.name
+        )
     return made
 
 
@@ -75,8 +81,10 @@ def _override_instance(
     found = next((each for each in overrides if each.override_library.reference == original), None)
     if made is None or found is None:
         raise InputError(
-            f"Blender makes no library override of collection '{collection.name}', which holds "
-            f"'{original.name}'; append it instead"
+            "Blender makes no library override of collection '{collection}', which holds '{original}'; "
+            "append it instead",
+            collection=collection.name,
+            original=original.name,
         )
     return found
 

@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import idle
 from .characters import active_character
 from .recognition import all_doubts, recognize_bones
@@ -24,7 +24,7 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
         recognize_bones(character)
         doubts = all_doubts(character)
         for doubt in doubts:
-            self.report({"WARNING"}, doubt[:1].upper() + doubt[1:])
+            warn(self, doubt)
         if doubts:
             return
         say(self, "INFO", "Recognized the bones of '{name}'", name=character.armature.name)

@@ -12,12 +12,12 @@ from .source_motion import missing_source
 
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
-    return None if find_take(context.scene) is not None else "Load the footage or open a take first"
+    return None if find_take(context.scene) is not None else label("Load the footage or open a take first")
 
 
 def character(context: bpy.types.Context) -> str | None:
     """A character is chosen."""
-    return None if find_character(context.scene) is not None else "Add a character first"
+    return None if find_character(context.scene) is not None else label("Add a character first")
 
 
 def armature(context: bpy.types.Context) -> str | None:
@@ -26,7 +26,7 @@ def armature(context: bpy.types.Context) -> str | None:
     if chosen is None:
         return character(context)
     if chosen.armature is None:
-        return "Choose the character's armature first"
+        return label("Choose the character's armature first")
     if chosen.armature.type != "ARMATURE":
         return label("'{name}' is no armature; choose the character's", name=chosen.armature.name)
     return None
@@ -52,7 +52,7 @@ def recognized(context: bpy.types.Context) -> str | None:
         return unmet
     chosen = active_character(context.scene)
     if not len(chosen.character_map.roles):
-        return "Recognize the character's bones first"
+        return label("Recognize the character's bones first")
     missing = [full_title(role) for role in missing_roles(chosen)]
     if missing:
         return label("Choose the bones of {roles} first", roles=few(missing))
@@ -78,7 +78,7 @@ def result(context: bpy.types.Context) -> str | None:
     if chosen is None:
         return character(context)
     made = any(each.action is not None for each in chosen.results)
-    return None if made else "Retarget the motion first"
+    return None if made else label("Retarget the motion first")
 
 
 def active_bone(context: bpy.types.Context) -> str | None:
@@ -87,5 +87,5 @@ def active_bone(context: bpy.types.Context) -> str | None:
     if unmet is not None:
         return unmet
     if active_bone_of(active_character(context.scene)) is None:
-        return "Make a bone of the character active first: click on it in Pose Mode"
+        return label("Make a bone of the character active first: click on it in Pose Mode")
     return None

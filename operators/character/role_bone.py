@@ -28,15 +28,20 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
         InputError: There is no such role or place in it, or no such bone.
     """
     if role not in ROLES:
-        raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
+        raise InputError("there is no role '{role}'; roles are {roles}", role=role, roles=", ".join(ROLES))
     if bone not in character.armature.data.bones:
         raise InputError(
-            f"'{character.armature.name}' has no bone '{bone}'; give the name of one of its bones"
+            "'{armature}' has no bone '{bone}'; give the name of one of its bones",
+            armature=character.armature.name,
+            bone=bone,
         )
     shown = role_named(character.character_map, role)
     if index >= len(shown.bones):
         raise InputError(
-            f"the role {role} has {len(shown.bones)} bones, so there is no number {index}; add a bone first"
+            "the role {role} has {bones} bones, so there is no number {index}; add a bone first",
+            role=role,
+            bones=len(shown.bones),
+            index=index,
         )
     shown.bones[index].bone = bone
 
@@ -74,5 +79,5 @@ def chain_role(role: str) -> str:
         InputError: It is one bone's.
     """
     if role not in ROLES or not is_chain(role):
-        raise InputError(f"'{role}' is no chain of bones; spine and neck are")
+        raise InputError("'{role}' is no chain of bones; spine and neck are", role=role)
     return role

@@ -42,13 +42,13 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     """What is missing for a character to perform, as a sentence; None where nothing is."""
     kind, actor = _kind(take, character), _actor(take, character)
     if kind == "ACTION" and character.source_action is None:
-        return "Choose the Action that the character is to perform"
+        return label("Choose the Action that the character is to perform")
     if kind == "FINAL" and take.finish.action is None:
-        return "Bake the final Action first, or choose another motion"
+        return label("Bake the final Action first, or choose another motion")
     if kind == "MOTION" and take.motion_action is None:
-        return "Reconstruct the motion first"
+        return label("Reconstruct the motion first")
     if actor is None:
-        return "The motion's actor is gone; choose its armature in the step Actor"
+        return label("The motion's actor is gone; choose its armature in the step Actor")
     if not is_actor(actor):
         return label("'{name}' is no actor of Keymark's; choose the motion's actor", name=actor.name)
     return None

@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
-from ..shell.messages import label, say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.outdated import finished_again
 from ..shell.requirements import actor, idle, motion
@@ -67,10 +67,7 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         finished_again(take)
         assign_action(armature_object, settings.action)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        sentences = [label(template, **values) for template, values in finished.notes]
-        give_notices(take, "finish", "bake", sentences)
-        for sentence in sentences:
-            self.report({"WARNING"}, sentence)
+        give_notices(take, "finish", "bake", [warn(self, note) for note in finished.notes])
         say(
             self,
             "INFO",

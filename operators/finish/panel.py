@@ -3,7 +3,7 @@
 import bpy
 
 from ..bridge.export_formats import FORMATS
-from ..shell.messages import label
+from ..shell.messages import label, translated
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -56,11 +56,11 @@ def _draw_result(
     column.separator()
     row = column.row(align=True)
     for which, action, text in (
-        ("MOTION", take.motion_action, "Motion"),
-        ("FINAL", settings.action, "Final"),
+        ("MOTION", take.motion_action, label("Motion")),
+        ("FINAL", settings.action, label("Final")),
     ):
         depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress).which = which
+        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
     lines = column.column(align=True)
     if settings.outdated:
         draw_sentence(lines, context, label("The motion is newer: bake again"), "ERROR")
@@ -105,10 +105,10 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
         for kind, listed in FORMATS.items():
             missing = listed.missing()
             row = column.row()
-            row.enabled = not missing
+            row.enabled = missing is None
             row.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
-            if missing:
-                column.label(text=missing, icon="INFO")
+            if missing is not None:
+                column.label(text=translated(missing), icon="INFO", translate=False)
 
 
 class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):

@@ -10,7 +10,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import FootageView, view_of_footage_under
-from ..shell.messages import label, say
+from ..shell.messages import label, say, tooltip, warn
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take
@@ -62,11 +62,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Describe the button by the lines it begins with."""
         if properties.kind == HEIGHT:
-            return label(
+            return tooltip(
                 "Find the camera from the performer: click on the floor between the feet, then on the top of "
                 "the head, where the performer stands upright; in other frames too, nearer and farther away"
             )
-        return label(
+        return tooltip(
             "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
         )
 
@@ -139,11 +139,10 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             try:
                 drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
             except KeymarkError as error:
-                self.report({"WARNING"}, str(error))
-        wanted = (
-            PERFORMER_REQUEST if drawing.of_performer and drawing.kind == HEIGHT else REQUESTS[drawing.kind]
-        )
-        request = label(KEYS, request=label(wanted))
+                warn(self, error.sentence)
+        by_performer = drawing.of_performer and drawing.kind == HEIGHT
+        wanted = label(PERFORMER_REQUEST if by_performer else REQUESTS[drawing.kind])
+        request = label(KEYS, request=wanted)
         context.workspace.status_text_set(request)
         redraw_footage(context)
 
@@ -181,7 +180,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         lines = read_lines(take)
         if not lines:
-            raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
+            raise InputError("take '{take}' has no lines to find its camera by; draw some", take=take.name)
         fit = fit_take(take, evidence_of(lines, take.stature))
         write_fit(take, fit)
         say(self, "INFO", "{values}", values=values(fit))

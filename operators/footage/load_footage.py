@@ -57,7 +57,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
-        path = chosen_file(self, "a video, or one image of a numbered sequence")
+        path = chosen_file(self, label("a video, or one image of a numbered sequence"))
         clip = load_footage(path)
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(path))

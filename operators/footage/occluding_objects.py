@@ -4,7 +4,8 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
-from ..shell.messages import label
+from ...core.text import Sentence
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 
 SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "META", "FONT", "VOLUME"}
@@ -38,13 +39,12 @@ def warn_of_occluders(
     if not occluding:
         give_notices(take, "footage", "view")
         return
-    sentence = label(
+    sentence = Sentence(
         "In front of the footage: {names}; to see the performer, select what hides them and "
         "press H (Alt H brings it back)",
         names=", ".join(occluding[:MOST_NAMED] + (["..."] if len(occluding) > MOST_NAMED else [])),
     )
-    give_notices(take, "footage", "view", (sentence,), occluding)
-    operator.report({"WARNING"}, sentence)
+    give_notices(take, "footage", "view", (warn(operator, sentence),), occluding)
 
 
 def _in_picture(scene: bpy.types.Scene, camera: bpy.types.Object, blender_object: bpy.types.Object) -> bool:

@@ -37,8 +37,8 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
             draw_camera(column, context, take)
         column.separator()
         row = column.row(align=True)
-        text = "Load Footage" if take.clip is None else "Replace Clip"
-        row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE")
+        text = label("Load Footage") if take.clip is None else label("Replace Clip")
+        row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE", translate=False)
         row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
         row = side_by_side(column)
         row.operator("keymark.open_take", icon="FILE_FOLDER")

@@ -3,9 +3,10 @@
 import bpy
 
 from ...core.errors import InputError
+from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import chosen_file
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -42,11 +43,12 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)
-        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
+        clip, path = take.clip, chosen_file(self, label("the video, or one image of the sequence"))
         if clip.library is not None:
             raise InputError(
-                f"clip '{clip.name}' is linked from {clip.library.filepath}; "
-                "find it in that file, or load it here"
+                "clip '{clip}' is linked from {library}; find it in that file, or load it here",
+                clip=clip.name,
+                library=clip.library.filepath,
             )
         found = Clip.open(path)
         size, count = (clip.size[0], clip.size[1]), clip.frame_duration
@@ -61,9 +63,9 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             give_notices(take, "footage", "clip")
             say(self, "INFO", "Found {name}", name=clip.name)
             return
-        sentence = label(
+        sentence = Sentence(
             "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
-            "{old_width} x {old_height}; is it the right one?",
+            "{old_width} x {old_height}; check that it is the right one",
             file=path.name,
             count=clip.frame_duration,
             width=found.size[0],
@@ -72,8 +74,7 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             old_width=size[0],
             old_height=size[1],
         )
-        give_notices(take, "footage", "clip", (sentence,))
-        self.report({"WARNING"}, sentence)
+        give_notices(take, "footage", "clip", (warn(self, sentence),))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_relocate_clip,))

@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .take_footage import give_footage, look_through_camera, show_range, take_name
@@ -13,7 +13,7 @@ from .take_footage import give_footage, look_through_camera, show_range, take_na
 
 def any_clip(_context: bpy.types.Context) -> str | None:
     """The file has a clip."""
-    return None if bpy.data.movieclips else "This file has no clip; load the footage"
+    return None if bpy.data.movieclips else label("This file has no clip; load the footage")
 
 
 class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):

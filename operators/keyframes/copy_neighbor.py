@@ -5,7 +5,7 @@ import bpy
 from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import SAME_FRAME, invalidate_keyed_frames, keyframes_of
-from ..shell.messages import label, say
+from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle, keyframes
 from ..shell.takes import active_take
 from .corrections import set_corrected, shown_pose
@@ -31,7 +31,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
-        return label(next(text for name, _, text in DIRECTIONS if name == properties.direction))
+        return tooltip(next(text for name, _, text in DIRECTIONS if name == properties.direction))
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Copy everything but the place."""
@@ -43,8 +43,10 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
         if neighbor is None:
-            said = {"NEXT": "There is no keyframe after this frame"}
-            say(self, "INFO", said.get(self.direction, "There is no keyframe before this frame"))
+            if self.direction == "NEXT":
+                say(self, "INFO", "There is no keyframe after this frame")
+            else:
+                say(self, "INFO", "There is no keyframe before this frame")
             return {"CANCELLED"}
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:

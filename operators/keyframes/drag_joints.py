@@ -27,14 +27,14 @@ ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
 VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
 """Keys that change the view: depth is corrected from the side."""
 IDLE_KEYS = "Drag: Move Joint   |   Ctrl: In Depth   |   Shift: Precise   |   F: Flip Depth   |   Enter: Done"
-HOVER_KEYS = "{joint}   |   " + IDLE_KEYS
+HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
 
 def not_dragging(context: bpy.types.Context) -> str | None:
     """Joints are not being dragged already."""
     running = job_is_running(context, DRAGGING)
-    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
+    return label("Joints can be dragged already; Enter in the viewport ends it") if running else None
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):
@@ -58,7 +58,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._handles = handles.Handles()
         handles.show(self._handles)
         context.window_manager.modal_handler_add(self)
-        _say(context, IDLE_KEYS)
+        _show_keys(context)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -120,10 +120,10 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._handles.hovered = hovered
         if hovered is None:
             context.window.cursor_modal_restore()
-            _say(context, IDLE_KEYS)
+            _show_keys(context)
         else:
             context.window.cursor_modal_set("SCROLL_XY")
-            _say(context, HOVER_KEYS, hovered)
+            _show_keys(context, hovered)
         redraw_editors(context, "VIEW_3D")
 
     def _begin(self, take: bpy.types.PropertyGroup, view: WorldInRegion, event: bpy.types.Event) -> None:
@@ -147,7 +147,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         drag = self._drag
         if event.value == "PRESS" and event.type in ("ESC", "RIGHTMOUSE"):
             self._restore(context)
-            _say(context, IDLE_KEYS)
+            _show_keys(context)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._restore(context)
             if drag.has_moved:
@@ -160,11 +160,11 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
                     sight=drag.sight,
                     pushed=drag.pushed,
                 )
-            _say(context, IDLE_KEYS)
+            _show_keys(context)
         elif event.type == "MOUSEMOVE":
             drag.follow(event)
             _preview(take, drag)
-            _say(context, DRAG_KEYS, drag.joint)
+            _show_keys(context, drag.joint, dragged=True)
             redraw_editors(context, "VIEW_3D")
         return {"RUNNING_MODAL"}
 
@@ -201,9 +201,13 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     write_posture(take.armature, moved)
 
 
-def _say(context: bpy.types.Context, template: str, joint: str | None = None) -> None:
-    title = "" if joint is None else label(point_title(joint))
-    context.workspace.status_text_set(label(template, joint=title))
+def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = False) -> None:
+    """Show in the status bar what keys do now, with no joint, over one or while it is dragged."""
+    words = label(IDLE_KEYS)
+    if joint:
+        title = label(point_title(joint))
+        words = label(DRAG_KEYS, joint=title) if dragged else label(HOVER_KEYS, joint=title, keys=words)
+    context.workspace.status_text_set(words)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_drag_joints,))

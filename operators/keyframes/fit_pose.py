@@ -78,7 +78,7 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
             say(
                 self,
                 "WARNING",
-                "No plausible pose explains {names} here; the panel says it until this frame is posed",
+                "No plausible pose explains {names} here; check what else looks like it, or pose the frame",
                 names=", ".join(found.contradictions),
             )
         elif not np.isfinite(found.residual_px).any():

@@ -4,13 +4,13 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
-from ..shell.messages import say
+from ..shell.messages import label, say, tooltip
 from ..shell.takes import find_take
 
 
 def proposals(context: bpy.types.Context) -> str | None:
     """The take has proposed keyframes."""
-    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
+    return None if proposed_frames(find_take(context.scene)) else label("Propose keyframes first")
 
 
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
@@ -39,10 +39,10 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
         if properties.skip_posed:
-            return "Go to the next proposed keyframe that is not posed yet"
+            return tooltip("Go to the next proposed keyframe that is not posed yet")
         if properties.direction == "NEXT":
-            return "Go to the next proposed keyframe"
-        return "Go to the previous proposed keyframe"
+            return tooltip("Go to the next proposed keyframe")
+        return tooltip("Go to the previous proposed keyframe")
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Go to the frame; if there is none, stay and report it."""

@@ -9,7 +9,7 @@ from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
 from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
@@ -85,9 +85,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         for frame in result.frames:
             take.proposals.add().frame = frame
         say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
-        give_notices(take, "keyframes", "proposals", (result.note,) if result.note else ())
-        if result.note:
-            self.report({"WARNING"}, result.note[:1].upper() + result.note[1:])
+        notes = [warn(self, result.note)] if result.note else []
+        give_notices(take, "keyframes", "proposals", notes)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_propose_keyframes,))

@@ -7,7 +7,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import offered_at
 from ..shell.keyframe_action import show_keyframes
-from ..shell.messages import label, say
+from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take, find_take
 
@@ -30,9 +30,9 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         said = candidate_title(offered, offered.candidates[properties.candidate])
-        return label(
+        return tooltip(
             "{candidate}. Pose the actor like this; nothing is keyed until you store it", candidate=said
         )
 

@@ -3,10 +3,11 @@
 import bpy
 
 from ...core.body.human import HUMAN
+from ...core.text import Sentence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import label, say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
@@ -41,14 +42,13 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         give_notices(take, "keyframes", about)
         improved = key_pose(context, take)
         if read.furthest_m > NOTICEABLE_M:
-            sentence = label(
-                "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton "
-                "can do, and its nearest posture will be used",
+            sentence = Sentence(
+                "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton can do, "
+                "and its nearest posture will be used",
                 frame=frame,
                 beyond=1000.0 * read.furthest_m,
             )
-            give_notices(take, "keyframes", about, (sentence,), frame=frame)
-            self.report({"WARNING"}, sentence)
+            give_notices(take, "keyframes", about, (warn(self, sentence),), frame=frame)
         elif improved:
             say(
                 self,

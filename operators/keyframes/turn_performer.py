@@ -9,7 +9,7 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import points_to_follow
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say
+from ..shell.messages import label, say, tooltip
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
@@ -56,7 +56,9 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
         said = next(text for name, _, text in FACINGS if name == properties.facing)
-        return label("{said}, at the same place; the pose is fitted to the footage again", said=label(said))
+        return tooltip(
+            "{said}, at the same place; the pose is fitted to the footage again", said=tooltip(said)
+        )
 
     def run(self, context: bpy.types.Context) -> None:
         """Turn the pose, fit it, and set the likeliest."""

@@ -66,8 +66,9 @@ class KEYMARK_OT_camera_from_walk(JobOperator, bpy.types.Operator):
             found = standing_regions(tracks, segments, body, source.rate)
         if len(found) < FEWEST:
             raise InputError(
-                f"take '{take_by_identifier(scene, identifier).name}' shows the performer upright in "
-                "too few frames, from head to feet; click on the performer with From the Performer instead"
+                "take '{take}' shows the performer upright in too few frames, from head to feet; click on "
+                "the performer with From the Performer instead",
+                take=take_by_identifier(scene, identifier).name,
             )
         return Walked(identifier, found)
 

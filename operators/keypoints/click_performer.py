@@ -73,8 +73,8 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
         if found is None:
             raise InputError(
-                f"no detector sees anybody in frame {context.scene.frame_current}; go to one in which "
-                "the performer is seen"
+                "no detector sees anybody in frame {frame_current}; go to one in which the performer is seen",
+                frame_current=context.scene.frame_current,
             )
         point, pixel = found
         set_click(take, point, pixel)

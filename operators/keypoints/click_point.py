@@ -113,7 +113,11 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
             x, y = self.pixel
             raise InputError(
-                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
+                "pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels",
+                x=x,
+                y=y,
+                width=width,
+                height=height,
             )
         set_click(take, self.point, tuple(self.pixel))
         redraw_footage(context)

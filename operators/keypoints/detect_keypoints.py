@@ -9,7 +9,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -72,7 +72,7 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         clear_readings()
         redraw_footage(bpy.context)
         for note in found.notes:
-            self.report({"WARNING"}, note[:1].upper() + note[1:])
+            warn(self, note)
         say(
             self,
             "INFO",
@@ -93,7 +93,9 @@ def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
 
     wanted = sidecar_file(clip, KEYPOINT_FILE)
     if not access(wanted.parent, W_OK | X_OK):
-        raise InputError(f"{wanted.parent}: cannot be written; the keypoints belong beside the clip")
+        raise InputError(
+            "{parent}: cannot be written; the keypoints belong beside the clip", parent=wanted.parent
+        )
     known = {keypoint_path(entry) for entry in take.follow.files}
     names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, MOST_TRIED))]
     return next((name for name in names if name in known or not name.exists()), wanted)

@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ...core.progress import run
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_path
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
@@ -63,7 +63,7 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         clear_readings()
         redraw_footage(context)
         for note in people.notes:
-            self.report({"WARNING"}, note)
+            warn(self, note)
         say(
             self,
             "INFO",

@@ -4,7 +4,7 @@ import bpy
 
 from ..bridge.footage_camera import may_move
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
-from ..shell.messages import count_label, label
+from ..shell.messages import count_label, label, translated
 from ..shell.panel import RowList, draw_progress, draw_sentence, property_column
 from ..shell.preferences import EXTENSION, preferences
 from ..shell.shown_frame import clip_index
@@ -256,7 +256,7 @@ def _draw_file(
     here = people_at(people, clip_index(take))
     layout.label(text=seen_label(here), translate=False, icon="INFO")
     for note in people.notes:
-        draw_sentence(layout, context, note[:1].upper() + note[1:], "ERROR")
+        draw_sentence(layout, context, translated(note), "ERROR")
     if people.most_people > 1:
         row = layout.row(align=True)
         text = count_label(len(here.pixel), "1 person here", "{count} people here")

@@ -59,7 +59,7 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
 
     use_markers: bpy.props.BoolProperty(
         name="Follow Markers",
-        description="Hold the motion against the colored garments of the list",
+        description="Hold the motion against the colored markers of the list",
         default=True,
         update=_changed,
     )

@@ -80,7 +80,9 @@ class KEYMARK_OT_apply_posture(BaseOperator, bpy.types.Operator):
         entry = active_posture(group)
         name = self.posture or (entry.name if entry is not None else "")
         if not name:
-            raise InputError(f"library '{group.name}' has no postures yet; pose the actor and add one")
+            raise InputError(
+                "library '{library}' has no postures yet; pose the actor and add one", library=group.name
+            )
         return chosen_library(context, ""), name
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ..shell.messages import label
+
 if TYPE_CHECKING:
     from ...core.library.library import Library
 
@@ -34,14 +36,21 @@ class Conflict:
         """Titles, versions and authors of both, to decide by."""
         new, there = self.new, self.there
         if new.version > there.version:
-            age = "which is newer"
+            age = label("which is newer")
         elif new.version < there.version:
-            age = "which is older"
+            age = label("which is older")
         else:
-            age = "which is of the same version, but not the same"
-        return (
-            f"'{there.title}' ({there.identifier}) is there in version {there.version} by {there.author}; "
-            f"this is version {new.version} by {new.author}, {age}"
+            age = label("which is of the same version, but not the same")
+        return label(
+            "'{title}' ({identifier}) is there in version {version} by {author}; this is version "
+            "{new_version} by {new_author}, {age}",
+            title=there.title,
+            identifier=there.identifier,
+            version=there.version,
+            author=there.author,
+            new_version=new.version,
+            new_author=new.author,
+            age=age,
         )
 
 

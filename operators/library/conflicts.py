@@ -41,7 +41,9 @@ def resolve_conflicts(
     taken = {conflict.new.identifier: conflict for conflict in find_conflicts(new, existing)}
     if taken and choice == "ASK":
         first = next(iter(taken.values()))
-        raise InputError(f"{first.sentence}; choose whether to keep it, replace it or keep both")
+        raise InputError(
+            "{sentence}; choose whether to keep it, replace it or keep both", sentence=first.sentence
+        )
     result = []
     used = [library.identifier for library in new]
     for library in new:

@@ -14,7 +14,7 @@ from .registry import chosen_entry, refresh
 def _an_own_library(context: bpy.types.Context) -> str | None:
     item = chosen_entry(context)
     own = item is not None and item.is_own
-    return None if own else "This library comes with Keymark and stays"
+    return None if own else label("This library comes with Keymark and stays")
 
 
 class KEYMARK_OT_discard_library(BaseOperator, bpy.types.Operator):
@@ -42,7 +42,9 @@ class KEYMARK_OT_discard_library(BaseOperator, bpy.types.Operator):
         try:
             path.unlink(missing_ok=True)
         except OSError as error:
-            raise ConversionError(f"{path}: cannot be deleted ({error.strerror or error})") from error
+            raise ConversionError(
+                "{path}: cannot be deleted ({strerror})", path=path, strerror=error.strerror or error
+            ) from error
         refresh()
         say(self, "INFO", "Deleted '{title}'", title=title)
 

@@ -7,7 +7,7 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .conflict_dialog import CHOICES, WIDTH, Conflict, draw_question
 from .publication import publish, registry_conflicts
@@ -77,7 +77,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     def _read(self) -> "tuple[Library, ...]":
         from ..bridge.library.library_file import read_libraries
 
-        return read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
+        return read_libraries(chosen_file(self, label("a keyframe library, .json or .blend")))
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -9,7 +9,7 @@ import bpy
 from ...core.errors import InputError
 from ..shell.error_reports import reported
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.redraw import refresh_asset_browsers
 from ..shell.requirements import idle
 from .conflict_dialog import WIDTH, Conflict, draw_question
@@ -33,14 +33,18 @@ def asset_libraries(context: bpy.types.Context) -> dict[str, Path]:
 def an_asset_library(context: bpy.types.Context) -> str | None:
     """The preferences name an asset library."""
     there = asset_libraries(context)
-    return None if there else "Add an asset library in the preferences first (File Paths > Asset Libraries)"
+    return (
+        None
+        if there
+        else label("Add an asset library in the preferences first (File Paths > Asset Libraries)")
+    )
 
 
 def asset_library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
     """Items of a menu of the asset libraries."""
     found = asset_libraries(context or bpy.context)
     items = [(name, name, str(folder)) for name, folder in found.items()]
-    _items[:] = items or [("NONE", "None", "The preferences name no asset library")]
+    _items[:] = items or [("NONE", label("None"), label("The preferences name no asset library"))]
     return _items
 
 
@@ -73,7 +77,7 @@ class InstallOperator(JobOperator):
             if not self._found and len(asset_libraries(context)) == 1:
                 return super().invoke(context, event)
             self.existing = "KEEP"
-            word = "Continue" if self._found else "Install"
+            word = label("Continue") if self._found else label("Install")
             return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text=word)
         return {"CANCELLED"}
 

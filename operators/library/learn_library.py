@@ -99,9 +99,8 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         add_library(context.scene, library)
         warn_if_outdated(self, take)
         (learned,) = library.motions
-        template = A_CYCLE if learned.cyclic else ONCE
         count, seconds = len(library.postures), learned.duration_s
-        say(self, "INFO", template, title=title, count=count, seconds=seconds)
+        say(self, "INFO", A_CYCLE if learned.cyclic else ONCE, title=title, count=count, seconds=seconds)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_learn_library,))

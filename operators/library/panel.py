@@ -103,9 +103,9 @@ class KEYMARK_MT_library(bpy.types.Menu):
         ).replace = True
         layout.separator()
         for what, text in (
-            ("POSTURE", "Add Chosen Mirrored"),
-            ("POSTURES", "Add All Mirrored"),
-            ("LIBRARY", "New Mirrored Library"),
+            ("POSTURE", label("Add Chosen Mirrored")),
+            ("POSTURES", label("Add All Mirrored")),
+            ("LIBRARY", label("New Mirrored Library")),
         ):
             layout.operator("keymark.mirror_library", text=text, icon="MOD_MIRROR").what = what
         layout.separator()

@@ -92,7 +92,16 @@ def _own_file(folder: Path, identifier: str) -> Path:
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)
     damaged = next((each for each in there if each.path == found and each.library is None), None)
-    if other is not None or damaged is not None:
-        holds = f"the library '{other.title}'" if other is not None else "something that is no library"
-        raise InputError(f"{found}: holds {holds}, which would be lost; give that file another name first")
+    if other is not None:
+        raise InputError(
+            "{file}: holds the library '{library}', which would be lost; give that file another name first",
+            file=found,
+            library=other.title,
+        )
+    if damaged is not None:
+        raise InputError(
+            "{file}: holds something that is no library, which would be lost; give that file another name "
+            "first",
+            file=found,
+        )
     return found

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -54,7 +54,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         warnings = write_readouts(take, result.styles, result.check)
         update_shown_masks(scene)
         for sentence in warnings:
-            self.report({"WARNING"}, sentence)
+            warn(self, sentence)
         if not warnings:
             say(self, "INFO", "All {count} markers with a color are found well", count=len(result.styles))
 

@@ -11,7 +11,7 @@ from ..shell.footage_clicks import footage_is_shown
 from ..shell.footage_request import FootageRequest, follow_mouse, stop_asking
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take
@@ -143,7 +143,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         if self._masks_before is not None and result.check is not None:
             show_masks(bpy.context, True)
         for sentence in write_left_out(scene, result):
-            self.report({"WARNING"}, sentence)
+            warn(self, sentence)
         say(self, "INFO", "Brushed regions are never a marker: {count} more", count=len(result.more))
 
     def _move(self, context: bpy.types.Context, brush: Brush, event: bpy.types.Event) -> None:

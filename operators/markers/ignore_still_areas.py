@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take
 from .ignored_check import LeftOut, leave_out, write_left_out
@@ -39,7 +39,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     def finish(self, scene: bpy.types.Scene, result: LeftOut) -> None:
         """Store the areas and the readouts."""
         for sentence in write_left_out(scene, result):
-            self.report({"WARNING"}, sentence)
+            warn(self, sentence)
         say(self, "INFO", "Still areas are never a marker: {count} more", count=len(result.more))
 
 

@@ -169,10 +169,12 @@ def _draw_marker(
         return
     readout = layout.column(align=True)
     _row(
-        readout, "Found In", label("{found} of {sampled} frames", found=marker.found, sampled=marker.sampled)
+        readout,
+        label("Found In"),
+        label("{found} of {sampled} frames", found=marker.found, sampled=marker.sampled),
     )
-    _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
-    _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
+    _row(readout, label("Area"), f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
+    _row(readout, label("Distinct"), f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():
         draw_sentence(layout, context, sentence, icon="ERROR")
 

@@ -11,7 +11,7 @@ from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_request import ask, follow_mouse, stop_asking
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -137,7 +137,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             show_masks(bpy.context, True)
         update_shown_masks(scene)
         for sentence in marker.warning.splitlines():
-            self.report({"WARNING"}, sentence)
+            warn(self, sentence)
         say(
             self,
             "INFO",

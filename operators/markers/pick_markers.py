@@ -13,7 +13,7 @@ from ..shell.error_reports import reported
 from ..shell.footage_clicks import footage_is_shown
 from ..shell.footage_request import FootageRequest, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -189,7 +189,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
             show_masks(bpy.context, True)
         update_shown_masks(scene)
         for sentence in warnings:
-            self.report({"WARNING"}, sentence)
+            warn(self, sentence)
         say(self, "INFO", "{count} markers are picked", count=len(result.colors))
 
     def _begin_to_look(self, context: bpy.types.Context) -> None:

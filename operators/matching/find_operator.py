@@ -7,7 +7,7 @@ import bpy
 from ..keypoints.requirements import points_to_follow
 from ..shell.found_frames import count_found, doubtful_matches
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.takes import active_take
 from .properties import FloorSettings
@@ -40,7 +40,7 @@ class FindOperator(FloorSettings, JobOperator):
         take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.clip.notes:
-            self.report({"WARNING"}, note[:1].upper() + note[1:])
+            warn(self, note)
         self.report({"INFO"}, take.matching.reason)
         count, doubtful = count_found(take)
         if doubtful:

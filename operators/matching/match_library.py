@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.progress import stretch
+from ...core.text import Sentence
 from ..shell.takes import active_take
 from .find_operator import READ, FindOperator
 from .properties import UNCHOSEN
@@ -46,7 +47,12 @@ class KEYMARK_OT_match_library(FindOperator, bpy.types.Operator):
         job = match_clip(clip.take, clip.reading, library, floor_m, count)
         found = yield from stretch(job, READ, 1.0)
         if found.fit < WELL:
-            found = replace(found, reason=f"{found.reason}; it probably shows something else")
+            reason = Sentence(
+                "{library} explains {fit:.0%} of the footage; the footage probably shows something else",
+                library=library.title,
+                fit=found.fit,
+            )
+            found = replace(found, reason=reason)
         return FoundResult(identifier, clip, found, found_keyframes(clip.take, found))
 
 

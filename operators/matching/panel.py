@@ -5,7 +5,7 @@ import bpy
 from ...core.library.several_libraries import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
-from ..shell.messages import label
+from ..shell.messages import label, pgettext_n
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
@@ -13,7 +13,7 @@ from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_h
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
 FRAME_UNITS = 1.6
-STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+STATES = {"POSED": ("KEYFRAME_HLT", pgettext_n("posed")), "GONE": ("X", pgettext_n("no key"))}
 """Icon and words of what is no found keyframe any more."""
 
 
@@ -48,12 +48,13 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
 def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
     """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN", "chosen"
+        return "VIEW_PAN", pgettext_n("chosen")
     if contradictions_at(take, match.frame):
-        return "ERROR", "contradicted"
+        return "ERROR", pgettext_n("contradicted")
     if match.confidence < DOUBTFUL:
-        return "QUESTION", "doubtful"
-    return ("CHECKMARK", "sure") if match.confidence >= SURE else ("DOT", "likely")
+        return "QUESTION", pgettext_n("doubtful")
+    sure = match.confidence >= SURE
+    return ("CHECKMARK", pgettext_n("sure")) if sure else ("DOT", pgettext_n("likely"))
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):

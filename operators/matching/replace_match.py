@@ -4,7 +4,7 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
-from ..shell.messages import label, say
+from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take, find_take
 from .candidate_titles import candidate_title
@@ -33,12 +33,12 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
         if matching is None or matching.shown_match >= len(matching.matches):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
-            return str(cls.__doc__)
+            return tooltip(str(cls.__doc__))
         said = candidate_title(match, match.candidates[properties.candidate])
-        return label(
+        return tooltip(
             "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said
         )
 

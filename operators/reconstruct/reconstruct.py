@@ -11,7 +11,7 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import anything_to_follow
 from ..matching.matches import known_matches
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say
+from ..shell.messages import say, translated, warn
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
 from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
@@ -81,9 +81,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         take.notes.clear()
         for note in result.notes:
-            sentence = note[:1].upper() + note[1:]
-            take.notes.add().text = sentence
-            self.report({"WARNING"}, sentence)
+            take.notes.add().text = warn(self, note)
         say(
             self,
             "INFO",
@@ -100,9 +98,12 @@ def _check_enough(count: int, notes: tuple[str, ...]) -> None:
         InputError: There are fewer than two in the footage.
     """
     if count < 2:
-        posed = "one keyframe lies" if count else "no keyframe lies"
-        asked = f"{posed} in the footage; at least 2 are needed, so press Pose All or pose the actor"
-        raise InputError(". ".join((asked, *notes)))
+        raise InputError(
+            "{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
+            "actor{notes}",
+            count=count,
+            notes="".join(f". {translated(note)}" for note in notes),
+        )
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct,))

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import bpy
 
 from ...core.errors import KeymarkError
-from .messages import say
+from .messages import say, translated
 from .redraw import redraw_sidebars_soon
 
 
@@ -29,6 +29,6 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
             missing=missing,
         )
     except KeymarkError as error:
-        operator.report({"ERROR"}, str(error))
+        operator.report({"ERROR"}, translated(error.sentence))
     except ReferenceError:
         say(operator, "ERROR", "An object or a take of this job was removed while it ran; run it again")

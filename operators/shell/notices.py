@@ -53,7 +53,7 @@ def give_notices(
         take: The take.
         step: The step in whose panel they stand, a name of `steps.STEPS`.
         about: What they are about, by any name: `clip`, `lengths`.
-        sentences: The notices.
+        sentences: The notices, as they are shown.
         objects: Names of objects; the notices hold while one of them is visible.
         frame: Scene frame of a keyframe; the notices hold while there is one.
     """
@@ -64,7 +64,7 @@ def give_notices(
     for sentence in sentences:
         entry = notices.add()
         entry.step, entry.about = step, about
-        entry.text = sentence[:1].upper() + sentence[1:]
+        entry.text = sentence
         entry.objects = SEPARATOR.join(objects)
         entry.of_keyframe, entry.frame = frame is not None, frame or 0.0
 

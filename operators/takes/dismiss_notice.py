@@ -20,7 +20,11 @@ class KEYMARK_OT_dismiss_notice(BaseOperator, bpy.types.Operator):
         """Remove it."""
         notices = active_take(context.scene).notices
         if self.index >= len(notices):
-            raise InputError(f"index is {self.index}, but the take has {len(notices)} notices")
+            raise InputError(
+                "index is {index}, but the take has {notices} notices",
+                index=self.index,
+                notices=len(notices),
+            )
         notices.remove(self.index)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..shell.base_operator import BaseOperator
+from ..shell.messages import label
 from ..shell.requirements import idle
 from ..shell.takes import active_take, find_take
 
@@ -14,7 +15,7 @@ TURNTABLE_TYPES = {"CAMERA", "EMPTY"}
 
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
-    return "There is no take to remove" if find_take(context.scene) is None else None
+    return label("There is no take to remove") if find_take(context.scene) is None else None
 
 
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):

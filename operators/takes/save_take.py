@@ -9,7 +9,7 @@ from ...core.progress import run
 from ..keypoints.evidence import scene_evidence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.requirements import actor, footage, idle
 from ..shell.takes import active_take, footage_of
 
@@ -60,7 +60,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
         # A camera that stands still brings contours, unless the take says that they are not followed.
         write_take(take, folder, has if has and not take.contours else None)
         for note in notes:
-            self.report({"WARNING"}, note)
+            warn(self, note)
         say(self, "INFO", "Saved the take in {folder}", folder=folder)
 
 

@@ -27,7 +27,7 @@ from ..markers.ignored_regions import add_ignored_regions
 from ..markers.marker_styles import set_marker_color
 from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
-from ..shell.messages import say
+from ..shell.messages import say, warn
 from ..shell.notices import give_notices
 from ..shell.takes import active_take, add_take
 
@@ -78,9 +78,8 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     take = active_take(context.scene)
     look_through_camera(context, take)
     show_range(context)
-    give_notices(take, "footage", "files", opened.notes)
-    for note in opened.notes:
-        operator.report({"WARNING"}, note)
+    notes = [warn(operator, note) for note in opened.notes]
+    give_notices(take, "footage", "files", notes)
     count = len(opened.take.keyframes)
     say(operator, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
     warn_of_occluders(operator, context, take)

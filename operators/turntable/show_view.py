@@ -5,6 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..footage.camera_view import look_through, viewports
 from ..shell.base_operator import BaseOperator
+from ..shell.messages import tooltip
 from ..shell.requirements import footage
 from ..shell.takes import active_take
 
@@ -31,7 +32,7 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip of the button's view."""
-        return cls.bl_rna.properties["view"].enum_items[properties.view].description
+        return tooltip(cls.bl_rna.properties["view"].enum_items[properties.view].description)
 
     def run(self, context: bpy.types.Context) -> None:
         """Set the context's viewport, or all of them if the context is another editor."""
@@ -39,8 +40,10 @@ class KEYMARK_OT_show_view(BaseOperator, bpy.types.Operator):
         camera = take.camera if self.view == "FOOTAGE" else getattr(take.turntable, self.view.lower())
         if camera is None or camera.name not in context.view_layer.objects:
             raise InputError(
-                f"take '{take.name}' has no camera for the view {self.view.title()}; "
-                "set up the turntable, or choose the footage's camera"
+                "take '{take}' has no camera for the view {view}; set up the turntable, or choose the "
+                "footage's camera",
+                take=take.name,
+                view=self.view.title(),
             )
         own = context.space_data
         in_viewport = isinstance(own, bpy.types.SpaceView3D)

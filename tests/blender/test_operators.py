@@ -154,7 +154,7 @@ def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
 def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
     """Each marker needs its own body part."""
     active_take(opened).markers[1].segment = "trunk"
-    with pytest.raises(RuntimeError, match="two markers have the segment 'trunk'"):
+    with pytest.raises(RuntimeError, match="Two markers have the segment 'trunk'"):
         bpy.ops.keymark.reconstruct()
 
 

@@ -1,19 +1,18 @@
-"""Labels in title case, descriptions without a full stop, reports and labels from literal templates."""
+"""Labels in title case, descriptions without a full stop, templates that are filled in after translation."""
 
-import ast
 from collections.abc import Iterator
-from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.messages import count_label, label, say
+from keymark.core.errors import InputError
+from keymark.core.text import Sentence
+from keymark.operators.shell.error_reports import reported
+from keymark.operators.shell.messages import count_label, label, say, tooltip, translated, warn
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
 """Names that Blender gives its own meaning; the rest of an operator's properties are Keymark's."""
-PUT_TOGETHER = (ast.JoinedStr, ast.BinOp)
-"""Expressions that put strings together; the name of a template is fine."""
 SMALL = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "on", "or", "the", "to", "with"}
 """Words in lower case inside a label, as in Blender's own."""
 NAMES = {"glTF"}
@@ -87,22 +86,6 @@ def test_title_case_is_told(text: str, right: bool) -> None:
     assert is_title(text) is right
 
 
-def test_sentences_that_are_said_are_not_put_together(repository: Path) -> None:
-    """Translators' tools read templates from the source, so none may be put together there."""
-    wrong, found = [], 0
-    for file in sorted((repository / "operators").rglob("*.py")):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.args:
-                places = {"say": (2,), "label": (0,), "count_label": (1, 2)}.get(node.func.id, ())
-                places = tuple(place for place in places if place < len(node.args))
-                found += len(places)
-                templates = [part for place in places for part in ast.walk(node.args[place])]
-                if any(isinstance(part, PUT_TOGETHER) for part in templates):
-                    wrong.append(f"{file.name}:{node.lineno}")
-    assert found > 5
-    assert wrong == []
-
-
 class Operator:
     """Keeps what is reported."""
 
@@ -111,19 +94,68 @@ class Operator:
         self.said = (kind, text)
 
 
-def test_a_sentence_is_filled_in_after_translation(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The template is what is looked up, in the language that Blender speaks."""
-    words = {"Opened {name}": "{name} geöffnet"}
-    german = SimpleNamespace(pgettext_rpt=words.get, pgettext_iface=words.get)
+class German:
+    """Blender's translations in a language that knows three templates."""
+
+    words = MappingProxyType(
+        {
+            "Opened {name}": "{name} geöffnet",
+            "frame {frame}: {what}": "Bild {frame}: {what}",
+            "nothing is seen": "nichts zu sehen",
+        }
+    )
+
+    def find(self, template: str) -> str:
+        """The template in this language; itself where it is unknown."""
+        return self.words.get(template, template)
+
+    pgettext_rpt = pgettext_iface = pgettext_tip = find
+
+
+@pytest.fixture
+def german(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blender speaks this language."""
+    blender = SimpleNamespace(app=SimpleNamespace(translations=German()))
+    monkeypatch.setattr("keymark.operators.shell.messages.bpy", blender)
+
+
+def test_a_sentence_is_said_in_english_by_default() -> None:
+    """With its values filled in."""
     operator = Operator()
     say(operator, "INFO", "Opened {name}", name="walk")
     assert operator.said == ({"INFO"}, "Opened walk")
-    monkeypatch.setattr(
-        "keymark.operators.shell.messages.bpy", SimpleNamespace(app=SimpleNamespace(translations=german))
-    )
+
+
+@pytest.mark.usefixtures("german")
+def test_a_sentence_is_filled_in_after_translation() -> None:
+    """The template is what is looked up, in the language that Blender speaks."""
+    operator = Operator()
     say(operator, "INFO", "Opened {name}", name="walk")
     assert operator.said == ({"INFO"}, "walk geöffnet")
-    assert label("Opened {name}", name="walk") == "walk geöffnet"
+    assert label("Opened {name}", name="walk") == tooltip("Opened {name}", name="walk") == "walk geöffnet"
+
+
+@pytest.mark.usefixtures("german")
+def test_sentences_of_core_are_translated_with_the_sentences_in_them() -> None:
+    """As a warning, and as the error of an operator; a text that was put together stays as it is."""
+    note = Sentence("frame {frame}: {what}", frame=3, what=Sentence("nothing is seen"))
+    operator = Operator()
+    assert warn(operator, note) == "Bild 3: nichts zu sehen"
+    assert operator.said == ({"WARNING"}, "Bild 3: nichts zu sehen")
+    with reported(operator):
+        raise InputError("frame {frame}: {what}", frame=3, what="dark")
+    assert operator.said == ({"ERROR"}, "Bild 3: dark")
+    with reported(operator):
+        raise InputError("take.json: frame is 3; it must be 1")
+    assert operator.said == ({"ERROR"}, "take.json: frame is 3; it must be 1")
+
+
+def test_sentences_begin_with_a_capital_and_names_as_they_are() -> None:
+    """Reports are sentences; a marker's or a file's name is not changed."""
+    assert translated(Sentence("the clip is interlaced")) == "The clip is interlaced"
+    assert translated("no bone is chosen; click on one") == "No bone is chosen; click on one"
+    assert translated(Sentence("{marker} is small", marker="sleeve")) == "sleeve is small"
+    assert translated("take.json: fps is 0") == "take.json: fps is 0"
 
 
 def test_one_is_not_several() -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from ...files.json_file import shown
+from ...text import Sentence
 from ..maps.character_map import CharacterMap, RoleBones
 from ..roles import ARM, LEG, MIDDLE
 from .facing import SURE as SURE_SIDES
@@ -18,15 +19,23 @@ def side_doubts(facing: Facing) -> list[str]:
     against = facing.by_names * facing.by_shape < 0.0
     if against and facing.by_names < 0.0 and abs(facing.by_shape) > 1.0:
         return [
-            "left and right are taken from the shape, against the names of the bones: feet and knees point "
-            "the other way"
+            Sentence(
+                "left and right are taken from the shape, against the names of the bones: feet and knees "
+                "point the other way"
+            )
         ]
     if against and facing.by_names > 0.0 and abs(facing.by_shape) > 1.0:
-        return ["left and right are taken from the names of the bones, although the feet point the other way"]
+        return [
+            Sentence(
+                "left and right are taken from the names of the bones, although the feet point the other way"
+            )
+        ]
     if facing.confidence < SURE_SIDES:
         return [
-            "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
-            "tell where the character faces"
+            Sentence(
+                "left and right may be swapped for all roles of a side: names, feet, knees and elbows "
+                "hardly tell where the character faces"
+            )
         ]
     return []
 
@@ -34,14 +43,26 @@ def side_doubts(facing: Facing) -> list[str]:
 def trunk_doubts(figure: Figure) -> list[str]:
     """What is doubtful about hips, spine, neck and head."""
     names = figure.frame.bones.names
-    found = []
+    found: list[str] = []
     for bone, part, other in figure.trunk.doubtful:
+        name = shown(names[bone])
         if part in MIDDLE and other in MIDDLE:
-            found.append(f"{part} is doubtful: {shown(names[bone])} may be part of {other}, by its place")
+            found.append(
+                Sentence(
+                    "{role} is doubtful: {bone} may be part of {other}, by its place",
+                    role=part,
+                    bone=name,
+                    other=other,
+                )
+            )
         elif part in MIDDLE:
-            found.append(f"{part} is doubtful: {shown(names[bone])} may play no part, by its place")
+            found.append(
+                Sentence("{role} is doubtful: {bone} may play no part, by its place", role=part, bone=name)
+            )
         elif other in MIDDLE:
-            found.append(f"{other} is doubtful: {shown(names[bone])} may be part of it, by its place")
+            found.append(
+                Sentence("{role} is doubtful: {bone} may be part of it, by its place", role=other, bone=name)
+            )
     return found
 
 
@@ -49,7 +70,7 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
     """What is doubtful about arms and legs."""
     bones, partner = figure.frame.bones, figure.frame.symmetry.partner
     near = "L" if facing.ahead > 0 else "R"
-    found = []
+    found: list[str] = []
     for part in (*ARM, *LEG):
         choice = figure.limbs[part]
         if choice.probability >= SURE:
@@ -59,17 +80,16 @@ def limb_doubts(figure: Figure, facing: Facing, roles: Mapping[str, RoleBones]) 
             rival = choice.rival if side == near or choice.rival < 0 else int(partner[choice.rival])
             other = shown(bones.names[rival]) if rival >= 0 else ""
             if role in roles:
-                why = f"{other} fits almost as well" if other else "the limb may lack it"
-                found.append(_sentence(role, roles[role], why))
+                found.append(_doubtful(role, roles[role], other))
             elif other:
-                found.append(f"{role} not found, but {other} may be it")
+                found.append(Sentence("{role} not found, but {bone} may be it", role=role, bone=other))
     return found
 
 
 def name_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
     """Roles of sides that a bone plays although another has the name for it."""
     readings = dict(zip(figure.frame.bones.names, figure.frame.bones.readings, strict=True))
-    found = []
+    found: list[str] = []
     for part in (*ARM, *LEG):
         for side in "LR":
             role = f"{part}.{side}"
@@ -82,24 +102,49 @@ def name_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
             if not named or (bone is not None and readings[bone].clear_part == part):
                 continue
             if bone is None:
-                found.append(f"{role} not found, but {shown(named[0])} has the name for it")
+                found.append(
+                    Sentence(
+                        "{role} not found, but {bone} has the name for it", role=role, bone=shown(named[0])
+                    )
+                )
             else:
-                why = f"{shown(named[0])} has the name for it"
-                found.append(f"{role} is doubtful: {shown(bone)} was chosen by its place, and {why}")
+                found.append(
+                    Sentence(
+                        "{role} is doubtful: {bone} was chosen by its place, and {other} has the name for it",
+                        role=role,
+                        bone=shown(bone),
+                        other=shown(named[0]),
+                    )
+                )
     return found
 
 
 def missing_doubts(character_map: CharacterMap) -> list[str]:
     """Roles that most characters have and this one lacks."""
-    found = []
+    found: list[str] = []
     if "head" not in character_map.roles:
-        found.append("head not found: no bone of the middle lies where a head begins")
+        found.append(Sentence("head not found: no bone of the middle lies where a head begins"))
     hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
     if hands:
-        found.append(f"{' and '.join(hands)} not found: the forearm is the last bone of the arm")
+        found.append(
+            Sentence("{roles} not found: the forearm is the last bone of the arm", roles=" and ".join(hands))
+        )
     return found
 
 
-def _sentence(role: str, given: RoleBones, why: str) -> str:
-    how = "its name" if given.source == "names" else "its place"
-    return f"{role} is doubtful: {shown(given.bones[0])} was chosen by {how}, and {why}"
+def _doubtful(role: str, given: RoleBones, other: str) -> Sentence:
+    how, bone = "its name" if given.source == "names" else "its place", shown(given.bones[0])
+    if not other:
+        return Sentence(
+            "{role} is doubtful: {bone} was chosen by {how}, and the limb may lack it",
+            role=role,
+            bone=bone,
+            how=how,
+        )
+    return Sentence(
+        "{role} is doubtful: {bone} was chosen by {how}, and {other} fits almost as well",
+        role=role,
+        bone=bone,
+        how=how,
+        other=other,
+    )

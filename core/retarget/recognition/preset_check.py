@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...files.json_file import shown
+from ...text import Sentence
 from ..character import Character
 from ..maps.character_map import CharacterMap, IkControls, RoleBones
 from ..roles import CHAINS, REQUIRED, ROLES
@@ -48,8 +49,14 @@ def merged_with_preset(
         else:
             merged[role] = replace(given, confidence=AGAINST)
             found.append(
-                f"{role} is doubtful: {shown(given.bones[0])} was chosen by the names of {preset.title}, and "
-                f"by its place {shown(seen.bones[0])} fits better"
+                Sentence(
+                    "{role} is doubtful: {bone} was chosen by the names of {preset}, and by its place "
+                    "{other} fits better",
+                    role=role,
+                    bone=shown(given.bones[0]),
+                    preset=preset.title,
+                    other=shown(seen.bones[0]),
+                )
             )
     return replace(own, roles=merged), found
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from ...text import Sentence
 from ..character import Character
 from ..maps.character_map import CharacterMap
 from ..maps.presets import Preset, find_preset
@@ -40,7 +41,12 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
         character_map, doubts = _of_figure(character, figure, preset)
     elif preset is not None and stands_upright(character, preset):
         character_map = replace(preset, roles=with_confidence(preset.roles, UNSEEN))
-        doubts = [f"no body was recognized by shape: all roles are those of the names of {preset.title}"]
+        doubts = [
+            Sentence(
+                "no body was recognized by shape: all roles are those of the names of {preset}",
+                preset=preset.title,
+            )
+        ]
     else:
         raise refusal(character, frame, reason)
     doubts += missing_doubts(character_map)

@@ -7,6 +7,7 @@ from ...body.heading import turn_headings_rad
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
+from ...text import Sentence
 from ..character import Character
 from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
@@ -100,7 +101,12 @@ def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, A
         return (
             none,
             None,
-            (f"{character.name} has no root bone apart from its hips, which keep the way over the ground",),
+            (
+                Sentence(
+                    "'{character}' has no root bone apart from its hips, which keep the way over the ground",
+                    character=character.name,
+                ),
+            ),
         )
     heading = smooth_headings_rad(turn_headings_rad(solution.source.turn["pelvis"]), time_s)
     rest = np.eye(4)

@@ -13,6 +13,7 @@ from ...footage.keypoints.people import People
 from ...prior.interpolation import interpolate
 from ...take.performer_keypoints import performer_keypoints
 from ...take.take import Take
+from ...text import Sentence
 from .findings import Findings
 
 LARGEST_ERROR = 0.1
@@ -75,10 +76,22 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
     found = performer.seen.any(axis=1)
     share = float(found.mean())
     if share < FEWEST_FRAMES:
-        findings.warn(f"{name}: the performer is seen in {share:.0%} of the frames only")
+        findings.warn(
+            Sentence(
+                "{file}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap "
+                "helps",
+                file=name,
+                share=share,
+            )
+        )
     if people.most_people > 1 and not take.keyframes and not people.by_hand:
         findings.warn(
-            f"{name}: shows up to {people.most_people} people, and no keyframe says which of them performs"
+            Sentence(
+                "{file}: shows up to {most} people, and no keyframe says which of them performs; the "
+                "largest who is there longest is taken",
+                file=name,
+                most=people.most_people,
+            )
         )
     return KeypointReadout(
         file=name,
@@ -108,8 +121,14 @@ def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Find
     explained = best is not None and known[best] < MUCH_BETTER * plain
     if explained or plain > LARGEST_ERROR * height_px:
         findings.warn(
-            f"{name}: its joints lie {plain:.0f} px from those of the posed keyframes, where the performer "
-            f"is {height_px:.0f} px tall; {best if explained else 'are they of this clip and this person?'}"
+            Sentence(
+                "{file}: its joints lie {distance:.0f} px from those of the posed keyframes, where the "
+                "performer is {height:.0f} px tall; {reason}",
+                file=name,
+                distance=plain,
+                height=height_px,
+                reason=best if explained else "check that they are of this clip and this person",
+            )
         )
     return plain
 

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
+from ...text import Sentence
 from .take_check import TakeCheck
 
 FEWEST_TAKES = 5
@@ -18,10 +19,15 @@ def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     rates = [None if one.fps is None else f"{one.fps:.4g} frames per second" for one in checks]
     warned = []
     for check, size, rate in zip(checks, _outliers(sizes), _outliers(rates), strict=True):
-        more = [f"it has {own}, nearly all others have {usual}" for own, usual in filter(None, (size, rate))]
-        if more:
-            warning = f"{'; '.join(more)}: is it this camera's?"
-            check = replace(check, warnings=(*check.warnings, warning))
+        more = [
+            Sentence(
+                "the clip has {own}, nearly all others have {usual}; check that it is this camera's",
+                own=own,
+                usual=usual,
+            )
+            for own, usual in filter(None, (size, rate))
+        ]
+        check = replace(check, warnings=(*check.warnings, *more))
         warned.append(check)
     return warned
 

@@ -17,6 +17,7 @@ from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
 from ...take.take_to_pose import take_to_pose
+from ...text import Sentence
 from ..shoot import ShootTake
 from .cost_estimate import CostEstimate, estimate_cost
 from .findings import Findings
@@ -25,9 +26,9 @@ from .keyframe_check import check_keyframes
 from .keypoint_check import KeypointReadout, check_keypoints
 from .unfilled_fields import find_unfilled_fields
 
-CONTOURS_ALONE = (
-    "held against contours alone, which tell least of all evidence; keypoints of a detector, as of keymark "
-    "detect, or garments in strong colors tell more"
+CONTOURS_ALONE = Sentence(
+    "the motion is held against contours alone, which tell least of all evidence; keypoints of a detector, "
+    "as of keymark detect, or markers in strong colors tell more"
 )
 
 

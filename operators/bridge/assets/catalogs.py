@@ -32,8 +32,8 @@ def catalog_file() -> Path:
     """
     if not bpy.data.filepath:
         raise InputError(
-            "the asset catalog is kept beside the .blend, which has not been saved; save it first, "
-            "or leave Catalog empty"
+            "the asset catalog is kept beside the .blend, which has not been saved; save it first, or leave "
+            "Catalog empty"
         )
     folder = Path(bpy.data.filepath).parent
     for library in bpy.context.preferences.filepaths.asset_libraries:
@@ -92,8 +92,9 @@ def _clean(catalog: str) -> str:
     path = "/".join(part for part in parts if part)
     if not path or ":" in path or any(ord(letter) < 32 for letter in path):
         raise InputError(
-            f"catalog '{catalog}' is not a path of names with slashes between them, without colons, "
-            "such as Keymark/Walking"
+            "catalog '{catalog}' is not a path of names with slashes between them, without colons, such as "
+            "Keymark/Walking",
+            catalog=catalog,
         )
     return path
 
@@ -109,10 +110,15 @@ def read_catalogs(file: Path) -> str:
     except FileNotFoundError:
         return ""
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file}: cannot be read as a file of asset catalogs ({error})") from error
+        raise InputError(
+            "{file}: cannot be read as a file of asset catalogs ({reason})", file=file, reason=error
+        ) from error
     meant = [line for line in content.splitlines() if line.strip() and not line.startswith("#")]
     if meant and meant[0].strip() != VERSION:
         raise InputError(
-            f"{file}: begins with '{meant[0][:40]}'; a file of asset catalogs begins with {VERSION}"
+            "{file}: begins with '{meant}'; a file of asset catalogs begins with {version}",
+            file=file,
+            meant=meant[0][:40],
+            version=VERSION,
         )
     return content

@@ -44,6 +44,6 @@ def write_character_files(
     return curve_digest(imported.armature)
 
 
-def missing_exporter(name: str) -> str:
-    """Why this Blender cannot write a format; empty where it can."""
+def missing_exporter(name: str) -> str | None:
+    """Why this Blender cannot write a format; None where it can."""
     return FORMATS[name].missing()

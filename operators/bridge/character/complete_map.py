@@ -9,6 +9,7 @@ from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from ....core.retarget.recognition.root_bone import find_root
 from ....core.retarget.stance import find_stance
+from ....core.text import Sentence
 from .controls.find_controls import find_controls
 from .controls.probe_controls import character_size
 from .mesh_soles import mesh_soles
@@ -70,8 +71,13 @@ def _with_properties(
     lost = [(one.bone, one.property) for one in character_map.settings if one not in settings]
     lost += [(one.bone, one.property) for one in _lost_switches(character_map.ik, ik)]
     notes = tuple(
-        f"Bone '{bone}' has no property '{name}' that could be keyed; the rig may be of another version than "
-        f"the map '{character_map.title}'"
+        Sentence(
+            "Bone '{bone}' has no property '{property}' that could be keyed; the rig may be of another "
+            "version than the map '{map}'",
+            bone=bone,
+            property=name,
+            map=character_map.title,
+        )
         for bone, name in lost
     )
     return replace(character_map, settings=settings, ik=ik), notes

@@ -15,6 +15,7 @@ from ....core.files.json_file import shown
 from ....core.files.paths import real_path
 from ....core.files.regular_file import regular_file_size
 from ....core.take.character_settings import CharacterFile
+from ....core.text import Sentence
 from ..blend_reader import check_blend
 from ..blend_writer import one_line
 from ..own_scene import showing_scene
@@ -74,8 +75,9 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
-            f"{file.path}: is open in this Blender, which appends nothing from it; name a copy of it, or run "
-            "the command without opening it"
+            "{file}: is open in this Blender, which appends nothing from it; name a copy of it, or run the "
+            "command without opening it",
+            file=file.path,
         )
     try:
         with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
@@ -119,7 +121,9 @@ def _unreadable(path: Path, error: Exception) -> InputError:
     lines = [line for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
     reason = one_line(RuntimeError(lines[-1] if lines else str(error))).removeprefix("Error: ")
     return InputError(
-        f"{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off"
+        "{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off",
+        path=path,
+        reason=reason,
     )
 
 
@@ -129,17 +133,30 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves, "
-            "and one that is linked from another file is named by that file"
+            "{file}: holds no armature; a character is an armature with the meshes that it moves, and one "
+            "that is linked from another file is named by that file",
+            file=file.path,
         )
     if file.object is not None:
         if file.object not in armatures:
-            what = "is no armature" if file.object in found else "is not in it"
-            raise InputError(f"{file.path}: {shown(file.object)} {what}; its armatures are {names}")
+            raise InputError(
+                "{file}: {object} is no armature; its armatures are {names}"
+                if file.object in found
+                else "{file}: {object} is not in it; its armatures are {names}",
+                file=file.path,
+                object=shown(file.object),
+                names=names,
+            )
         return armatures[file.object]
     if len(armatures) > 1:
         example = CharacterFile(file.path, min(armatures))
-        raise InputError(f"{file.path}: holds {len(armatures)} armatures, {names}; name one, as in {example}")
+        raise InputError(
+            "{file}: holds {armatures} armatures, {names}; name one, as in {example}",
+            file=file.path,
+            armatures=len(armatures),
+            names=names,
+            example=example,
+        )
     return next(iter(armatures.values()))
 
 
@@ -174,7 +191,10 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
     for track in playing:
         track.mute = True
     names = listed((shown(track.name) for track in playing), MOST_NAMED)
-    return (f"NLA tracks of '{armature.name}' are muted in the copy: {names}",) if playing else ()
+    said = Sentence(
+        "NLA tracks of '{armature}' are muted in the copy: {tracks}", armature=armature.name, tracks=names
+    )
+    return (said,) if playing else ()
 
 
 def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:

@@ -29,34 +29,42 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
     """
     if armature_object is None or armature_object.type != "ARMATURE":
         name = "nothing" if armature_object is None else f"'{armature_object.name}'"
-        raise InputError(f"{name} is not an armature; select the armature of the character")
+        raise InputError("{name} is not an armature; select the armature of the character", name=name)
     name = armature_object.name
     if not len(armature_object.data.bones):
-        raise InputError(f"armature '{name}' has no bones; select the armature of the character")
+        raise InputError("armature '{name}' has no bones; select the armature of the character", name=name)
     if armature_object.mode == "EDIT":
-        raise InputError(f"armature '{name}' is in Edit Mode, in which no pose shows; leave it (Tab)")
+        raise InputError(
+            "armature '{name}' is in Edit Mode, in which no pose shows; leave it (Tab)", name=name
+        )
     if needs_override(armature_object):
         raise InputError(
-            f"armature '{name}' is linked from {_library_name(armature_object)} and keeps no keys; "
-            "make a library override of it (Object > Library Override > Make)"
+            "armature '{name}' is linked from {armature} and keeps no keys; make a library override of it "
+            "(Object > Library Override > Make)",
+            name=name,
+            armature=_library_name(armature_object),
         )
     if armature_object.data.pose_position == "REST":
         raise InputError(
-            f"armature '{name}' shows its rest position; choose Pose Position in its data properties"
+            "armature '{name}' shows its rest position; choose Pose Position in its data properties",
+            name=name,
         )
     _require_even_scale(armature_object)
     _require_evaluated(armature_object)
     data = armature_object.animation_data
     if data is not None and data.use_tweak_mode:
         raise InputError(
-            f"armature '{name}' has an NLA strip in tweak mode, which locks its Action; "
-            "leave tweak mode (Tab in the NLA editor)"
+            "armature '{name}' has an NLA strip in tweak mode, which locks its Action; leave tweak mode "
+            "(Tab in the NLA editor)",
+            name=name,
         )
     cycle = dependency_cycle(armature_object)
     if cycle:
         raise InputError(
-            f"armature '{name}' has a dependency cycle, {' > '.join(cycle)}, whose pose Blender cannot "
-            "determine; remove one of these drivers or constraints"
+            "armature '{name}' has a dependency cycle, {cycle}, whose pose Blender cannot determine; remove "
+            "one of these drivers or constraints",
+            name=name,
+            cycle=" > ".join(cycle),
         )
     return armature_object
 
@@ -77,7 +85,7 @@ def make_override(context: bpy.types.Context, armature_object: bpy.types.Object)
     """
     name = armature_object.name
     if not needs_override(armature_object):
-        raise InputError(f"armature '{name}' is not linked; it can be keyed as it is")
+        raise InputError("armature '{name}' is not linked; it can be keyed as it is", name=name)
     if armature_object.override_library is not None:
         armature_object.override_library.is_system_override = False
         return armature_object
@@ -86,8 +94,9 @@ def make_override(context: bpy.types.Context, armature_object: bpy.types.Object)
     )
     if made is None or made.type != "ARMATURE":
         raise InputError(
-            f"Blender makes no library override of armature '{name}'; append it from "
-            f"{_library_name(armature_object)} instead"
+            "Blender makes no library override of armature '{name}'; append it from {armature} instead",
+            name=name,
+            armature=_library_name(armature_object),
         )
     return made
 
@@ -104,11 +113,15 @@ def _require_even_scale(armature_object: bpy.types.Object) -> None:
     matrix = np.array(armature_object.matrix_world, dtype=np.float64)
     if not np.isfinite(matrix).all():
         raise InputError(
-            f"armature '{armature_object.name}' has a transform that is not a number; clear its location, "
-            "rotation and scale"
+            "armature '{armature}' has a transform that is not a number; clear its location, rotation and "
+            "scale",
+            armature=armature_object.name,
         )
     if np.linalg.norm(matrix[:3, :3], axis=0).min() < SMALLEST_SCALE:
-        raise InputError(f"armature '{armature_object.name}' has a scale of zero; give it one positive scale")
+        raise InputError(
+            "armature '{armature}' has a scale of zero; give it one positive scale",
+            armature=armature_object.name,
+        )
     object_space(armature_object)
 
 
@@ -116,12 +129,14 @@ def _require_evaluated(armature_object: bpy.types.Object) -> None:
     """Raise InputError where Blender does not evaluate the object's pose."""
     name, scenes = armature_object.name, armature_object.users_scene
     if not scenes:
-        raise InputError(f"armature '{name}' is in no scene; link it to one")
+        raise InputError("armature '{name}' is in no scene; link it to one", name=name)
     layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
     if not armature_object.visible_get(view_layer=layer):
         raise InputError(
-            f"armature '{name}' is hidden in view layer '{layer.name}', where Blender evaluates no "
-            "pose; show it while the motion is made"
+            "armature '{name}' is hidden in view layer '{layer}', where Blender evaluates no pose; show it "
+            "while the motion is made",
+            name=name,
+            layer=layer.name,
         )
 
 

@@ -68,7 +68,7 @@ def write_retargeted(
     """
     armature_object = next((one for one in bpy.data.objects if one.session_uid == session_uid), None)
     if armature_object is None:
-        raise InputError(f"armature '{name}' has been deleted meanwhile; nothing was changed")
+        raise InputError("armature '{name}' has been deleted meanwhile; nothing was changed", name=name)
     if isinstance(action, str):
         action = bpy.data.actions.new(action)
     write_keys(keys, armature_object, action)

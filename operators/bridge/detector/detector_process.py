@@ -65,8 +65,11 @@ class DetectorProcess:
             except (OSError, ValueError) as error:
                 reason = error.strerror if isinstance(error, OSError) else error
                 raise InputError(
-                    f"{origin}: the program {words[0]} cannot be started ({reason}); it must be a program, "
-                    "or a script with its interpreter before it"
+                    "{origin}: the program {words} cannot be started ({reason}); it must be a program, or a "
+                    "script with its interpreter before it",
+                    origin=origin,
+                    words=words[0],
+                    reason=reason,
                 ) from error
 
     def ended_within(self, seconds: float) -> bool:

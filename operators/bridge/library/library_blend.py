@@ -58,7 +58,8 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
         libraries = library_from_assets(actions)
     if not libraries:
         raise InputError(
-            f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
+            "{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json",
+            path=path,
         )
     return libraries
 
@@ -75,11 +76,16 @@ def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
                     wanted.actions = names
         except (OSError, RuntimeError, UnicodeDecodeError) as error:
             raise InputError(
-                f"{path}: Blender cannot read it ({one_line(error)}); it may be damaged or cut off"
+                "{path}: Blender cannot read it ({reason}); it may be damaged or cut off",
+                path=path,
+                reason=one_line(error),
             ) from error
         if len(names) > MOST_POSTURES:
             raise InputError(
-                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
+                "{path}: holds {names} Actions marked as assets; at most {most_postures} are read",
+                path=path,
+                names=len(names),
+                most_postures=MOST_POSTURES,
             )
         yield [action for action in wanted.actions if action is not None and is_posture(action)]
     finally:

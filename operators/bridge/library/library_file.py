@@ -24,7 +24,7 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
         return read_library_blend(path)
     if suffix == JSON:
         return (read_library(path),)
-    raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
+    raise InputError("{path}: is neither a .json nor a .blend; libraries are kept in these", path=path)
 
 
 def write_library_file(path: Path, library: Library) -> None:
@@ -40,7 +40,11 @@ def write_library_file(path: Path, library: Library) -> None:
     elif suffix == JSON:
         write_library(path, library)
     else:
-        raise InputError(f"{path}: ends in {suffix or 'nothing'}; libraries are written as .json or .blend")
+        raise InputError(
+            "{path}: ends in {suffix}; libraries are written as .json or .blend",
+            path=path,
+            suffix=suffix or "nothing",
+        )
 
 
 def with_postures(library: Library, names: Iterable[str]) -> Library:
@@ -52,7 +56,9 @@ def with_postures(library: Library, names: Iterable[str]) -> Library:
     wanted = {name: name for name in names}
     kept = tuple(posture for posture in library.postures if posture.name in wanted)
     if not kept:
-        raise InputError(f"no posture of '{library.title}' is selected; select some, or take all")
+        raise InputError(
+            "no posture of '{library}' is selected; select some, or take all", library=library.title
+        )
     document = library_to_json(replace(library, postures=kept))
     document["motions"] = present_motions(document.get("motions", []), wanted)
     motions = library_from_json(document, f"library '{library.title}'").motions

@@ -76,7 +76,10 @@ def named_posture(library: Library, name: str) -> LibraryPosture:
     found = library.by_name.get(name)
     if found is None:
         raise InputError(
-            f"library '{library.title}' has no posture '{name}'; it has {_listed(list(library.by_name))}"
+            "library '{library}' has no posture '{name}'; it has {by_name}",
+            library=library.title,
+            name=name,
+            by_name=_listed(list(library.by_name)),
         )
     return found
 

@@ -31,6 +31,7 @@ from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
 from ....core.take.take_to_pose import take_to_pose
+from ....core.text import Sentence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..require_blender import require_blender
@@ -218,4 +219,10 @@ def _unused_keyframes_note(description: Description, settings: ConversionSetting
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
-    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)
+    return (
+        Sentence(
+            "{file} is left aside; --keyframes {file} --library {library} would use it too",
+            file=own,
+            library=settings.library,
+        ),
+    )

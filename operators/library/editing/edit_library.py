@@ -32,7 +32,10 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
         item = chosen_entry(context)
         library = load_registered(self.library or (item.name if item is not None else ""))
         if any(group.identifier == library.identifier for group in context.scene.keymark.libraries):
-            raise InputError(f"library '{library.title}' is in this file already; remove it there first")
+            raise InputError(
+                "library '{library}' is in this file already; remove it there first",
+                library=library.title,
+            )
         add_library(context.scene, library)
         refresh_asset_browsers(context)
         count = len(library.postures)

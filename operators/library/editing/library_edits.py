@@ -98,7 +98,9 @@ def add_keyframes(
     body = read_body(armature_object, HUMAN)
     frames = np.array(keyed_frames(armature_object, action, HUMAN))
     if len(frames) < (3 if cyclic else 2):
-        raise InputError(f"the take has {len(frames)} keyframes; a motion needs two, a cyclic one three")
+        raise InputError(
+            "the take has {frames} keyframes; a motion needs two, a cyclic one three", frames=len(frames)
+        )
     posed = read_keyframes(scene, armature_object, action, body, frames).keyframes
     time_s = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
     kept = posed[:-1] if cyclic else posed
@@ -166,7 +168,10 @@ def replace_posture(
     """
     entry = active_posture(group)
     if entry is None or entry.action is None:
-        raise InputError(f"no posture of the library '{group.name}' is chosen; choose the one to replace")
+        raise InputError(
+            "no posture of the library '{library}' is chosen; choose the one to replace",
+            library=group.name,
+        )
     actor = actor_of_library(group)
     kept = posture_for_library(body, postures, actor, on_floor=on_floor)[0]
     rewrite_posture_curves(entry.action, actor, kept)
@@ -196,7 +201,7 @@ def add_motion(
     """
     fault = text_fault(name.strip(), LONGEST_NAME)
     if fault:
-        raise InputError(f"the motion's name is '{name}'; it {fault}")
+        raise InputError("the motion's name is '{name}'; it {fault}", name=name, fault=fault)
     times = [round(float(value), DECIMALS_S) for value in time_s]
     free = unique_name(name.strip(), [motion.name for motion in group.motions])
     steps = tuple(MotionStep(posture, when) for posture, when in zip(postures, times, strict=False))
@@ -223,7 +228,10 @@ def add_mirrored(group: bpy.types.PropertyGroup, *, only_chosen: bool) -> int:
     if only_chosen:
         chosen = active_posture(group)
         if chosen is None or chosen.name not in library.by_name:
-            raise InputError(f"no posture of the library '{group.name}' is chosen; choose the one to mirror")
+            raise InputError(
+                "no posture of the library '{library}' is chosen; choose the one to mirror",
+                library=group.name,
+            )
         library = replace(library, postures=(library.by_name[chosen.name],), motions=())
     whole = with_mirrored(library)
     postures = whole.postures[len(library.postures) :]
@@ -242,10 +250,10 @@ def _check(group: bpy.types.PropertyGroup, names: Sequence[str], tags: Sequence[
     for name in names:
         fault = text_fault(name.strip(), LONGEST_NAME)
         if fault:
-            raise InputError(f"the posture's name is '{name}'; it {fault}")
+            raise InputError("the posture's name is '{name}'; it {fault}", name=name, fault=fault)
     for tag in tags:
         fault = text_fault(tag, LONGEST_TAG)
         if fault:
-            raise InputError(f"the tag is '{tag}'; it {fault}")
+            raise InputError("the tag is '{tag}'; it {fault}", tag=tag, fault=fault)
     if len(postures_from_scene(group)) + len(names) > MOST_POSTURES:
-        raise InputError(f"a library holds at most {MOST_POSTURES} postures")
+        raise InputError("a library holds at most {most_postures} postures", most_postures=MOST_POSTURES)

@@ -32,7 +32,9 @@ def library_from_scene(group: bpy.types.PropertyGroup) -> Library:
     """
     there = postures_from_scene(group)
     if not there:
-        raise InputError(f"library '{group.name}' has no postures yet; pose the actor and add one")
+        raise InputError(
+            "library '{library}' has no postures yet; pose the actor and add one", library=group.name
+        )
     library = unchecked_library(group, there)
     library_from_json(library_to_json(library), f"library '{group.name}'")  # checks it
     return library

@@ -41,7 +41,7 @@ class KEYMARK_OT_mirror_library(BaseOperator, bpy.types.Operator):
             made = mirrored_library(library)
             taken = [other.identifier for other in context.scene.keymark.libraries]
             if made.identifier in taken:
-                raise InputError(f"library '{made.title}' is in this file already; remove it first")
+                raise InputError("library '{made}' is in this file already; remove it first", made=made.title)
             add_library(context.scene, made)
             say(self, "INFO", "'{title}' is in this file now", title=made.title)
         else:

@@ -40,10 +40,12 @@ class KEYMARK_OT_new_library(BaseOperator, bpy.types.Operator):
         settings = context.scene.keymark
         fault = text_fault(self.title.strip(), LONGEST_NAME)
         if fault:
-            raise InputError(f"the library's title is '{self.title}'; it {fault}")
+            raise InputError("the library's title is '{title}'; it {fault}", title=self.title, fault=fault)
         fault = text_fault(self.author.strip(), LONGEST_LINE) if self.author.strip() else ""
         if fault:
-            raise InputError(f"the library's author is '{self.author}'; it {fault}")
+            raise InputError(
+                "the library's author is '{author}'; it {fault}", author=self.author, fault=fault
+            )
         group = settings.libraries.add()
         group.name, group.author = self.title.strip(), self.author.strip()
         others = [other.identifier for other in settings.libraries]

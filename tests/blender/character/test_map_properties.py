@@ -105,7 +105,7 @@ def test_the_active_bone_is_used(character: bpy.types.PropertyGroup) -> None:
             bpy.ops.keymark.use_active_bone(**words)
     with pytest.raises(RuntimeError, match="has no bone 'nobody'"):
         bpy.ops.keymark.pick_bone(role="hand.L", bone="nobody")
-    with pytest.raises(RuntimeError, match="no bone is chosen"):
+    with pytest.raises(RuntimeError, match="No bone is chosen"):
         bpy.ops.keymark.pick_bone(role="hand.L")
     assert bpy.ops.keymark.pick_bone(role="hand.R", bone="finger.R") == {"FINISHED"}
     assert role(character, "hand.R").bones[0].bone == "finger.R"
@@ -163,7 +163,7 @@ def test_a_map_for_other_bones_is_refused_and_changes_nothing(
         bone.name = f"{bone.name}_of_another"
     with pytest.raises(RuntimeError, match=r"plain\.json is for another character: 'Character' has no bone"):
         bpy.ops.keymark.load_map(filepath=str(tmp_path / "plain.json"))
-    with pytest.raises(RuntimeError, match="no file is chosen"):
+    with pytest.raises(RuntimeError, match="No file is chosen"):
         bpy.ops.keymark.load_map()
     (tmp_path / "broken.json").write_text("{")
     with pytest.raises(RuntimeError, match=r"broken\.json"):

@@ -210,7 +210,7 @@ def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, c
     other = write_clip(tmp_path / "other.mp4", 9, 24.0)
     bpy.ops.keymark.relocate_clip(filepath=str(other))
     assert active_take(bpy.context.scene).clip.frame_duration == 9
-    assert "is it the right one?" in capsys.readouterr().out
+    assert "check that it is the right one" in capsys.readouterr().out
 
 
 def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
@@ -241,9 +241,9 @@ def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> Non
 
 def test_nothing_chosen_is_said_and_the_folder_kept(tiny_take: Take, tmp_path: Path) -> None:
     """The browser's button without a file in it: one sentence, no take, and the same folder the next time."""
-    with pytest.raises(RuntimeError, match="no file is chosen; choose a video"):
+    with pytest.raises(RuntimeError, match="No file is chosen; choose a video"):
         bpy.ops.keymark.load_footage(filepath="")
-    with pytest.raises(RuntimeError, match=f"no file is chosen in {tmp_path}; choose a video"):
+    with pytest.raises(RuntimeError, match=f"No file is chosen in {tmp_path}; choose a video"):
         bpy.ops.keymark.load_footage(filepath=f"{tmp_path}/")
     assert not len(bpy.context.scene.keymark.takes)
     assert _browsed(KEYMARK_OT_load_footage) == f"{tmp_path}/"

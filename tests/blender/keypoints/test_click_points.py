@@ -91,5 +91,5 @@ def test_a_click_says_who_the_performer_is(
     assert seen.names == ("wrist.L",)
     assert seen.pixel[0, 0] == pytest.approx(other[wrist], abs=0.1)
     plain.frame_set(90)
-    with pytest.raises(RuntimeError, match="no detector sees anybody in frame 90"):
+    with pytest.raises(RuntimeError, match="No detector sees anybody in frame 90"):
         bpy.ops.keymark.click_performer(pixel=(80.0, 60.0))

@@ -56,7 +56,7 @@ def test_a_frame_without_anybody_says_so(plain: bpy.types.Scene, keypoint_file: 
     load(keypoint_file)
     plain.frame_set(4)
     before = posture_of(plain)
-    with pytest.raises(RuntimeError, match="none of the keypoints is seen in frame 4"):
+    with pytest.raises(RuntimeError, match="None of the keypoints is seen in frame 4"):
         bpy.ops.keymark.fit_pose()
     np.testing.assert_allclose(posture_of(plain).minus(before), 0.0, atol=1e-9)
 

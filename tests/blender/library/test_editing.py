@@ -215,7 +215,7 @@ def test_mirrored_postures_are_added(take: bpy.types.PropertyGroup, random_postu
 
 def test_what_is_missing_is_said(registered: None, tmp_path: Path) -> None:
     """Without a library, without postures, without an actor."""
-    with pytest.raises(RuntimeError, match="no keyframe library is made in this file"):
+    with pytest.raises(RuntimeError, match="No keyframe library is made in this file"):
         bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.json"))
     bpy.ops.keymark.new_library(title="Empty")
     with pytest.raises(RuntimeError, match="has no postures yet"):

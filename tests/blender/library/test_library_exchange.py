@@ -164,7 +164,7 @@ def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) ->
     with pytest.raises(RuntimeError, match="is in this file already"):
         bpy.ops.keymark.edit_library(library="small")
     path = tmp_path / "part.json"
-    with pytest.raises(RuntimeError, match="no posture of 'Small' is selected"):
+    with pytest.raises(RuntimeError, match="No posture of 'Small' is selected"):
         bpy.ops.keymark.export_library(filepath=str(path), only_selected=True)
     bpy.context.scene.keymark.libraries[0].postures[1].selected = True
     bpy.ops.keymark.export_library(filepath=str(path), only_selected=True)

@@ -87,7 +87,7 @@ def test_still_areas_are_left_out_by_one_click(cluttered: bpy.types.Scene) -> No
     (region,) = ignored_regions(active_take(cluttered))
     np.testing.assert_allclose(region.box, PANEL, atol=4.0)
     assert active_take(cluttered).ignored_regions[0].name == "Still Area"
-    with pytest.raises(RuntimeError, match="no still area is known"):
+    with pytest.raises(RuntimeError, match="no still area of a marker"):
         bpy.ops.keymark.ignore_still_areas()
 
 
@@ -126,7 +126,7 @@ def test_a_region_may_count_in_some_frames_only(cluttered: bpy.types.Scene) -> N
 
 def test_a_path_that_cannot_be_used_is_refused(cluttered: bpy.types.Scene) -> None:
     """Nothing to brush, nothing changed."""
-    with pytest.raises(RuntimeError, match="path is empty"):
+    with pytest.raises(RuntimeError, match="Path is empty"):
         bpy.ops.keymark.ignore_region()
     assert not len(active_take(cluttered).ignored_regions)
 

@@ -129,7 +129,7 @@ def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
         bpy.context.scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()
     before = scene_state()
-    with pytest.raises(RuntimeError, match="every proposed frame is posed"):
+    with pytest.raises(RuntimeError, match="Every proposed frame is posed"):
         bpy.ops.keymark.pose_all()
     assert differences(before, scene_state()) == ""
 
@@ -156,7 +156,7 @@ def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamesp
     """The sentence is reported, nothing else happens."""
     before = scene_state()
     given.error = InputError("no marker is seen in the footage")
-    with pytest.raises(RuntimeError, match="no marker is seen"):
+    with pytest.raises(RuntimeError, match="No marker is seen"):
         bpy.ops.keymark.pose_all()
     assert differences(before, scene_state()) == ""
 

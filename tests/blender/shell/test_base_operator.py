@@ -65,7 +65,7 @@ def test_an_expected_failure_is_a_report_and_any_other_passes_through() -> None:
     """The sentence is the error's own; a missing library is named."""
     operator = Operator(InputError("the clip is upside down"))
     assert operator.execute(CONTEXT) == {"CANCELLED"}
-    assert operator.reports == [({"ERROR"}, "the clip is upside down")]
+    assert operator.reports == [({"ERROR"}, "The clip is upside down")]
     missing = Operator(ModuleNotFoundError("No module named 'scipy.linalg'", name="scipy.linalg"))
     assert missing.execute(CONTEXT) == {"CANCELLED"}
     assert "needs the Python library scipy, " in missing.reports[0][1]

@@ -126,7 +126,7 @@ def test_a_failing_job_is_one_sentence(context: SimpleNamespace, modal: bool) ->
         assert run_modal(job, context) == {"CANCELLED"}
     else:
         assert job.execute(context) == {"CANCELLED"}
-    assert job.reports == [({"ERROR"}, "the clip is upside down")]
+    assert job.reports == [({"ERROR"}, "The clip is upside down")]
     assert "result" not in context.scene
     assert context.timers == []
 

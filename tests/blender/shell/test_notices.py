@@ -19,11 +19,11 @@ def test_newer_notices_replace_those_about_the_same(opened: bpy.types.Scene) -> 
     take = active_take(opened)
     give_notices(take, "finish", "bake", ("the left foot slides", "the right one too"))
     give_notices(take, "finish", "asset", ("no catalog",))
-    assert sentences(take, "finish") == ["The left foot slides", "The right one too", "No catalog"]
+    assert sentences(take, "finish") == ["the left foot slides", "the right one too", "no catalog"]
     give_notices(take, "finish", "bake", ("the left foot slides less",))
-    assert sentences(take, "finish") == ["No catalog", "The left foot slides less"]
+    assert sentences(take, "finish") == ["no catalog", "the left foot slides less"]
     give_notices(take, "finish", "bake")
-    assert sentences(take, "finish") == ["No catalog"] and sentences(take, "review") == []
+    assert sentences(take, "finish") == ["no catalog"] and sentences(take, "review") == []
 
 
 def test_a_notice_is_dismissed_by_its_button(opened: bpy.types.Scene) -> None:
@@ -31,8 +31,8 @@ def test_a_notice_is_dismissed_by_its_button(opened: bpy.types.Scene) -> None:
     take = active_take(opened)
     give_notices(take, "finish", "bake", ("first", "second"))
     bpy.ops.keymark.dismiss_notice(index=notices_of(take, "finish")[0][0])
-    assert sentences(take, "finish") == ["Second"]
-    with pytest.raises(RuntimeError, match="index is 9"):
+    assert sentences(take, "finish") == ["second"]
+    with pytest.raises(RuntimeError, match="Index is 9"):
         bpy.ops.keymark.dismiss_notice(index=9)
 
 
@@ -66,4 +66,4 @@ def test_a_pose_beyond_the_skeleton_is_said_while_it_is_keyed(opened: bpy.types.
     thigh.rotation_mode = mode
     give_notices(take, "keyframes", "pose at 5", ("of a key",), frame=5.0)
     give_notices(take, "keyframes", "pose at 6", ("of no key",), frame=6.0)
-    assert sentences(take, "keyframes") == ["Of a key"]
+    assert sentences(take, "keyframes") == ["of a key"]

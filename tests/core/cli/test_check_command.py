@@ -166,7 +166,7 @@ def half_dark(shoot: Path) -> None:
 @pytest.mark.parametrize(
     ("spoil", "sentence"),
     [
-        (swapped, "seen far from where keyframes and camera put it: forearm.L in "),
+        (swapped, "markers are seen far from where keyframes and camera put them: forearm.L in "),
         (elsewhere, "seen outside the picture for the most part"),
         (few, "2 keyframes for 10 frames are few: from frame 1 to 10, 1.8 s"),
         (few, "let --keyframes auto find the others"),

@@ -73,7 +73,7 @@ def test_keyframes_count_in_their_own_frames_before_there_is_a_prior(take: Take)
     assert_shows(found, people, truth)
     assert "the keyframes show" in found.notes[0]
     matched = replace(one.keyframes[0], matched=Matched("walking", "Left foot lands", False, 0.9))
-    assert "click a point" in performer_keypoints(replace(one, keyframes=(matched,)), None).notes[0]
+    assert "click on another" in performer_keypoints(replace(one, keyframes=(matched,)), None).notes[0]
 
 
 @pytest.mark.parametrize("twin", [False, True])
@@ -129,7 +129,7 @@ def test_nothing_says_it(take: Take) -> None:
         bool((found.pixel[index] == people.frames[index].pixel[row]).all()) for index, row in enumerate(truth)
     ]
     assert all(same) or not any(same)
-    assert "click a point of another" in found.notes[0]
+    assert "click on another" in found.notes[0]
 
 
 def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
@@ -143,7 +143,7 @@ def test_somebody_else_is_left_out_and_noted(take: Take) -> None:
     )
     found = performer_keypoints(replace(take, keypoints=(people,)), interpolate(take.keyframes, FRAMES))
     np.testing.assert_array_equal(np.flatnonzero(~found.seen.any(axis=1)), np.arange(10, 16))
-    assert found.notes[0] == "Read." and "6 frames of 30" in found.notes[1]
+    assert found.notes[0] == "Read." and "6 of 30 frames" in found.notes[1]
 
 
 def test_a_detector_of_another_clip_is_left_out(take: Take) -> None:

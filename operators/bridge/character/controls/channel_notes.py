@@ -9,6 +9,7 @@ from .....core.arrays import Array
 from .....core.finish.hermite import Spline
 from .....core.retarget.controls.control_channels import Control
 from .....core.retarget.controls.control_motion import ControlMotion, KeyedControl
+from .....core.text import Sentence
 from ...rotation_modes import bone_path, rotation_path
 from .dependencies import CARRYING, active_constraints, drivers
 
@@ -49,48 +50,38 @@ def channel_notes(
     """Sentences on what keeps the keyed controls from their poses, and on bones that were scaled."""
     driven = driven_channels(armature_object)
     bones = armature_object.pose.bones
-    notes = [
-        _sentence(
-            (one.control.name for one in keyed if driven & set(keyed_channels(one))),
-            "has a driver that wins over keys: mute it to let the motion through",
-            "have drivers that win over keys: mute them to let the motion through",
+    notes = (
+        Sentence(
+            "Drivers win over the keys of bone {bones}; mute them to let the motion through",
+            bones=_listed(one.control.name for one in keyed if driven & set(keyed_channels(one))),
         ),
-        _sentence(
-            (one.control.name for one in keyed if _is_constrained(bones[one.control.name], one.control)),
-            "has constraints that change its keyed pose: mute them where it goes astray",
-            "have constraints that change their keyed poses: mute them where they go astray",
+        Sentence(
+            "Constraints change the keyed pose of bone {bones}; mute them where it goes astray",
+            bones=_listed(
+                one.control.name for one in keyed if _is_constrained(bones[one.control.name], one.control)
+            ),
         ),
-        _sentence(
-            (one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
-            "is locked and keyed all the same: unlock it to change it by hand",
-            "are locked and keyed all the same: unlock them to change them by hand",
+        Sentence(
+            "Locked and keyed all the same: bone {bones}; unlock it to change it by hand",
+            bones=_listed(one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
         ),
-        _sentence(
-            scaled,
-            "is scaled in its pose: the motion keys its scale at 1",
-            "are scaled in their pose: the motion keys their scale at 1",
+        Sentence("Scaled in its pose: bone {bones}; the motion keys its scale at 1", bones=_listed(scaled)),
+        Sentence(
+            "Connected to its parent or not to be moved: bone {bones} stays off its place; disconnect it",
+            bones=_listed(_held_back(armature_object, motion)),
         ),
-        _sentence(
-            _held_back(armature_object, motion),
-            "is connected to its parent or cannot be moved, and stays off its place: disconnect it",
-            "are connected to their parents or cannot be moved, and stay off their places: disconnect them",
+        Sentence(
+            "Constraints follow the carriers of bone {bones} only in part; it may be off its place",
+            bones=_listed(_adrift(motion)),
         ),
-        _sentence(
-            _adrift(motion),
-            "is placed by constraints that follow its carriers only in part, and may be off its place",
-            "are placed by constraints that follow their carriers only in part, and may be off their places",
-        ),
-    ]
-    return tuple(note for note in notes if note)
+    )
+    return tuple(note for note in notes if note.values["bones"])
 
 
-def _sentence(names: Iterable[str], one: str, several: str) -> str:
+def _listed(names: Iterable[str]) -> str:
     found = list(names)
-    if not found:
-        return ""
-    listed = ", ".join(f"'{name}'" for name in found[:MOST_NAMES])
     more = f" and {len(found) - MOST_NAMES} more" if len(found) > MOST_NAMES else ""
-    return f"Bone {listed} {one}" if len(found) == 1 else f"Bones {listed}{more} {several}"
+    return ", ".join(f"'{name}'" for name in found[:MOST_NAMES]) + more
 
 
 def _is_constrained(bone: bpy.types.PoseBone, control: Control) -> bool:

@@ -10,6 +10,7 @@ from .....core.retarget.controls.control_plan import joint_roles
 from .....core.retarget.controls.rigid_following import followed_controls
 from .....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from .....core.retarget.roles import LIMBS
+from .....core.text import Sentence
 from .carrying_control import carrying_control
 from .dependencies import (
     CARRYING,
@@ -320,8 +321,11 @@ def _completed(
     names = ", ".join(f"'{bone}'" for bone in lost)
     notes = (
         (
-            f"No control was found for what constraints or drivers move: {names}; name the controls in the "
-            "character map, or leave these roles alone",
+            Sentence(
+                "No control was found for what constraints or drivers move: {bones}; name the controls in "
+                "the character map, or leave these roles alone",
+                bones=names,
+            ),
         )
         if lost
         else ()

@@ -13,6 +13,7 @@ from .....core.retarget.controls.control_spaces import ControlSpace, PosedContro
 from .....core.retarget.controls.control_targets import PoleSetting
 from .....core.retarget.controls.rigid_offset import rigid_offset
 from .....core.retarget.maps.character_map import CharacterMap
+from .....core.text import Sentence
 from ..pose_scales import ONE, scaled_bones
 from .dependencies import active_constraints, driven_bone, drivers
 from .posing import posing, set_properties
@@ -128,7 +129,11 @@ def _fk_offsets(
         offsets[plan.name] = offset
         if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
             notes.append(
-                f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
+                Sentence(
+                    "Bone '{bone}' does not follow its control '{control}' rigidly; its poses may be off",
+                    bone=plan.bone,
+                    control=plan.name,
+                )
             )
     return offsets
 
@@ -161,8 +166,11 @@ def _steady(
             kept.append(index)
         else:
             notes.append(
-                f"Bone '{plan.name}' hangs on something that moves by itself, such as inverse kinematics, "
-                "and is not keyed; name its control in the character map"
+                Sentence(
+                    "Bone '{bone}' hangs on something that moves by itself, such as inverse kinematics, and "
+                    "is not keyed; name its control in the character map",
+                    bone=plan.name,
+                )
             )
     return kept
 

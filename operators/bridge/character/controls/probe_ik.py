@@ -14,6 +14,7 @@ from .....core.retarget.controls.control_spaces import NOTHING
 from .....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from .....core.retarget.controls.rigid_offset import rigid_offset
 from .....core.retarget.maps.character_map import CharacterMap
+from .....core.text import Sentence
 from .posing import Property, Value, read_poses, set_channels, set_properties
 
 TRIALS = ((0.8, 0.0, (0.2, -0.1, 0.15)), (0.7, 0.5, (-0.15, 0.2, 0.1)))
@@ -88,15 +89,23 @@ def try_inverse_kinematics(
             offset, turn_rad, distance = rigid_offset(poses[control.name], poses[control.plan.bone])
             if control is limb.goal and (turn_rad > FOLLOWS_RAD or distance > FOLLOWS * size):
                 notes.append(
-                    f"Bone '{control.plan.bone}' does not follow its goal '{control.name}' rigidly; "
-                    f"its inverse kinematics may be off"
+                    Sentence(
+                        "Bone '{bone}' does not follow its goal '{control}' rigidly; its inverse kinematics "
+                        "may be off",
+                        bone=control.plan.bone,
+                        control=control.name,
+                    )
                 )
                 offset = np.linalg.inv(at_rest[control.name]) @ limb.rest[2]
             offsets[control.name] = offset
         if limb.pole is None:
             notes.append(
-                f"The inverse kinematics of {limb.name} has no pole that could be keyed; bone "
-                f"'{limb.bones[1]}' may point elsewhere"
+                Sentence(
+                    "The inverse kinematics of {limb} has no pole that could be keyed; bone '{bone}' may "
+                    "point elsewhere",
+                    limb=limb.name,
+                    bone=limb.bones[1],
+                )
             )
         else:
             poles[limb.pole.name] = _pole_setting(limb, limb.pole.name, poses, notes)
@@ -196,7 +205,13 @@ def _pole_setting(limb: _Limb, name: str, poses: Mapping[str, Array], notes: lis
     offsets = np.array([pole_offset(*points) for points in zip(root, middle, end, pole, strict=True)])
     mean = float(np.angle(np.exp(1j * offsets).mean()))
     if np.abs(np.angle(np.exp(1j * (offsets - mean)))).max() > AGREE_RAD:
-        notes.append(f"Pole '{name}' does not steer bone '{limb.bones[1]}'; in IK it may point elsewhere")
+        notes.append(
+            Sentence(
+                "Pole '{pole}' does not steer bone '{bone}'; in IK it may point elsewhere",
+                pole=name,
+                bone=limb.bones[1],
+            )
+        )
     rest = limb.rest[:, :3, 3]
     length = float(np.linalg.norm(rest[1] - rest[0]) + np.linalg.norm(rest[2] - rest[1]))
     distance = float(np.linalg.norm(limb.rest_pole - rest[1]))

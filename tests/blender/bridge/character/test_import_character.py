@@ -157,7 +157,7 @@ def test_tracks_that_would_play_below_are_muted(imported: Import, folder: Path) 
         ("anna.glb:Ben", "'Ben' is not in it; its armatures are 'Anna'"),
         *((f"damaged{suffix}", "cannot read") for suffix in (".blend", ".glb", ".gltf", ".fbx", ".vrm")),
         *((f"half{suffix}", "cannot read") for suffix in (".blend", ".glb", ".gltf", ".fbx", ".vrm")),
-        *((f"empty{suffix}", "cannot read|begins as none") for suffix in (".blend", ".glb", ".gltf", ".fbx")),
+        *((f"empty{suffix}", "cannot read|is no .blend") for suffix in (".blend", ".glb", ".gltf", ".fbx")),
     ],
 )
 def test_what_is_no_character_is_one_sentence(imported: Import, text: str, said: str) -> None:
