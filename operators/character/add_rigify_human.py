@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say
+from ..shell.messages import label, say, warn
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take
 from .characters import add_character, find_character
@@ -14,7 +14,9 @@ from .requirements import take
 
 def rigify(context: bpy.types.Context) -> str | None:
     """Blender brings Rigify along."""
-    return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
+    return (
+        None if has_rigify() else label("This Blender comes without the add-on Rigify; install Rigify first")
+    )
 
 
 class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
@@ -49,7 +51,8 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         except RuntimeError as error:  # an operator's own error report
             reason = str(error).removeprefix("Error: ").strip()
             raise InputError(
-                f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
+                "Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here",
+                reason=reason,
             ) from error
         chosen = find_character(context.scene)
         if chosen is None or chosen.armature is not None:
@@ -57,7 +60,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         else:
             chosen.armature = rig
         if chosen.problem:
-            say(self, "WARNING", "{problem}", problem=chosen.problem)
+            warn(self, chosen.problem)
         else:
             say(self, "INFO", "Recognized the bones of '{name}'", name=rig.name)
 

@@ -82,9 +82,9 @@ class Console:
         if self.quiet:
             print_error(error or "")
             return
-        self.say(" ".join(text.split("\n")))
+        self.announce(" ".join(text.split("\n")))
 
-    def say(self, text: str) -> None:
+    def announce(self, text: str) -> None:
         """Write a line at once, before the result; nothing with `--json` or `--quiet`."""
         if self.as_json or self.quiet:
             return

@@ -4,7 +4,7 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import say
+from ..shell.messages import label, say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .occluding_objects import warn_of_occluders

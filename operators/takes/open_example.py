@@ -6,7 +6,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label
+from ..shell.messages import label, tooltip
 from ..shell.requirements import idle, object_mode_possible
 from .startup_cube import hide_startup_cube
 
@@ -57,10 +57,10 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """What the chosen example shows, and where its clip lies."""
         if not properties.is_property_set("example"):
-            return bpy.app.translations.pgettext_tip(cls.__doc__)
+            return tooltip(cls.__doc__ or "")
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
         kept = cls.bl_rna.properties["copy"].description
-        return f"{bpy.app.translations.pgettext_tip(shown)}.\n{bpy.app.translations.pgettext_tip(kept)}"
+        return f"{tooltip(shown)}.\n{tooltip(kept)}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask which example, and for the folder of a copy."""

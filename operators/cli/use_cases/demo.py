@@ -38,21 +38,21 @@ def demo_command(arguments: argparse.Namespace) -> None:
     demo = example_folder(AEROBIC)
     require_blender("the demonstration needs")
     with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
-        console.say(
+        console.announce(
             "The demonstration, four seconds of video, is converted in four steps: about half a minute."
         )
-        console.say("Step 1 of 4: a character is generated, Rigify's basic human.")
+        console.announce("Step 1 of 4: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
         character, missing = _character(Path(folder))
         settings = ConversionSettings(demo / POSED_BY_HAND, evidence=MARKED, character=character)
-        console.say(
+        console.announce(
             "Step 2 of 4: the take is converted, by its markers and contours, and put on the character."
         )
         done = convert_take(describe(demo), arguments.output, console, settings, arguments.debug)
-        console.say("Step 3 of 4: the same by the paper's filter, to compare.")
+        console.announce("Step 3 of 4: the same by the paper's filter, to compare.")
         console.stage("Trying the paper's filter")
         filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
-        console.say("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
+        console.announce("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
         output: Path = arguments.output
         unmarked_settings = ConversionSettings(demo / POSED_BY_HAND, evidence=UNMARKED)
         unmarked = convert_take(

@@ -18,6 +18,7 @@ ENGLISH = {
     "operators.bridge.character.import_character": "a part of an error of core's, which is English",
     "operators.bridge.character.measure": "a name of a data block",
     "operators.bridge.character.read_character": "a word in the place of a file's name",
+    "operators.bridge.character.rigify_human": "names of data blocks",
     "operators.bridge.character.write_retargeted": "a name of a group of curves, as Blender gives it",
     "operators.bridge.detector": "the end of what is said of the user's own program, English as its output",
     "operators.bridge.footage_camera": "a name of a data block",
@@ -36,6 +37,7 @@ ENGLISH = {
     "operators.shell.lru_cache": "a type",
     "operators.shell.preferences": "the place of an error of core's",
     "operators.shell.takes": "a name of data",
+    "operators.takes.startup_cube": "the name that Blender's startup file gives it",
     "operators.takes.upgrade": "a name of data",
 }
 """Modules with texts that stay as they are, and why; `operators.cli` is English throughout."""
