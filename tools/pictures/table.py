@@ -58,6 +58,11 @@ class Screenshot:
 
 
 SCREENSHOTS: Mapping[str, Screenshot] = {
+    "first_example.jpg": Screenshot("first", "example"),
+    "first_reconstructed.jpg": Screenshot("first", "reconstructed"),
+    "first_review.jpg": Screenshot("first", "review"),
+    "first_character.jpg": Screenshot("first", "character"),
+    "first_retargeted.jpg": Screenshot("first", "retargeted"),
     "workflow_camera.jpg": Screenshot("library", "lines"),
     "workflow_footage.jpg": Screenshot("library", "footage"),
     "workflow_follow.jpg": Screenshot("plain", "clicked"),
