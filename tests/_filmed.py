@@ -50,12 +50,13 @@ def photograph(
     colors = part_colors(len(model.parts.segments))
     for segment, color in painted.items():
         colors[model.parts.segments.index(segment)] = color
+    place, colors = place.astype(np.float32), colors.astype(np.float32)
     album = Album()
     for frame in range(frames):
         shift = tuple(rng.integers(-shake_px, shake_px + 1, size=2))
         label = part_map(parts, frame, (320 * FINER, 240 * FINER), 1.0 / FINER)
-        behind = np.kron(np.roll(place, shift, axis=(0, 1)), np.ones((FINER, FINER, 1)))
-        drawn = np.where(label[..., None] >= 0, colors[label], behind).astype(np.float32)
+        drawn = np.roll(place, shift, axis=(0, 1)).repeat(FINER, axis=0).repeat(FINER, axis=1)
+        drawn[label >= 0] = colors[label[label >= 0]]
         image = cv2.resize(drawn, (320, 240), interpolation=cv2.INTER_AREA)
         image = image + rng.normal(0.0, NOISE_LEVELS, size=image.shape)
         album.add(frame, np.clip(np.round(image), 0, 255).astype(np.uint8))
