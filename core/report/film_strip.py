@@ -12,13 +12,8 @@ from .canvas import Canvas
 from .overlay_sheet import paler
 from .square_crop import PAPER, square_of, squares_around
 from .stick_figure import draw_figure, stick_figure
+from .strip_layout import GAP, SIDE, SIZE
 
-PICTURES = 6
-SIDE = 160
-"""Side of one picture [px]; a list shows it at about half of that, sharp on screens of double density."""
-GAP = 4
-SIZE = (PICTURES * SIDE + (PICTURES - 1) * GAP, SIDE)
-"""Width and height of every strip, so that a page knows them before it is loaded."""
 LIMB_WIDTH = 2.2
 
 

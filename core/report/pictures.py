@@ -12,17 +12,16 @@ from ..take.motion import Motion
 from ..take.take import Take
 from .canvas import write_jpg, write_png
 from .contact_sheet import evenly_spaced_frames
-from .film_strip import PICTURES as STRIP_FRAMES
 from .film_strip import film_strip
 from .footage_frames import footage_frames
 from .match_sheet import match_sheet, shown_keyframes
 from .overlay_sheet import overlay_sheet
 from .speed_plot import speed_plot
+from .strip_layout import PICTURES as STRIP_FRAMES
+from .strip_layout import STRIP
 from .view_sheet import view_sheet
 
 VIEWS = ("front", "side", "top")
-STRIP = "strip.jpg"
-"""The picture that stands for the take in a list."""
 PICTURES = ("speed.png", "overlay.png", *(f"{view}.png" for view in VIEWS), STRIP)
 """Names of the pictures."""
 MATCHES = "matches.png"

@@ -8,9 +8,9 @@ from ...shoot.outcomes.outcome import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 from ...take.used_evidence import UsedEvidence
 from ...text import pluralize
-from ..film_strip import PICTURES as STRIP_FRAMES
-from ..film_strip import SIZE as STRIP_SIZE
-from ..pictures import STRIP
+from ..strip_layout import PICTURES as STRIP_FRAMES
+from ..strip_layout import SIZE as STRIP_SIZE
+from ..strip_layout import STRIP
 from .html_text import address, duration, escaped, isolated, percent, relative_path
 from .verdict import Verdict, current_record, verdict
 

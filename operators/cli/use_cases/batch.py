@@ -25,7 +25,6 @@ from ..batch.protocol import Job
 from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, WorkerProcess, worker_command_line
 from ..console import Console, arguments_console
-from ..library_search_path import requested_libraries
 from ..require_blender import require_blender
 from ..usage import UsageError
 from ..wanted_keyframes import wanted_keyframes
@@ -103,6 +102,8 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
         raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
     _, library = wanted_keyframes(arguments.keyframes, arguments.library)
     if library is not None:
+        from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
+
         requested_libraries(library)
     shoot = open_shoot(arguments.shoot, excluded=arguments.output)
     check_output(shoot, arguments.output)

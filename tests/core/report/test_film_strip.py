@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from keymark.core.arrays import Image
-from keymark.core.report import film_strip as strip
+from keymark.core.report import strip_layout as strip
 from keymark.core.report.canvas import LEFT, RIGHT
 from keymark.core.report.film_strip import film_strip
 from keymark.core.take.motion import Motion

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from _outcomes import converted, failed, waiting
 from keymark.core.report.canvas import write_jpg
-from keymark.core.report.film_strip import SIZE
+from keymark.core.report.strip_layout import SIZE
 from keymark.core.report.summary.page import summary_page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
