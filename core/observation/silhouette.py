@@ -21,6 +21,14 @@ ALONG, ACROSS = 8, 4
 RINGS, SPOKES = 2, 5
 TINY = 1e-9
 
+_U = (np.arange(ALONG) + 0.5) / ALONG
+_V = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
+# A product with a constant matrix repeats each of the U cross-sections for its row of samples.
+_ALIKE, _SPREAD = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), _V)  # (U, S)
+_RADIUS = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
+_ANGLE = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
+_DISC = (_RADIUS[:, None] * np.stack([np.cos(_ANGLE), np.sin(_ANGLE)])[:, None]).reshape(2, -1)
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -92,9 +100,7 @@ def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
 
     A point has four coordinates: one, the share of the axis, and meters along the cross-section's axes.
     """
-    u = (np.arange(ALONG) + 0.5) / ALONG
-    v = (np.arange(ACROSS) + 0.5) / ACROSS * 2.0 - 1.0
-    widths = half_widths[:, 0, :, None] + u * (half_widths[:, 1] - half_widths[:, 0])[..., None]  # (Q, 2, U)
+    widths = half_widths[:, 0, :, None] + _U * (half_widths[:, 1] - half_widths[:, 0])[..., None]  # (Q, 2, U)
     stretched = widths * view.reach(view.across)[..., None]  # (F, Q, 2, U)
     half = np.maximum(np.hypot(stretched[:, :, 0], stretched[:, :, 1]), TINY)[:, :, None]  # (F, Q, 1, U)
     touch = widths * stretched / half
@@ -104,12 +110,10 @@ def _wall(half_widths: Array, view: View) -> tuple[Array, Array, Array]:
     # d half = touch · d reach; d length = ω · (axis × along).
     half_rate = np.swapaxes(_reach_rate(view, axis), -1, -2) @ touch  # (F, Q, 3, U)
     rate = cell * (cross(axis, view.along)[..., None] * half + length * half_rate)
-    # A product with a constant matrix repeats each of the U cross-sections for its row of samples.
-    alike, spread = np.repeat(np.eye(ALONG), ACROSS, axis=1), np.kron(np.eye(ALONG), v)  # (U, S)
     points = np.empty((*touch.shape[:2], 4, ALONG * ACROSS))
-    points[:, :, 0], points[:, :, 1] = 1.0, u @ alike
-    np.matmul(touch, spread, out=points[:, :, 2:])
-    return points, ((cell * length * half) @ alike)[:, :, 0], rate @ alike
+    points[:, :, 0], points[:, :, 1] = 1.0, _U @ _ALIKE
+    np.matmul(touch, _SPREAD, out=points[:, :, 2:])
+    return points, ((cell * length * half) @ _ALIKE)[:, :, 0], rate @ _ALIKE
 
 
 def _reach_rate(view: View, axis: Array) -> Array:
@@ -131,18 +135,15 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
     pole, length = _unit((1.0 if end else -1.0) * widths * view.reach(view.along))
     pole = np.where(length[..., None] > 1e-6, pole, np.array([1.0, 0.0]))
     side = np.stack([-pole[..., 1], pole[..., 0]], axis=-1)
-    radius = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
-    angle = (np.arange(SPOKES) + 0.5) / SPOKES * np.pi
-    disc = (radius[:, None] * np.stack([np.cos(angle), np.sin(angle)])[:, None]).reshape(2, -1)
-    points = np.empty((*pole.shape[:2], 4, disc.shape[1]))
+    points = np.empty((*pole.shape[:2], 4, _DISC.shape[1]))
     points[:, :, 0], points[:, :, 1] = 1.0, end
-    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], disc, out=points[:, :, 2:])
+    np.matmul(np.stack([side, pole], axis=-1) * widths[..., None], _DISC, out=points[:, :, 2:])
     # The end's disc is foreshortened by the cosine between its normal and the view.
     normal = cross(view.lateral, view.sagittal)
     cosine = _dot(normal, view.toward)[..., None]
-    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / disc.shape[1]  # (Q, 1)
+    full = 0.5 * np.pi * widths[:, :1] * widths[:, 1:] / _DISC.shape[1]  # (Q, 1)
     rate = full * np.sign(cosine) * cross(normal, view.toward)
-    shape = (*pole.shape[:2], 3, disc.shape[1])
+    shape = (*pole.shape[:2], 3, _DISC.shape[1])
     return (
         points,
         np.broadcast_to(full * np.abs(cosine), (*shape[:2], shape[3])),
