@@ -30,6 +30,7 @@ POSED = (0, 15, 30, 45, 60, 75, 89)
 BETWEEN = np.setdiff1d(np.arange(FRAMES), POSED)
 PRIOR = interpolate(tuple(Keyframe(i, TRUTH[i]) for i in POSED), FRAMES)
 GOOD = detect(TRUTH)
+MARKED = film(TRUTH, 0.3)
 BARE = RegionTracks.unmarked(np.arange(FRAMES) / 30.0, CAMERA.resolution)
 
 
@@ -61,7 +62,13 @@ def with_good() -> WholeClipResult:
 @cache
 def marked() -> WholeClipResult:
     """By markers alone."""
-    return estimate(None, film(TRUTH, 0.3))
+    return estimate(None, MARKED)
+
+
+@cache
+def bare() -> WholeClipResult:
+    """By keyframes alone."""
+    return estimate(None)
 
 
 def test_keypoints_alone_beat_interpolation_by_far() -> None:
@@ -99,9 +106,8 @@ def test_keyframes_are_judged_without_any_marker() -> None:
 
 def test_markers_gain_and_do_not_change_without_keypoints() -> None:
     """Keypoints beside markers are better than markers; none at all is the same as not asking."""
-    tracks = film(TRUTH, 0.3)
-    assert error_mm(estimate(GOOD, tracks)) < error_mm(marked())
-    none = estimate(Keypoints.none(FRAMES), tracks)
+    assert error_mm(estimate(GOOD, MARKED)) < error_mm(marked())
+    none = estimate(Keypoints.none(FRAMES), MARKED)
     np.testing.assert_array_equal(none.posture.translation, marked().posture.translation)
     np.testing.assert_array_equal(none.covariance, marked().covariance)
 
@@ -117,10 +123,10 @@ WRONG = {
 @pytest.mark.parametrize("kind", WRONG)
 def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
     """It costs nothing, with markers and without, and a note says so."""
-    result = estimate(WRONG[kind], film(TRUTH, 0.3))
+    result = estimate(WRONG[kind], MARKED)
     assert error_mm(result) < 1.15 * error_mm(marked())
     assert result.keypoints.source_trust[SOURCE] == 0.0
-    assert error_mm(estimate(WRONG[kind])) < 1.15 * error_mm(estimate(None))
+    assert error_mm(estimate(WRONG[kind])) < 1.15 * error_mm(bare())
     assert "left out" in keypoint_notes(result.keypoints)[0]
 
 
@@ -217,7 +223,7 @@ def test_six_tracks_with_long_gaps_are_used() -> None:
     pixel = tracks.pixel.copy()
     pixel[25:70, :2] = np.nan
     result = estimate(changed(tracks, pixel))
-    assert error_mm(result) < 0.85 * error_mm(estimate(None))
+    assert error_mm(result) < 0.85 * error_mm(bare())
     assert np.isnan(result.keypoints.residual_px[25:70, 0]).all()
     assert (result.keypoints.weight[25:70, 0] == 0.0).all()
 

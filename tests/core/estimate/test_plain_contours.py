@@ -31,6 +31,12 @@ def solve(pictures: Album | None, posed: Posture = TRUTH) -> WholeClipResult:
 
 
 @cache
+def interpolated() -> WholeClipResult:
+    """The estimate without markers and without pictures."""
+    return solve(None)
+
+
+@cache
 def learned() -> ContourEvidence:
     """Contours learned with wide looks."""
     schedule = contour_schedule(BODY, CAMERA, 1, (), TRUTH)
@@ -103,10 +109,9 @@ def test_shifts_along_a_limb_are_found_where_its_colors_end() -> None:
 def test_contours_alone_bring_the_estimate_nearer_to_the_truth() -> None:
     """Without markers the pictures take most of the interpolation's error away, and say what they saw."""
     found = solve(album())
-    alone, interpolated = (
-        point_error_m(one.posture, TRUTH)[np.setdiff1d(FRAME, POSED)].mean() for one in (found, solve(None))
-    )
-    assert alone < 0.6 * interpolated
+    between = np.setdiff1d(FRAME, POSED)
+    alone, before = (point_error_m(one.posture, TRUTH)[between].mean() for one in (found, interpolated()))
+    assert alone < 0.6 * before
     assert found.outlined is not None and found.outlined.mean() > 0.5
     deviation = np.sqrt(np.trace(found.covariance[:, :3, :3], axis1=1, axis2=2))
     assert (deviation > 1e-3).all()
@@ -116,7 +121,7 @@ def test_a_shaken_camera_leaves_the_interpolation() -> None:
     """Where no background stands still nothing is followed, and no edge is made up."""
     shaken = solve(photograph(TRUTH, shake_px=12))
     assert shaken.contours is None and shaken.outlined is None
-    np.testing.assert_allclose(shaken.posture.to_vector(), solve(None).posture.to_vector(), atol=1e-9)
+    np.testing.assert_allclose(shaken.posture.to_vector(), interpolated().posture.to_vector(), atol=1e-9)
 
 
 def test_a_thing_that_moves_behind_costs_its_own_pixels_only() -> None:

@@ -35,9 +35,15 @@ def jerked() -> Posture:
 MOTION = jerked()
 
 
+@cache
+def worn() -> Album:
+    """The album of the true motion, every frame sharp."""
+    return photograph(MOTION, painted=WORN)
+
+
 def blurred(frames: np.ndarray) -> Album:
     """The album of the true motion, with some frames exposed over two frames' time."""
-    sharp, album = photograph(MOTION, painted=WORN), Album()
+    sharp, album = worn(), Album()
     moving = {}
     for frame in frames.tolist():
         around = np.linspace(-1.0, 1.0, EXPOSED)
@@ -112,6 +118,12 @@ def found() -> WholeClipResult:
     return estimate(pictures())
 
 
+@cache
+def without() -> WholeClipResult:
+    """The estimate with the whole picture ignored in the lost frames."""
+    return estimate(pictures(), ignored=everywhere())
+
+
 def finds(result: WholeClipResult) -> np.ndarray:
     """(F, M) what was found beyond the tracks."""
     problem = result.problem
@@ -134,16 +146,16 @@ def test_a_blurred_marker_is_found_where_it_is() -> None:
 
 def test_nothing_is_found_of_a_marker_that_is_not_there() -> None:
     """The sleeve pushed up, for those frames."""
-    bare, worn = (photograph(MOTION, painted=one) for one in (PUSHED_UP, WORN))
-    album = Album()
+    bare, album = photograph(MOTION[LOST], painted=PUSHED_UP), Album()
     for frame in range(FRAMES):
-        album.add(frame, (bare if frame in LOST else worn).picture(frame))
+        lost = frame in LOST
+        album.add(frame, bare.picture(frame - LOST[0]) if lost else worn().picture(frame))
     assert not finds(estimate(album))[LOST, MARKER].any()
 
 
 def test_ignored_pixels_are_no_marker() -> None:
     """With the whole picture ignored in those frames nothing is found."""
-    assert not finds(estimate(pictures(), ignored=everywhere()))[LOST, MARKER].any()
+    assert not finds(without())[LOST, MARKER].any()
 
 
 def test_finds_are_kept_where_nothing_changed() -> None:
@@ -174,8 +186,7 @@ def test_a_result_shows_what_was_found() -> None:
 
 def test_the_posture_follows_what_was_found() -> None:
     """The wrist is much nearer to its true place in the picture in the lost frames than without."""
-    without = estimate(pictures(), ignored=everywhere())
-    assert wrist_error_px(found().posture) < 0.6 * wrist_error_px(without.posture)
+    assert wrist_error_px(found().posture) < 0.6 * wrist_error_px(without().posture)
 
 
 def wrist_error_px(posture: Posture) -> float:
