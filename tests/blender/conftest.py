@@ -1,6 +1,8 @@
 """What the tests in Blender share: an empty file for each, actors, postures and a tiny take."""
 
+import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -47,7 +49,7 @@ def registered() -> Iterator[None]:
     keymark.unregister()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def body() -> Body:
     """An adult of average proportions."""
     return Body(Actor.from_stature(1.72))
@@ -88,7 +90,7 @@ def shown_points() -> Callable[[bpy.types.Object], np.ndarray]:
     return points
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def wave_posture() -> Callable[[np.ndarray], Posture]:
     """A function from times 0 to 1 (F,) to a batch of postures: arms and legs swing, the hips rise."""
 
@@ -108,7 +110,7 @@ def wave_posture() -> Callable[[np.ndarray], Posture]:
     return postures
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def wave_motion(body: Body, wave_posture: Callable[[np.ndarray], Posture]) -> Motion:
     """A motion of FRAMES frames from scene frame 1."""
     posture = wave_posture(np.linspace(0.0, 1.0, FRAMES))
@@ -118,7 +120,7 @@ def wave_motion(body: Body, wave_posture: Callable[[np.ndarray], Posture]) -> Mo
     return Motion(body, FPS, 1, time_s, posture, points, covariance, (0, 6, FRAMES - 1), "map")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def camera() -> Camera:
     """A camera in front of the actor."""
     stand = np.array([[1.0, 0, 0, 0.1], [0, 0, -1, -4.2], [0, 1, 0, 1.0], [0, 0, 0, 1]])
@@ -145,11 +147,12 @@ def _draw(body: Body, posture: Posture, camera: Camera) -> np.ndarray:
     return image
 
 
-@pytest.fixture
-def tiny_take(tmp_path: Path, body: Body, camera: Camera, wave_motion: Motion) -> Take:
-    """A take of FRAMES frames on disk, drawn from `wave_motion`, with three exact keyframes."""
-    folder = tmp_path / "tiny"
-    folder.mkdir()
+@pytest.fixture(scope="session")
+def drawn_take(
+    tmp_path_factory: pytest.TempPathFactory, body: Body, camera: Camera, wave_motion: Motion
+) -> Take:
+    """What `tiny_take` is a copy of; tests must not change it."""
+    folder = tmp_path_factory.mktemp("drawn")
     writer = cv2.VideoWriter(str(folder / "clip.mp4"), cv2.VideoWriter_fourcc(*"mp4v"), FPS, SIZE)
     assert writer.isOpened()
     for frame in range(FRAMES):
@@ -159,6 +162,13 @@ def tiny_take(tmp_path: Path, body: Body, camera: Camera, wave_motion: Motion) -
     take = Take(folder, folder / "clip.mp4", FPS, 1, FRAMES, camera, body, STYLES, keyframes)
     write_take(take, folder)
     return take
+
+
+@pytest.fixture
+def tiny_take(tmp_path: Path, drawn_take: Take) -> Take:
+    """A take of FRAMES frames on disk, drawn from `wave_motion`, with three exact keyframes."""
+    folder = Path(shutil.copytree(drawn_take.folder, tmp_path / "tiny"))
+    return replace(drawn_take, folder=folder, clip=folder / drawn_take.clip.name)
 
 
 @pytest.fixture

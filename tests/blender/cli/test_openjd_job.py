@@ -88,7 +88,7 @@ def test_unusable_parameters_are_refused(template: Path, wrong: str) -> None:
 
 
 def test_the_job_gives_what_a_batch_gives(template: Path, keymark: Path, shoot: Path, tmp_path: Path) -> None:
-    """Both tasks and then the merge: the same bytes of every motion and record, and a library of all three."""
+    """Both tasks, then the merge: the same bytes of every motion and record, and a library of all three."""
     farm, alone = tmp_path / "farm", tmp_path / "alone"
     step = ("--step", "Merge", "--run-dependencies")
     done = openjd("run", template, *step, *parameters(keymark, shoot, farm, tasks=2))
