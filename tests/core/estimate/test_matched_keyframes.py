@@ -1,6 +1,7 @@
 """The whole-clip estimate on matched keyframes."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -53,22 +54,24 @@ def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResu
     )
 
 
+@cache
+def as_matched() -> WholeClipResult:
+    """The estimate through keyframes that are all matched."""
+    return estimate(off(), np.ones(len(INDEX)))
+
+
 def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
     """Believed as another performer's they end nearer to the truth, and the covariance is larger."""
-    postures = off()
-    as_posed, as_matched = estimate(postures, None), estimate(postures, np.ones(len(INDEX)))
-    errors = [point_error_m(found.posture, TRUTH).mean() for found in (as_posed, as_matched)]
+    both = estimate(off(), None), as_matched()
+    errors = [point_error_m(found.posture, TRUTH).mean() for found in both]
     assert errors[1] < 0.9 * errors[0]
-    stated = [
-        np.sqrt(np.trace(found.covariance[:, :3, :3], axis1=1, axis2=2)).mean()
-        for found in (as_posed, as_matched)
-    ]
+    stated = [np.sqrt(np.trace(found.covariance[:, :3, :3], axis1=1, axis2=2)).mean() for found in both]
     assert stated[1] > 1.25 * stated[0]
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
     """Markers sit as on an average performer, and the lens is as stated."""
-    evidence = estimate(off(), np.ones(len(INDEX))).evidence
+    evidence = as_matched().evidence
     np.testing.assert_array_equal(
         placement_values(evidence.model.placements), placement_values(MODEL.placements)
     )
@@ -159,8 +162,7 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
 
 def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
     """To begin with an earlier estimate of matched keyframes changes nothing."""
-    postures, match_scale = off(), np.ones(len(INDEX))
-    first = estimate(postures, match_scale)
+    first = as_matched()
     again = run(
         estimate_whole_clip(
             BODY,
@@ -169,7 +171,7 @@ def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_res
             SEGMENTS,
             first.problem.prior,
             tuple(int(i) for i in INDEX),
-            match_scale=match_scale,
+            match_scale=np.ones(len(INDEX)),
             earlier=replace(first),
         )
     )
