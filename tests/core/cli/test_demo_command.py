@@ -12,6 +12,7 @@ from keymark.core.errors import ConversionError
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.footage.keypoints.people import People, SeenPeople
 from keymark.core.review.score import read_truth, score_points
+from keymark.core.take import examples
 from keymark.core.take.motion_file import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main
@@ -23,8 +24,8 @@ FRAMES = 16
 @pytest.fixture
 def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A small take instead of the demonstration's, and two empty files instead of Blender's."""
-    folder = write_synthetic_take(tmp_path / "demo", FRAMES)
-    shutil.copyfile(folder / "keyframes.json", folder / "keyframes_noisy.json")
+    folder = write_synthetic_take(tmp_path / "demo" / examples.AEROBIC, FRAMES)
+    shutil.copyfile(folder / "keyframes.json", folder / examples.POSED_BY_HAND)
     take = read_take(folder)
     truth = read_truth(folder / "truth.json", take.frame_start, FRAMES)
     pixel, _ = take.camera.project(truth)
@@ -37,8 +38,7 @@ def take(tmp_path: Path, no_blender: None, monkeypatch: pytest.MonkeyPatch) -> P
     write_keypoints(folder / "keypoints.json", people, take.frame_start)
 
     monkeypatch.setattr(demo, "require_blender", lambda needing: None)
-    monkeypatch.setattr(demo, "DEMO", folder)
-    monkeypatch.setattr(demo, "KEYFRAMES", folder / "keyframes_noisy.json")
+    monkeypatch.setattr(examples, "SHIPPED", folder.parent)
     return folder
 
 
@@ -107,7 +107,7 @@ def test_an_installation_without_it_is_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Without the demonstration take the status is 2 and nothing is made."""
-    monkeypatch.setattr(demo, "DEMO", tmp_path / "nowhere")
+    monkeypatch.setattr(examples, "SHIPPED", tmp_path / "nowhere")
     assert main(["demo", "--output", str(tmp_path / "out")]) == 2
-    assert "demonstration take is missing" in capsys.readouterr().err
+    assert "example is missing" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -68,7 +68,7 @@ def test_a_misstated_lens_is_told_and_made_good(take: Take, mapped: Reconstructi
     stated = replace(take.camera, lens_mm=1.09 * take.camera.lens_mm)
     right, wrong = mapped, run(reconstruct(replace(take, camera=stated)))
     assert not any("lens" in note for note in right.notes)
-    assert any(f"not {stated.lens_mm:.1f} mm as stated" in note for note in wrong.notes)
+    assert any(f"instead of {stated.lens_mm:.1f} mm as stated" in note for note in wrong.notes)
     truth = BODY.points(BODY.pose(true_postures(24)))
     errors = [np.linalg.norm(result.motion.points - truth, axis=-1).mean() for result in (right, wrong)]
     assert errors[1] < errors[0] + 0.005

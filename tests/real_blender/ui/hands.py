@@ -58,20 +58,28 @@ class Hands:
         region = self.region(kind, "WINDOW")
         yield from self.move(region.x + 0.45 * region.width, region.y + 0.5 * region.height)
 
-    def press(self, key: str, text: str | None = None, **modifiers: bool) -> Steps[None]:
-        """Press and release a key or a mouse button where the mouse is."""
+    def press(self, key: str, text: str | None = None, settle: bool = True, **modifiers: bool) -> Steps[None]:
+        """Press and release a key or a mouse button where the mouse is.
+
+        Args:
+            key: As Blender names it.
+            text: What it writes.
+            settle: Whether Blender is then given time to draw; not where a job begins that is soon over.
+            modifiers: Whether `ctrl`, `shift` or `alt` is held.
+        """
         self.clicks += key == "LEFTMOUSE"
         self.keys += key != "LEFTMOUSE"
         for value in ("PRESS", "RELEASE"):
             typed = {"unicode": text} if text is not None and value == "PRESS" else {}
             self.window.event_simulate(type=key, value=value, x=self.x, y=self.y, **typed, **modifiers)
             yield
-        yield from turns(2)
+        if settle:
+            yield from turns(2)
 
-    def click(self, x: float, y: float, **modifiers: bool) -> Steps[None]:
+    def click(self, x: float, y: float, settle: bool = True, **modifiers: bool) -> Steps[None]:
         """Click at a place in the window."""
         yield from self.move(x, y)
-        yield from self.press("LEFTMOUSE", **modifiers)
+        yield from self.press("LEFTMOUSE", settle=settle, **modifiers)
 
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> Steps[None]:
         """Drag from one place in the window to another."""
@@ -131,10 +139,12 @@ class Hands:
         expect(found is not None, f"no button for {command} {words} in the sidebar of the {kind}")
         return found
 
-    def click_button(self, command: str, *words: str, kind: str = "VIEW_3D") -> Steps[None]:
+    def click_button(
+        self, command: str, *words: str, kind: str = "VIEW_3D", settle: bool = True
+    ) -> Steps[None]:
         """Find and click the button that calls an operator."""
         place = yield from self.find_button(command, *words, kind=kind)
-        yield from self.click(*place)
+        yield from self.click(*place, settle=settle)
 
     def invoke(self, command: str, kind: str = "VIEW_3D", **settings: object) -> Steps[None]:
         """Call an operator as its button would, where that is in a folded panel.

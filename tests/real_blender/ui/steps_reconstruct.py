@@ -70,7 +70,7 @@ def _watched(person: Person, command: str) -> Steps[None]:
 
 def cancelled(person: Person, command: str) -> Steps[None]:
     """Start a job by its button and press Esc while it runs."""
-    yield from person.hands.click_button(command)
+    yield from person.hands.click_button(command, settle=False)
     expect(person.jobs(), f"{command} does not run")
     yield from person.hands.press("ESC")
     yield from until(lambda: not person.jobs(), "the job to stop")
