@@ -63,6 +63,21 @@ def test_help_and_mistakes_wait_for_no_library(
     assert not loaded & {"numpy", "scipy", "cv2", "bpy", "tqdm", "asyncio", "keymark.core.files.json_file"}
 
 
+def test_a_batch_leaves_estimating_to_its_workers(repository: Path) -> None:
+    """So that they start at once, the process that starts them imports neither SciPy nor Blender."""
+    words = "import _boot, sys; _boot.load_package(); import keymark.operators.cli.use_cases.batch"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{words}; print(*sys.modules)"],
+        cwd=repository / "tests",
+        env={**os.environ, "PYTHONPATH": os.environ.get("KEYMARK_TEST_LIBRARIES", "")},
+        capture_output=True,
+        text=True,
+    )
+    loaded = set(done.stdout.split())
+    assert "keymark.operators.cli.use_cases.batch" in loaded
+    assert not loaded & {"scipy", "bpy", "keymark.core.estimate.reconstruct"}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends processes without asking them")
 def test_a_process_that_is_asked_to_end_cleans_up(
     take: Path, out: Path, tmp_path: Path, repository: Path
