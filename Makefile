@@ -18,7 +18,7 @@ detect_size := MediaPipe, about 1 GB on disk, one to five minutes
 dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
 # Whole files to a worker, so that what a file's tests share is made once.
 two_at_a_time := --numprocesses 2 --dist loadfile
-test_time := all tests take about six minutes on two quiet cores
+test_time := all tests take about five minutes on two quiet cores
 settings := pyproject.toml setup.py
 sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
 
@@ -86,7 +86,7 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
-	@echo "== Without Blender: about three minutes on two quiet cores"
+	@echo "== Without Blender: about two minutes on two quiet cores"
 	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
 
 # What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.
