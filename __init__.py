@@ -1,4 +1,4 @@
-"""Keymark: an animated armature from one video of a performer wearing five colored markers.
+"""Keymark: animation of any character from one video of a performer and a few keyframes.
 
 The repository root is the Blender extension. Nothing of Blender is imported here before `register()`,
 so that the same tree serves as the ordinary Python package `keymark`.
