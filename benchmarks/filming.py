@@ -26,16 +26,15 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.evidence import with_evidence  # noqa: E402
 from keymark.core.take.evidence_kinds import CONTOURS, MARKERS  # noqa: E402
+from keymark.core.take.examples import AEROBIC, POSED_BY_HAND, example_folder  # noqa: E402
 from make_takes import make  # noqa: E402
 from pictures.filming_scenes import ALIKE  # noqa: E402
 from studio.catalogue.demonstration import DEMONSTRATION  # noqa: E402
 from studio.described import Described  # noqa: E402
 from studio.viewpoint import look_at  # noqa: E402
 
-DEMO = ROOT / "presets" / "demo" / "aerobic"
+DEMO = example_folder(AEROBIC)
 FOLDER = ROOT / "out" / "filming"
-KEYFRAMES = "keyframes_noisy.json"
-"""Posed with a person's errors."""
 SEED = 5
 SHARP = replace(DEMONSTRATION, side=None, detected=False, moments=1, shutter_frames=0.1, samples=1)
 ABOVE = look_at((0.55, -2.9, 3.4), (0.24, 0.05, 0.95), 47.0, DEMONSTRATION.camera.resolution)
@@ -99,7 +98,7 @@ FILMED: Mapping[str, Described] = {
 def change(folder: Path, how: Change) -> None:
     """Write the demonstration with a changed clip."""
     folder.mkdir(parents=True, exist_ok=True)
-    for name in (KEYFRAMES, "truth.json", "keyframes.json"):
+    for name in (POSED_BY_HAND, "truth.json", "keyframes.json"):
         shutil.copyfile(DEMO / name, folder / name)
     fields = json.loads((DEMO / "take.json").read_text(encoding="utf-8"))
     clip = Clip.open(DEMO / "clip.mp4", fps=fields["fps"])
@@ -117,7 +116,7 @@ def change(folder: Path, how: Change) -> None:
 def scores(folder: Path) -> tuple[Score, Score] | str:
     """The errors of plain interpolation and of `map`; a sentence where the take is refused."""
     try:
-        trial = read_trial(folder, folder / KEYFRAMES)
+        trial = read_trial(folder, folder / POSED_BY_HAND)
         motion = run(reconstruct(with_evidence(trial.take, (MARKERS, CONTOURS)), "map", trial.reading)).motion
     except KeymarkError as error:
         return str(error)

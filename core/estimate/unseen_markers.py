@@ -27,7 +27,7 @@ EDGE_SHARE = 2.0
 """Regions are cut off nearer to the picture's edge than this many of their deviations."""
 
 
-def unseen_cost(problem: ClipProblem, state: ClipState, findable: Array | None = None) -> Array:
+def unseen_cost(problem: ClipProblem, state: ClipState, findable: Array) -> Array:
     """(F,) negative logarithm of the probability that the markers which are not seen are not found.
 
     Nearly zero where every marker predicted to be visible was found. It joins the costs of what is seen.
@@ -35,12 +35,12 @@ def unseen_cost(problem: ClipProblem, state: ClipState, findable: Array | None =
     Args:
         problem: The clip's problem, whose regions' model knows what stands before the performer.
         state: Any state of F of its frames.
-        findable: What `findable_share` says of the clip, where many states of it are compared.
+        findable: (F, M) what `findable_share` says of the clip, once for all states of it that are compared.
     """
     model = problem.evidence.model
     found = found_share(model.evaluate(state.pose, state.frame), model.camera)
     seen = np.isfinite(problem.observed.centroid[state.frame, :, 0])
-    could = (findable_share(problem) if findable is None else findable)[state.frame]
+    could = findable[state.frame]
     return np.asarray(np.where(seen, 0.0, -np.log1p(-could * found)).sum(-1))
 
 

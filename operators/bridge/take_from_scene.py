@@ -18,12 +18,9 @@ from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 
 READING = "Reading the footage's times"
-NO_EVIDENCE = SceneEvidence()
 
 
-def clip_frames(
-    footage: Footage, evidence: SceneEvidence = NO_EVIDENCE, kept: Reading | None = None
-) -> Job[Array]:
+def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None) -> Job[Array]:
     """Find the scene frame that shows each frame of the clip.
 
     Args:

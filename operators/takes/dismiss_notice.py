@@ -21,9 +21,9 @@ class KEYMARK_OT_dismiss_notice(BaseOperator, bpy.types.Operator):
         notices = active_take(context.scene).notices
         if self.index >= len(notices):
             raise InputError(
-                "index is {index}, but the take has {notices} notices",
+                "index is {index}, but the take has {count} notices",
                 index=self.index,
-                notices=len(notices),
+                count=len(notices),
             )
         notices.remove(self.index)
 

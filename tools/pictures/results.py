@@ -7,16 +7,15 @@ from io import StringIO
 from pathlib import Path
 
 import bpy
+from keymark.core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.main import main as keymark
 
 from .figure import write_figure
 
-ROOT = Path(__file__).resolve().parents[2]
-DEMO = ROOT / "presets" / "demo" / "aerobic"
-KEYFRAMES = DEMO / "keyframes_noisy.json"
-"""With the errors that a person makes when posing."""
+DEMO = example_folder(AEROBIC)
+KEYFRAMES = DEMO / POSED_BY_HAND
 BLEND, CHARACTER = "motion.blend", "character.blend"
 
 

@@ -117,10 +117,10 @@ def parse_command(text: str, origin: str) -> DetectorCommand:
         )
     if len(text) > LONGEST_COMMAND:
         raise InputError(
-            "{origin}: has {text} characters; at most {longest_command} are valid",
+            "{origin}: has {count} characters; at most {most} are valid",
             origin=origin,
-            text=len(text),
-            longest_command=LONGEST_COMMAND,
+            count=len(text),
+            most=LONGEST_COMMAND,
         )
     if any(is_control_character(character) for character in text):
         raise InputError(
@@ -157,9 +157,9 @@ def _listed_words(text: str, origin: str) -> list[str]:
     wrong = [word for word in words if not isinstance(word, str)]
     if wrong:
         raise InputError(
-            "{origin}: holds {wrong}, which is no text; it must be {valid}",
+            "{origin}: holds {value}, which is no text; it must be {valid}",
             origin=origin,
-            wrong=shown(wrong[0]),
+            value=shown(wrong[0]),
             valid=valid,
         )
     if any(is_control_character(character) for word in words for character in word):

@@ -71,10 +71,10 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
         real = Path(os.path.realpath(file))
         if not real.is_relative_to(folder):
             raise InputError(
-                "{clip}: the detector {detector} wrote {folder} as a link to {real}; it must write a file",
+                "{clip}: the detector {detector} wrote {file} as a link to {real}; it must write a file",
                 clip=clip,
                 detector=detector,
-                folder=file.relative_to(folder),
+                file=file.relative_to(folder),
                 real=real,
             )
     return found

@@ -65,10 +65,10 @@ class DetectorProcess:
             except (OSError, ValueError) as error:
                 reason = error.strerror if isinstance(error, OSError) else error
                 raise InputError(
-                    "{origin}: the program {words} cannot be started ({reason}); it must be a program, or a "
-                    "script with its interpreter before it",
+                    "{origin}: the program {program} cannot be started ({reason}); it must be a program, or "
+                    "a script with its interpreter before it",
                     origin=origin,
-                    words=words[0],
+                    program=words[0],
                     reason=reason,
                 ) from error
 

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film
+from keymark.core.arrays import Array
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import ClipProblem
 from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.unseen_markers import missed_share, unseen_cost
+from keymark.core.estimate.unseen_markers import findable_share, missed_share, unseen_cost
 from keymark.core.estimate.whole_clip import estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation.occluders import StaticOccluders
@@ -50,15 +51,20 @@ def state(clip: ClipProblem, posture: Posture) -> ClipState:
     )
 
 
+def cost_of(clip: ClipProblem, postures: Posture) -> Array:
+    """What the markers that are not seen cost in each frame of a motion."""
+    return unseen_cost(clip, state(clip, postures), findable_share(clip))
+
+
 def test_a_marker_in_plain_sight_that_is_not_seen_costs() -> None:
     """In the frames in which it is gone, and nowhere else; a hidden place costs nothing."""
     clip = problem(GONE)
-    cost = unseen_cost(clip, state(clip, TRUTH))
+    cost = cost_of(clip, TRUTH)
     assert (cost[GONE] > 2.0).all()
     assert np.delete(cost, GONE).max() < 0.5
     nothing_there = np.full((240, 320), 1.0, dtype=np.float32)
     behind = clip.before(StaticOccluders(nothing_there, 1))
-    assert unseen_cost(behind, state(behind, TRUTH)).max() < 0.1
+    assert cost_of(behind, TRUTH).max() < 0.1
 
 
 def test_a_marker_that_keyframes_miss_as_well_tells_little() -> None:
@@ -66,7 +72,7 @@ def test_a_marker_that_keyframes_miss_as_well_tells_little() -> None:
     often = problem(np.concatenate([GONE, POSED]))
     seldom = problem(GONE)
     assert missed_share(often)[SHIN] > 3.0 * missed_share(seldom)[SHIN]
-    costs = [unseen_cost(clip, state(clip, TRUTH))[GONE].sum() for clip in (often, seldom)]
+    costs = [cost_of(clip, TRUTH)[GONE].sum() for clip in (often, seldom)]
     assert costs[0] < costs[1]
 
 
@@ -74,7 +80,7 @@ def test_a_marker_that_is_not_seen_for_long_tells_nothing() -> None:
     """Nobody knows whether it could be."""
     gone = np.arange(FRAMES)
     clip = problem(gone)
-    assert unseen_cost(clip, state(clip, TRUTH)).max() < 0.5
+    assert cost_of(clip, TRUTH).max() < 0.5
 
 
 def test_out_of_the_picture_nothing_is_expected() -> None:
@@ -82,4 +88,4 @@ def test_out_of_the_picture_nothing_is_expected() -> None:
     clip = problem(GONE)
     aside = np.zeros((FRAMES, TRUTH.to_vector().shape[1]))
     aside[:, 0] = 6.0
-    assert unseen_cost(clip, state(clip, TRUTH.plus(aside))).max() < 0.1
+    assert cost_of(clip, TRUTH.plus(aside)).max() < 0.1
