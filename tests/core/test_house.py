@@ -28,6 +28,7 @@ ROOMS = (
     ("core.posing",),
     ("core.finish", "core.review"),
     ("core.retarget",),
+    ("core.pipeline",),
     ("core.shoot",),
     ("core.report",),
     ("operators.bridge",),

@@ -7,6 +7,7 @@ from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...matching.match_input import check_followed
+from ...pipeline.found_keyframes import read_take
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -16,7 +17,6 @@ from ...take.evidence_kinds import CONTOURS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
-from ...take.take_to_pose import take_to_pose
 from ...text import Sentence
 from ..shoot import ShootTake
 from .cost_estimate import CostEstimate, estimate_cost
@@ -118,9 +118,7 @@ def check_take(
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
     """Read the take as its conversion will; without keyframes and keypoints where one is unusable."""
     with findings.catching():
-        if settings.library is None:
-            return read_described(description, settings.keyframes, settings=settings)
-        return take_to_pose(description, settings.keyframes, settings)
+        return read_take(description, settings)
     with findings.catching():
         without = replace(settings, keypoints=())
         return read_described(

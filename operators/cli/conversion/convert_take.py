@@ -12,6 +12,8 @@ from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
+from ....core.pipeline.found_keyframes import find_and_reconstruct, read_take
+from ....core.pipeline.result import Conversion, conversion_record
 from ....core.progress import run
 from ....core.report.body_outlines import performer_contours
 from ....core.report.pictures import MATCHES, PICTURES, write_pictures
@@ -29,8 +31,6 @@ from ....core.take.methods import METHODS
 from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
-from ....core.take.take_file import read_described
-from ....core.take.take_to_pose import take_to_pose
 from ....core.text import Sentence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
@@ -39,8 +39,6 @@ from ..version import version
 from .blender_files import BLEND, BVH, write_blender_files
 from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
 from .character_result import CHARACTER_BLEND, CHARACTER_PICTURE, opened_character, write_character_result
-from .found_keyframes import find_and_reconstruct
-from .result import Conversion, conversion_record
 from .unsupported_paths import refuse_unsupported_paths
 
 MOTION, REPORT, KEYFRAMES = "motion.json", "report", "keyframes.json"
@@ -123,7 +121,9 @@ def prepared_conversion(
 def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool) -> Conversion:
     """Make every file of the result in the staging folder; the record comes last."""
     settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
-    take = _read_take(prepared.description, settings, output)
+    if settings.library is not None:
+        _refuse_own_folder(prepared.description, output)
+    take = read_take(prepared.description, settings)
     method = settings.method or METHODS[0]
     check_method(take, method)
     if settings.character is not None:
@@ -173,7 +173,7 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
     )
     write_record(
         staging_folder,
-        conversion_record(conversion, prepared.digest, staging_folder, made, curves),
+        conversion_record(conversion, version(), prepared.digest, staging_folder, made, curves),
     )
     return conversion
 
@@ -203,15 +203,12 @@ def _recorded_files(output: Path) -> Mapping[str, str]:
     return {} if record is None else record.files
 
 
-def _read_take(description: Description, settings: ConversionSettings, output: Path) -> Take:
-    if settings.library is None:
-        return read_described(description, settings.keyframes, settings=settings)
+def _refuse_own_folder(description: Description, output: Path) -> None:
     if os.path.realpath(description.folder) == os.path.realpath(output):
         raise InputError(
             f"{output}: is the take's own folder, whose {KEYFRAMES} the found keyframes would replace; "
             "name another folder"
         )
-    return take_to_pose(description, settings.keyframes, settings)
 
 
 def _unused_keyframes_note(description: Description, settings: ConversionSettings) -> tuple[str, ...]:

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
+from ....core.pipeline.result import Conversion
 from ....core.take.conversion_record import is_up_to_date
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ..console import Console
 from .convert_take import convert_prepared, prepared_conversion
-from .result import Conversion
 
 
 def convert_if_changed(

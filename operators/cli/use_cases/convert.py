@@ -6,14 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ....core.pipeline.found_keyframes import found_summary
+from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery.take_path import take_path
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..conversion.found_keyframes import found_summary
-from ..conversion.result import Conversion
 from ..usage import UsageError
 from ..wanted_keyframes import wanted_keyframes
 

@@ -6,18 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.estimate.reconstruct import Reconstruction
-from ....core.files.digest import content_digest
-from ....core.library.library import Library
-from ....core.library.library_file import library_digest
-from ....core.posing.contradiction_notes import contradiction_notes
-from ....core.posing.found_poses import FoundPoses
-from ....core.progress import run
-from ....core.review.review import review
-from ....core.review.used_evidence import used_evidence
-from ....core.take.conversion_record import ConversionRecord
-from ....core.take.take import Take
-from ..version import version
+from ..estimate.reconstruct import Reconstruction
+from ..files.digest import content_digest
+from ..library.library import Library
+from ..library.library_file import library_digest
+from ..posing.contradiction_notes import contradiction_notes
+from ..posing.found_poses import FoundPoses
+from ..progress import run
+from ..review.review import review
+from ..review.used_evidence import used_evidence
+from ..take.conversion_record import ConversionRecord
+from ..take.take import Take
 
 WEAKEST_PERCENTILE = 5.0
 """Percentile of the frames' confidence that is recorded as the weakest."""
@@ -48,12 +47,18 @@ class Conversion:
 
 
 def conversion_record(
-    conversion: Conversion, digest: str, folder: Path, names: Sequence[str], stable_digests: Mapping[str, str]
+    conversion: Conversion,
+    version: str,
+    digest: str,
+    folder: Path,
+    names: Sequence[str],
+    stable_digests: Mapping[str, str],
 ) -> ConversionRecord:
     """The record of a conversion.
 
     Args:
         conversion: The result.
+        version: Keymark's.
         digest: Digest of the input.
         folder: Folder of the result's files.
         names: The files, as paths in the folder.
@@ -66,7 +71,7 @@ def conversion_record(
     found = {keyframe.index: keyframe.matched for keyframe in take.keyframes if keyframe.matched is not None}
     return ConversionRecord(
         digest=digest,
-        keymark=version(),
+        keymark=version,
         take=take.name,
         method=motion.method,
         library=None if conversion.found is None else conversion.found.library,

@@ -4,15 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ....core.estimate.reconstruct import Reconstruction, reconstruct
-from ....core.library.library import Library
-from ....core.library.several_libraries import EVERY_LIBRARY
-from ....core.posing.found_poses import FoundPoses, with_found
-from ....core.posing.match_clip import match_clip
-from ....core.posing.pose_clip import pose_clip
-from ....core.progress import Job, stretch
-from ....core.take.read_footage import read_footage
-from ....core.take.take import Take
+from ..estimate.reconstruct import Reconstruction, reconstruct
+from ..library.library import Library
+from ..library.several_libraries import EVERY_LIBRARY
+from ..posing.found_poses import FoundPoses, with_found
+from ..posing.match_clip import match_clip
+from ..posing.pose_clip import pose_clip
+from ..progress import Job, stretch
+from ..take.conversion_settings import ConversionSettings
+from ..take.description import Description
+from ..take.read_footage import read_footage
+from ..take.take import Take
+from ..take.take_file import read_described
+from ..take.take_to_pose import take_to_pose
 
 PROGRESS_MATCHING, PROGRESS_POSING = (0.3, 0.5), (0.2, 0.7)
 """Fractions of the whole job after reading the footage and after finding its keyframes: with one library, and
@@ -28,6 +32,17 @@ class FoundReconstruction:
     reconstruction: Reconstruction
     found: FoundPoses | None = None
     """What was found; None where that was not asked for."""
+
+
+def read_take(description: Description, settings: ConversionSettings) -> Take:
+    """A described take with its posed keyframes, which may lack where others are found.
+
+    Raises:
+        InputError: A file is unusable, or all keyframes are posed and there are too few.
+    """
+    if settings.library is None:
+        return read_described(description, settings.keyframes, settings=settings)
+    return take_to_pose(description, settings.keyframes, settings)
 
 
 def find_and_reconstruct(
