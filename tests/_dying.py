@@ -49,8 +49,8 @@ def main() -> int:
     when, folder, *words = sys.argv[1:]
     import bpy  # noqa: F401
     import keymark.operators.bridge.result_files  # noqa: F401
+    from keymark.operators.cli.commands import convert  # noqa: F401
     from keymark.operators.cli.main import main as run
-    from keymark.operators.cli.use_cases import convert  # noqa: F401
 
     operations = FileOperations(folder, int(when) if when.isdigit() else None)
     sys.addaudithook(operations)

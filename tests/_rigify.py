@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 from _boot import ROOT
 
-SCRIPT = ROOT / "operators" / "cli" / "use_cases" / "generate_rigify_human.py"
+SCRIPT = ROOT / "operators" / "cli" / "generate_rigify_human.py"
 LIMIT_S = 300
 
 

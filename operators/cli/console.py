@@ -1,18 +1,93 @@
-"""Output of a command: text or JSON on standard output, and progress."""
+"""Output of a command: text wrapped to the terminal, one object for `--json`, and progress."""
 
 import argparse
 import json
 import os
 import sys
 import time
+from collections.abc import Callable
+from shutil import get_terminal_size
+from textwrap import wrap
 from types import TracebackType
 from typing import Any
 
 from ...core.errors import ConversionError
 from ...core.progress import Progress
-from .line_wrapping import terminal_columns, wrapped
-from .openjd_progress import OpenjdProgress, is_wanted
 from .usage import print_error
+
+FEWEST_COLUMNS = 60
+"""Narrower terminals are wrapped as if they had this many."""
+
+
+def terminal_columns() -> int | None:
+    """Width of the terminal; None where standard output is none, and sentences stay whole."""
+    if sys.stdout is None or not sys.stdout.isatty():
+        return None
+    return get_terminal_size().columns
+
+
+def wrapped(sentence: str, indent: int, columns: int | None) -> list[str]:
+    """A sentence broken into lines between words; all but the first are indented by two columns more.
+
+    Args:
+        sentence: The text to wrap.
+        indent: Columns before the first line.
+        columns: Width of the terminal; None keeps the sentence whole.
+    """
+    begin = " " * indent
+    if columns is None or indent + len(sentence) <= columns:
+        return [begin + sentence]
+    return wrap(
+        sentence,
+        max(columns, FEWEST_COLUMNS),
+        initial_indent=begin,
+        subsequent_indent=f"{begin}  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+VARIABLE, OPENJD = "KEYMARK_PROGRESS", "openjd"
+"""Environment variable that asks for these lines, and the value that does."""
+
+
+class OpenjdProgress:
+    """A line for each percent and one for each stage, with the interface of a tqdm bar."""
+
+    def __init__(self, write: Callable[[str], object]) -> None:
+        self.n = 0.0
+        """Percent."""
+        self._write = write
+        self._text, self._percent = "", -1
+
+    def set_description(self, text: str, refresh: bool = True) -> None:
+        """Write the status line of a new stage."""
+        if text != self._text:
+            self._text = text
+            self._write(f"openjd_status: {text}")
+
+    def update(self, more: float) -> None:
+        """Add to the percentage and write a line for each whole percent."""
+        self.n += more
+        percent = min(int(self.n), 100)
+        if percent > self._percent:
+            self._percent = percent
+            self._write(f"openjd_progress: {percent}")
+
+    def clear(self) -> None:
+        """Do nothing: lines need not make room for others."""
+
+    def refresh(self) -> None:
+        """Do nothing: lines stay."""
+
+    def close(self) -> None:
+        """Do nothing: there is nothing to take away."""
+
+
+def is_wanted() -> bool:
+    """Whether the environment asks for such lines."""
+    return os.environ.get(VARIABLE) == OPENJD
+
 
 JOB_SHARE = 0.9
 """Share of a command's progress that the job has; the rest is writing files."""

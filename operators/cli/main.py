@@ -5,17 +5,17 @@ On all but 0, one line on standard error says why, and the output is as it was b
 """
 
 import os
+import shutil
 import signal
 import sys
 import threading
 import time
 import traceback
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
-from .blender_exit import end_process
 from .blender_silence import codec_silence
 from .parser import build_parser
 from .usage import UsageError, print_error
@@ -25,6 +25,9 @@ BLENDER_PREFIX = ["--command", "keymark"]
 DONE, FAILED, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 """The matrices here are small: a second thread of linear algebra doubles the work and saves no time."""
+GLTF = "io_scene_gltf2.blender."
+"""Beginning of the modules that glTF's importer and exporter load when they run."""
+FIXED_IN = (5, 0)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -38,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     status = _run(list(sys.argv[1:] if argv is None else argv))
     if argv is None:
-        end_process(status)
+        _end_process(status)
     return status
 
 
@@ -53,7 +56,9 @@ def _run(words: list[str]) -> int:
             os.environ.setdefault(variable, "1")
     started = time.perf_counter()
     try:
-        arguments = build_parser().parse_args(words)
+        arguments = build_parser(next((word for word in words if not word.startswith("-")), None)).parse_args(
+            words
+        )
         arguments.started = started
         with _sigterm_as_interrupt(), codec_silence(debug):
             arguments.run(arguments)
@@ -112,3 +117,20 @@ def _sigterm_as_interrupt() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def _end_process(status: int) -> None:
+    """End the process at once where it would wait for ever; else return.
+
+    Blender 4.5 as a Python module may hang at its exit once it has read or written glTF.
+    """
+    blender = sys.modules.get("bpy")
+    if blender is None or blender.app.binary_path or blender.app.version >= FIXED_IN:
+        return
+    if not any(name.startswith(GLTF) for name in list(sys.modules)):
+        return
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):
+            stream.flush()
+    shutil.rmtree(blender.app.tempdir, ignore_errors=True)
+    os._exit(status)

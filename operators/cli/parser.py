@@ -2,10 +2,11 @@
 
 import argparse
 from collections.abc import Callable, Sequence
-from typing import NoReturn
+from importlib import import_module
+from typing import Any, NoReturn
 
 from .command import Command, CommandGroup
-from .commands import COMMANDS
+from .commands import SUMMARIES
 from .usage import UsageError, program_name
 from .version import version
 
@@ -30,6 +31,8 @@ examples:
 A take is a folder with take.json, the clip and keyframes.json, or a clip below a shoot.json, which tells of
 many; a library takes the place of keyframes.
 Exit status: 0 done, 1 the conversion failed, 2 the input or the command line is unusable."""
+WORKER = "worker"
+"""A command that only a batch runs."""
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -40,8 +43,12 @@ class OneLineParser(argparse.ArgumentParser):
         raise UsageError(f"{message}; see {self.prog} --help")
 
 
-def build_parser() -> argparse.ArgumentParser:
-    """The parser of all commands; its result has `run`, which runs the chosen one."""
+def build_parser(chosen: str | None) -> argparse.ArgumentParser:
+    """The parser; its result has `run`, which runs the command.
+
+    Args:
+        chosen: The command that the line names, the only one whose arguments are known; None for no command.
+    """
     program = program_name()
     parser = OneLineParser(
         prog=program,
@@ -50,46 +57,49 @@ def build_parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"keymark {version()}")
-    _add_commands(parser, COMMANDS, program)
+    parser.set_defaults(run=_refuse_no_command(list(SUMMARIES), program))
+    added = parser.add_subparsers(metavar="COMMAND", title="commands")
+    for name, summary in SUMMARIES.items():
+        if name == chosen:
+            _add_command(added, _declared(name), summary, program)
+        else:
+            added.add_parser(name, help=summary)
+    if chosen == WORKER:  # without `help`, by which argparse would list it
+        added.add_parser(WORKER).set_defaults(run=_declared(WORKER).run)
     return parser
 
 
-def _add_commands(
-    parser: argparse.ArgumentParser, commands: Sequence[Command | CommandGroup], program: str
-) -> None:
-    parser.set_defaults(run=_refuse_no_command(commands, program))
-    added = parser.add_subparsers(metavar="COMMAND", title="commands")
-    for command in commands:
-        if isinstance(command, CommandGroup):
-            inner = f"{program} {command.name}"
-            group = added.add_parser(
-                command.name,
-                help=command.summary,
-                description=command.description,
-                epilog=command.epilog.format(program=inner),
-                formatter_class=argparse.RawDescriptionHelpFormatter,
-            )
-            _add_commands(group, command.commands, inner)
-        elif command.hidden:  # without `help`, by which argparse would list it
-            _fill(added.add_parser(command.name), command)
-        else:
-            one = added.add_parser(command.name, help=command.summary, description=command.description)
-            one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
-            one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
-            one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
-            _fill(one, command)
+def _declared(name: str) -> Any:
+    """What the file of a command declares."""
+    return getattr(import_module(f".commands.{name}", __package__), name.upper())
 
 
-def _fill(parser: argparse.ArgumentParser, command: Command) -> None:
-    command.add_arguments(parser)
-    parser.set_defaults(run=command.run)
+def _add_command(added: Any, command: Command | CommandGroup, summary: str, program: str) -> None:
+    one = added.add_parser(
+        command.name,
+        help=summary,
+        description=command.description,
+        formatter_class=argparse.RawDescriptionHelpFormatter
+        if isinstance(command, CommandGroup)
+        else argparse.HelpFormatter,
+    )
+    if isinstance(command, CommandGroup):
+        inner = f"{program} {command.name}"
+        one.epilog = command.epilog.format(program=inner)
+        one.set_defaults(run=_refuse_no_command([each.name for each in command.commands], inner))
+        below = one.add_subparsers(metavar="COMMAND", title="commands")
+        for each in command.commands:
+            _add_command(below, each, each.summary, inner)
+        return
+    one.add_argument("--quiet", "-q", action="store_true", help="write nothing but errors")
+    one.add_argument("--json", action="store_true", help="write one JSON object instead of text")
+    one.add_argument("--debug", action="store_true", help="on errors, show where in the program")
+    command.add_arguments(one)
+    one.set_defaults(run=command.run)
 
 
-def _refuse_no_command(
-    commands: Sequence[Command | CommandGroup], program: str
-) -> Callable[[argparse.Namespace], None]:
+def _refuse_no_command(names: Sequence[str], program: str) -> Callable[[argparse.Namespace], None]:
     """What runs where the user names none of these commands."""
-    names = [command.name for command in commands if isinstance(command, CommandGroup) or not command.hidden]
     valid = f"{', '.join(names[:-1])} and {names[-1]}"
 
     def refuse(_arguments: argparse.Namespace) -> None:

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from keymark.core.arrays import Array
 from keymark.operators.cli.blender_silence import blender_silence
-from keymark.operators.cli.use_cases.demo_character import write_demo_character
+from keymark.operators.cli.commands.demo import write_demo_character
 from scipy.spatial import ConvexHull
 from studio.performer import one_surface, skin_weights
 

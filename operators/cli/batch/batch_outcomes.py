@@ -19,8 +19,7 @@ from ....core.shoot.outcomes.outcome import Outcome, Status, read_outcome, read_
 from ....core.shoot.shoot import Shoot
 from ....core.take.conversion_record import ConversionRecord, find_record
 from ....core.text import pluralize
-from ..console import Console
-from ..line_wrapping import terminal_columns, wrapped
+from ..console import Console, terminal_columns, wrapped
 from .batch_progress import BatchProgress
 from .protocol import FAILED, Done, Job, Step
 from .summary import write_summary

@@ -1,34 +1,19 @@
-"""All commands of the command line, one file each, in the order of `keymark --help`.
+"""The commands of the command line, a file each, which `keymark --help` lists in this order.
 
-Each file declares a command's arguments and its `run`, which imports the use case of the same name from
-`use_cases/`. Imports at the top of these files stay light: every call of `keymark` pays for them.
+The file of a command is imported where it is run, or asked for its own help: what it needs may load slowly.
 """
 
-from ..command import Command, CommandGroup
-from .batch import BATCH
-from .character import CHARACTER
-from .check import CHECK
-from .convert import CONVERT
-from .demo import DEMO
-from .detect import DETECT
-from .library import LIBRARY
-from .merge import MERGE
-from .new import NEW
-from .propose import PROPOSE
-from .retarget import RETARGET
-from .worker import WORKER
-
-COMMANDS: tuple[Command | CommandGroup, ...] = (
-    CONVERT,
-    NEW,
-    CHECK,
-    BATCH,
-    MERGE,
-    WORKER,
-    CHARACTER,
-    RETARGET,
-    DETECT,
-    PROPOSE,
-    LIBRARY,
-    DEMO,
-)
+SUMMARIES = {
+    "convert": "convert a take to motion.json, motion.blend, motion.bvh and pictures",
+    "new": "describe a folder of clips: write its shoot.json",
+    "check": "look through a shoot before it is converted",
+    "batch": "convert every take of a shoot",
+    "merge": "gather the motions of a batch in one asset library",
+    "character": "recognize a character's bones and controls, or check its map",
+    "retarget": "put a motion onto a character: character.blend, and .fbx, .glb, .usd or .bvh",
+    "detect": "run your own detector of keypoints on clips",
+    "propose": "propose the frames to pose",
+    "library": "list, show, check, merge, mirror, learn and exchange keyframe libraries",
+    "demo": "convert the demonstration take and score the result",
+}
+"""Half a line on each command, by the name that the user types."""

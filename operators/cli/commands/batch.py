@@ -1,14 +1,154 @@
-"""`keymark batch`: its arguments."""
+"""`keymark batch`: convert every take of a shoot, several at a time.
+
+Takes that are converted already are skipped by `conversion/skip_unchanged`, in the worker processes.
+"""
 
 import argparse
+import errno
+import os
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 
+from ....core.errors import ConversionError, InputError
+from ....core.files.fields import listed
+from ....core.shoot.discovery.find_takes import open_shoot
+from ....core.shoot.discovery.take_names import check_output
+from ....core.shoot.shoot import Shoot, ShootTake, part_of
+from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ..batch.batch_outcomes import BatchOutcomes
+from ..batch.machine_resources import available_memory_bytes, processor_count
+from ..batch.protocol import Job
+from ..batch.worker_pool import WorkerPool
+from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, WorkerProcess, worker_command_line
 from ..command import Command
-from .shoot_options import SHOOT_HELP, add_defaults
+from ..console import Console, arguments_console
+from ..options import SHOOT_HELP, add_defaults, wanted_keyframes
+from ..usage import UsageError, require_blender
+
+WORKER_BYTES = 1.5 * 2**30
+"""Memory that a worker may need; the default number of jobs leaves each this much."""
+MOST_JOBS = 1000
+MOST_PARTS = 10**6
+MOST_NAMED = 5
+"""Failed takes named in the last line."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the shoot, which of its takes are converted, where to and how."""
+def batch_command(arguments: argparse.Namespace) -> None:
+    """Convert the takes that the command line names, and report the outcome of each.
+
+    Raises:
+        InputError: The shoot or the folder for the results is unusable; nothing was written.
+        ConversionError: A take has failed, or no worker starts.
+        KeyboardInterrupt: The batch was interrupted; the text says how many takes are converted.
+    """
+    shoot, takes, defaults = _plan(arguments)
+    require_blender("writing motion.blend needs")
+    output: Path = arguments.output
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        if not os.access(output, os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, "no permission")
+    except OSError as error:
+        raise InputError(f"{output}: cannot be written ({error.strerror}); name a folder that can") from error
+    jobs = [Job(take, output / take.name, defaults, arguments.again, arguments.debug) for take in takes]
+    with arguments_console(arguments) as console:
+        _convert(shoot, jobs, arguments, console)
+
+
+def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, console: Console) -> None:
+    outcomes = BatchOutcomes(shoot, arguments.output, jobs, console)
+    start = partial(WorkerProcess.start, worker_command_line(), arguments.debug, HEARTBEAT_TIMEOUT_S)
+    try:
+        WorkerPool(jobs, start, outcomes).run(min(_worker_count(arguments.jobs), max(len(jobs), 1)))
+        outcomes.finish()
+    except KeyboardInterrupt:
+        with suppress(KeyboardInterrupt):  # a second interrupt skips the summary
+            outcomes.finish()
+        counts = outcomes.counts
+        ready = counts["converted"] + counts["unchanged"]
+        failures = f", {counts['failed']} failed" if counts["failed"] else ""
+        raise KeyboardInterrupt(
+            f"interrupted; {ready} of {len(jobs)} takes are converted{failures}; the same command goes on"
+        ) from None
+    except ConversionError:
+        outcomes.finish()
+        raise
+    console.finish(outcomes.to_dict(), outcomes.text())
+    failed = [outcome.take for outcome in outcomes.own_outcomes if outcome.error is not None]
+    if failed and arguments.failed_takes == "fail":
+        where = f"; {outcomes.files[-1]} says why" if outcomes.files else ""
+        raise ConversionError(
+            f"{len(failed)} of {len(jobs)} takes failed: {listed(failed, MOST_NAMED)}{where}"
+        )
+    if outcomes.write_errors:
+        raise ConversionError(outcomes.write_errors[0])
+
+
+def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
+    """The whole shoot, its takes to convert, and the settings of those that have none of their own.
+
+    Raises:
+        UsageError: An option is unusable.
+        InputError: The shoot is unusable, or there is no such library.
+    """
+    part, parts = _parsed_part(arguments.part)
+    if arguments.jobs is not None and not 1 <= arguments.jobs <= MOST_JOBS:
+        raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")
+    if arguments.floor is not None and not abs(arguments.floor) <= HIGHEST_FLOOR_M:
+        raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
+    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
+    if library is not None:
+        from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
+
+        requested_libraries(library)
+    shoot = open_shoot(arguments.shoot, excluded=arguments.output)
+    check_output(shoot, arguments.output)
+    takes = _named_takes(shoot, arguments.take) if arguments.take else shoot.takes
+    defaults = ConversionSettings(
+        library=library,
+        floor_m=arguments.floor,
+        method=arguments.method,
+        pictures=False if arguments.no_report else None,
+        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
+        evidence=arguments.evidence,
+    )
+    return shoot, part_of(takes, part, parts), defaults
+
+
+def _parsed_part(text: str | None) -> tuple[int, int]:
+    if text is None:
+        return 1, 1
+    found = re.fullmatch(r"(\d{1,7})/(\d{1,7})", text.strip(), re.ASCII)
+    part, parts = (int(number) for number in found.groups()) if found else (0, 0)
+    if not 1 <= part <= parts <= MOST_PARTS:
+        raise UsageError(f"--part is {text}; K/N is valid with K from 1 to N, as in 2/5")
+    return part, parts
+
+
+def _named_takes(shoot: Shoot, names: Sequence[str]) -> list[ShootTake]:
+    by_name = {take.name: take for take in shoot.takes}
+    for name in names:
+        if name.rstrip("/") not in by_name:
+            close = get_close_matches(name[:200], list(by_name)[:1000], n=1)
+            hint = f" (is {close[0]} meant?)" if close else ""
+            raise UsageError(f"--take is {name}{hint}; {shoot.path} has {listed(by_name, MOST_NAMED)}")
+    wanted = {name.rstrip("/") for name in names}
+    return [take for take in shoot.takes if take.name in wanted]
+
+
+def _worker_count(requested: int | None) -> int:
+    if requested is not None:
+        return requested
+    memory = available_memory_bytes()
+    fitting_memory = MOST_JOBS if memory is None else int(memory // WORKER_BYTES)
+    return max(1, min(processor_count(), fitting_memory))
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shoot", metavar="SHOOT", type=Path, help=SHOOT_HELP)
     parser.add_argument(
         "--output", "-o", metavar="DIR", type=Path, required=True, help="folder for all results, new or old"
@@ -44,16 +184,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Convert the takes."""
-    from ..use_cases.batch import batch_command
-
-    batch_command(arguments)
-
-
 BATCH = Command(
     name="batch",
-    summary="convert every take of a shoot",
     description=(
         "Converts every take below a folder, or those of a list, each into DIR under its way from SHOOT. "
         "Takes that were converted before from the same input and settings are skipped, so that a batch that "
@@ -61,6 +193,6 @@ BATCH = Command(
         "shows what came out. Exit status: 0 all takes are converted, 1 some failed, 2 the shoot is "
         "unusable, 130 interrupted."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=batch_command,
 )

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..command import Command
-from .character_options import CHARACTER_HELP, MAP_HELP
+from ..options import CHARACTER_HELP, MAP_HELP
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +24,6 @@ def run(arguments: argparse.Namespace) -> None:
 
 CHARACTER = Command(
     name="character",
-    summary="recognize a character's bones and controls, or check its map",
     description=(
         "Opens a character, recognizes which bones play which role, and says how surely and what it doubts. "
         "With --map it checks that the map is for this character; with --output it writes the map, to be "

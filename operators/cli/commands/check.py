@@ -1,34 +1,338 @@
-"""`keymark check`: its arguments."""
+"""`keymark check`: look through a shoot before it is converted."""
 
 import argparse
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
+from ....core.errors import ConversionError, describe_unexpected
+from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
+from ....core.progress import Job, Progress, run
+from ....core.shoot.check.outlier_takes import flag_outliers
+from ....core.shoot.check.take_check import TakeCheck, check_take
+from ....core.shoot.discovery.find_takes import open_shoot
+from ....core.shoot.shoot import Shoot, ShootTake
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.evidence_kinds import KEYPOINTS
+from ....core.text import pluralize
 from ..command import Command
-from .shoot_options import SHOOT_HELP, add_defaults
+from ..console import arguments_console, terminal_columns, wrapped
+from ..conversion.character_checks import CharacterChecks
+from ..library_search_path import requested_libraries
+from ..options import SHOOT_HELP, add_defaults, wanted_keyframes
+from ..usage import UsageError
+
+MOST_JOBS = 64
+STAGE = "Looking at the takes"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the shoot and how its takes would be converted."""
+def check_command(arguments: argparse.Namespace) -> None:
+    """Check the takes that the command line names, and list the problems of each.
+
+    Raises:
+        InputError: The shoot is unusable.
+        UsageError: `--jobs` is out of range, or options contradict each other.
+        ConversionError: A take would not convert.
+    """
+    jobs = 1 if arguments.jobs is None else arguments.jobs
+    if not 1 <= jobs <= MOST_JOBS:
+        raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
+    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
+    defaults = ConversionSettings(
+        library=library,
+        method=arguments.method,
+        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
+        evidence=arguments.evidence,
+    )
+    with arguments_console(arguments) as console:
+        shoot = open_shoot(arguments.shoot)
+        characters = CharacterChecks(shoot, arguments.debug)
+        checks = run(_check_takes(shoot, defaults, characters, jobs, arguments.debug), console.progress)
+        console.finish(check_summary(checks), check_text(shoot, checks, terminal_columns()))
+    failing = sum(not check.converts for check in checks)
+    if failing:
+        raise ConversionError(f"{failing} of {pluralize(len(checks), 'take')} would not convert")
+
+
+def _check_takes(
+    shoot: Shoot, defaults: ConversionSettings, characters: CharacterChecks, jobs: int, debug: bool
+) -> Job[list[TakeCheck]]:
+    """Check all takes, several at a time in threads: decoders release the interpreter lock."""
+    find_libraries = cache(requested_libraries)
+    tasks = [partial(_check_one, take, find_libraries, characters, defaults, debug) for take in shoot.takes]
+    checks: dict[int, TakeCheck] = {}
+    yield Progress(STAGE, 0.0)
+    for index, check in _in_threads(tasks, jobs):
+        checks[index] = check
+        yield Progress(STAGE, len(checks) / len(tasks))
+    return flag_outliers([checks[index] for index in sorted(checks)])
+
+
+def _check_one(
+    take: ShootTake,
+    find_libraries: Callable[[str], object],
+    characters: CharacterChecks,
+    defaults: ConversionSettings,
+    debug: bool,
+) -> TakeCheck:
+    """Check one take; an unexpected error becomes a problem of this take and does not stop the others."""
+    try:
+        return check_take(take, find_libraries, defaults, characters.check)
+    except Exception as error:
+        if debug:
+            raise
+        what = describe_unexpected(error)
+        problem = f"{take.path}: the check failed unexpectedly ({what}); --debug shows where"
+        return TakeCheck(take.name, (problem,), ())
+
+
+def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator[tuple[int, TakeCheck]]:
+    if jobs == 1:
+        for index, task in enumerate(tasks):
+            yield index, task()
+        return
+    pool = ThreadPoolExecutor(jobs)
+    try:
+        running = {pool.submit(task): index for index, task in enumerate(tasks)}
+        for done in as_completed(running):
+            yield running[done], done.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+READY, LOOK, FAILS = "ready", "look", "fails"
+"""The take would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before a problem that stops the conversion, and before a warning."""
+FEWEST_IN_COMMON = 3
+"""Number of takes from which on a sentence that they share is printed once."""
+MOST_NAMED = 3
+SEPARATOR = "  "
+"""Between two columns of the table."""
+NARROWEST_NAME = 12
+"""Smallest width of the column of names."""
+
+
+def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
+    """The checks as an object for `--json`."""
+    counts = Counter(map(_status, checks))
+    costs = [check.cost for check in checks if check.cost is not None]
+    return {
+        "takes": [_take(check) for check in checks],
+        "counts": {word: counts[word] for word in (READY, LOOK, FAILS)},
+        "estimated_seconds": round(sum(cost.seconds for cost in costs), 1),
+        "estimated_bytes": sum(cost.size_bytes for cost in costs),
+    }
+
+
+def check_text(shoot: Shoot, checks: Sequence[TakeCheck], columns: int | None = None) -> str:
+    """The checks as text for people.
+
+    Args:
+        shoot: The shoot that was checked.
+        checks: The check of every take.
+        columns: Width of the terminal, to which sentences are wrapped; None keeps them whole.
+    """
+    shared = _shared(checks)
+    lines = _table(shoot, checks, shared, columns)
+    together: dict[tuple[str, ...], list[str]] = {}
+    for sentence, takes in shared.items():
+        together.setdefault(tuple(takes), []).append(sentence)
+    for those, sentences in together.items():
+        where = f"{len(those)} takes ({listed(those, MOST_NAMED)})"
+        lines += ["", f"In {'all takes' if len(those) == len(checks) else where}:"]
+        lines += [line for sentence in sentences for line in wrapped(sentence, 2, columns)]
+    lines += ["", *(line for said in _evidence_lines(checks) for line in wrapped(said, 0, columns))]
+    return "\n".join([*lines, *wrapped(_last_line(checks), 0, columns)])
+
+
+def _evidence_lines(checks: Sequence[TakeCheck]) -> list[str]:
+    """What the motions will be held against, a line for each combination of evidence."""
+    takes: dict[tuple[str, ...], list[str]] = {}
+    for check in checks:
+        if check.evidence and check.converts:
+            takes.setdefault(check.evidence, []).append(check.name)
+    if len(takes) == 1:
+        return [f"Held against {_words(kinds)}." for kinds in takes]
+    return [
+        f"Held against {_words(kinds)}: {pluralize(len(names), 'take')} ({listed(names, MOST_NAMED)})."
+        for kinds, names in takes.items()
+    ]
+
+
+def _words(kinds: Sequence[str]) -> str:
+    names = [kind.replace("_", " ") for kind in kinds]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _table(
+    shoot: Shoot, checks: Sequence[TakeCheck], shared: Iterable[str], columns: int | None
+) -> list[str]:
+    """A row a take, and below it the sentences on this take alone."""
+    names = [_name(shoot, check) for check in checks]
+    markers = _common_markers(checks)
+    keypoints = (KEYPOINTS,) if any(check.keypoints for check in checks) else ()
+    titles = ("", "take", "frames", "size", "rate", "keyframes", *keypoints, *markers)
+    rows = [
+        (_status(check), name, *_cells(check, keypoints, markers))
+        for check, name in zip(checks, names, strict=True)
+    ]
+    widths = [max(map(len, column)) for column in zip(titles, *rows, strict=True)]
+    if columns is not None:
+        figures = sum(width + len(SEPARATOR) for width in (widths[0], *widths[2:]))
+        widths[1] = max(min(widths[1], columns - figures), NARROWEST_NAME)
+    said_once = set(shared)
+    lines = _aligned(titles, widths)
+    for check, row in zip(checks, rows, strict=True):
+        lines += _aligned(row, widths)
+        own = [sentence for sentence in _marked(check) if sentence not in said_once]
+        lines += [line for sentence in own for line in wrapped(sentence, widths[0] + 2, columns)]
+    return lines
+
+
+def _marked(check: TakeCheck) -> tuple[str, ...]:
+    """All sentences on a take, marked by whether they stop its conversion."""
+    return (
+        *(f"{STOPS} {sentence}" for sentence in check.problems),
+        *(f"{LIKELY} {sentence}" for sentence in check.warnings),
+    )
+
+
+def _cells(check: TakeCheck, keypoints: Sequence[str], markers: Sequence[str]) -> tuple[str, ...]:
+    size = "-" if check.size is None else f"{check.size[0]}x{check.size[1]}"
+    rate = "-" if check.fps is None else f"{check.fps:.4g}"
+    frames = "-" if check.frames is None else str(check.frames)
+    posed = str(check.keyframes) if check.library is None else f"{check.keyframes}+{check.library}"
+    seen = {readout.name: f"{100 * readout.found // readout.sampled}%" for readout in check.markers}
+    detected = [_keypoints(check) for _ in keypoints]
+    return (frames, size, rate, posed, *detected, *(seen.get(name, "-") for name in markers))
+
+
+def _keypoints(check: TakeCheck) -> str:
+    """How often the performer is seen, and how far from posed joints, of the best source of keypoints."""
+    if not check.keypoints:
+        return "-"
+    best = max(check.keypoints, key=lambda readout: readout.seen_frames)
+    apart = "" if best.error_px is None else f" {best.error_px:.0f}px"
+    return f"{100.0 * best.seen_frames:.0f}%{apart}"
+
+
+def _aligned(cells: Sequence[str], widths: Sequence[int]) -> list[str]:
+    """A row with words to the left and numbers to the right; two lines where the name is too long."""
+    first, name, *rest = cells
+    numbers = [f"{cell:>{width}}" for cell, width in zip(rest, widths[2:], strict=True)]
+    words = f"{first:{widths[0]}}"
+    if len(name) > widths[1]:
+        whole = SEPARATOR.join([words, name])
+        return [whole, SEPARATOR.join([" " * widths[0], " " * widths[1], *numbers]).rstrip()]
+    return [SEPARATOR.join([words, f"{name:{widths[1]}}", *numbers]).rstrip()]
+
+
+def _common_markers(checks: Sequence[TakeCheck]) -> list[str]:
+    """Names of the markers of all takes, without repetition, in order of appearance."""
+    return list(dict.fromkeys(readout.name for check in checks for readout in check.markers))
+
+
+def _shared(checks: Sequence[TakeCheck]) -> dict[str, list[str]]:
+    """Sentences that several takes share, with the takes: an error in a shoot's description is one error."""
+    found: dict[str, list[str]] = {}
+    for check in checks:
+        for sentence in _marked(check):
+            found.setdefault(sentence, []).append(check.name)
+    return {sentence: takes for sentence, takes in found.items() if len(takes) >= FEWEST_IN_COMMON}
+
+
+def _last_line(checks: Sequence[TakeCheck]) -> str:
+    counts = Counter(map(_status, checks))
+    words = [
+        f"{counts[READY]} ready",
+        f"{counts[LOOK]} to look at",
+        f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
+    ]
+    costs = [check.cost for check in checks if check.cost is not None]
+    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(words)}."
+    if not costs:
+        return line
+    seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
+    return f"{line} Roughly {_time(seconds)} of one processor and {_size(size)} for those that convert."
+
+
+def _time(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def _size(size_bytes: int) -> str:
+    return f"{size_bytes / 1e6:.0f} MB" if size_bytes < 1e9 else f"{size_bytes / 1e9:.1f} GB"
+
+
+def _name(shoot: Shoot, check: TakeCheck) -> str:
+    return absolute_path(shoot.folder).name if check.name == "." else check.name
+
+
+def _status(check: TakeCheck) -> str:
+    if not check.converts:
+        return FAILS
+    return LOOK if check.warnings else READY
+
+
+def _take(check: TakeCheck) -> dict[str, Any]:
+    return {
+        "take": check.name,
+        "status": _status(check),
+        "problems": list(check.problems),
+        "warnings": list(check.warnings),
+        "size": None if check.size is None else list(check.size),
+        "fps": check.fps,
+        "frames": check.frames,
+        "keyframes": check.keyframes,
+        "library": check.library,
+        "evidence": list(check.evidence),
+        "keypoints": [
+            {
+                "file": readout.file,
+                "source": readout.source,
+                "points": readout.points,
+                "seen_frames": round(readout.seen_frames, 4),
+                "seen_points": round(readout.seen_points, 4),
+                "people": readout.people,
+                "depth_hints": readout.depth_hints,
+                "error_px": None if readout.error_px is None else round(readout.error_px, 2),
+            }
+            for readout in check.keypoints
+        ],
+        "markers": {
+            readout.name: {
+                "found": readout.found,
+                "sampled": readout.sampled,
+                "area_px": round(readout.area_px, 1),
+                "distinctness": round(readout.distinctness, 3),
+            }
+            for readout in check.markers
+        },
+        "estimated_seconds": None if check.cost is None else round(check.cost.seconds, 1),
+        "estimated_bytes": None if check.cost is None else check.cost.size_bytes,
+    }
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take")
     parser.add_argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time")
     add_defaults(parser)
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Look through the shoot."""
-    from ..use_cases.check import check_command
-
-    check_command(arguments)
-
-
 CHECK = Command(
     name="check",
-    summary="look through a shoot before it is converted",
     description=(
         "Reads everything a batch would read, samples frames of every clip, and says for each take whether "
         "it would convert, what it would be held against, how well its markers and keypoints are seen, and "
         "what is likely to go wrong. Nothing is written."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=check_command,
 )

@@ -1,13 +1,146 @@
-"""`keymark demo`: its arguments."""
+"""`keymark demo`: convert the demonstration take with and without its markers, and score both motions."""
 
 import argparse
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
+from ....core.errors import ConversionError
+from ....core.estimate.reconstruct import reconstruct
+from ....core.progress import run
+from ....core.review.score import Score, read_truth, score_points
+from ....core.take.character_settings import CharacterFile, CharacterSettings
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.description import describe
+from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
+from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
+from ....core.take.motion import Motion
+from ....core.take.take import Take
 from ..command import Command
+from ..console import arguments_console
+from ..conversion.blender_files import BLEND
+from ..conversion.character_result import CHARACTER_BLEND
+from ..conversion.convert_take import REPORT, convert_take
+from ..usage import require_blender
+from .convert import conversion_summary
+
+MARKED = (MARKERS, CONTOURS)
+"""Evidence of the paper's example."""
+UNMARKED = (KEYPOINTS, DEPTH_HINTS, CONTOURS)
+"""Evidence of the same performance in any clothes."""
+UNMARKED_FOLDER = "without_markers"
+CHARACTER_FILE = "human.blend"
+COLUMNS = {"mpjpe": "all", "rooted": "about hips", "depth": "in depth", "image": "across", "jitter": "jitter"}
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the folder for the result."""
+def demo_command(arguments: argparse.Namespace) -> None:
+    """Convert the demonstration take, once more without its markers, and print the error of each method."""
+    demo = example_folder(AEROBIC)
+    require_blender("the demonstration needs")
+    with arguments_console(arguments) as console, tempfile.TemporaryDirectory() as folder:
+        console.announce(
+            "The demonstration, four seconds of video, is converted in four steps: about half a minute."
+        )
+        console.announce("Step 1 of 4: a character is generated, Rigify's basic human.")
+        console.stage("Generating a character")
+        character, missing = _character(Path(folder))
+        settings = ConversionSettings(demo / POSED_BY_HAND, evidence=MARKED, character=character)
+        console.announce(
+            "Step 2 of 4: the take is converted, by its markers and contours, and put on the character."
+        )
+        done = convert_take(describe(demo), arguments.output, console, settings, arguments.debug)
+        console.announce("Step 3 of 4: the same by the paper's filter, to compare.")
+        console.stage("Trying the paper's filter")
+        filtered = run(reconstruct(done.take, "ekf", done.reconstruction.reading))
+        console.announce("Step 4 of 4: the take is converted without its markers, by keypoints and contours.")
+        output: Path = arguments.output
+        unmarked_settings = ConversionSettings(demo / POSED_BY_HAND, evidence=UNMARKED)
+        unmarked = convert_take(
+            describe(demo), output / UNMARKED_FOLDER, console, unmarked_settings, arguments.debug
+        )
+        scores = {
+            "interpolation": _score(done.take, done.reconstruction.interpolation),
+            "ekf": _score(done.take, filtered.motion),
+            "map": _score(done.take, done.reconstruction.motion),
+            UNMARKED_FOLDER: _score(done.take, unmarked.reconstruction.motion),
+        }
+        result = {
+            **conversion_summary(done),
+            "scores_mm": {name: score.to_dict() for name, score in scores.items()},
+        }
+        lines = [
+            f"Error against the true motion of {scores['map'].frames} frames, posed in "
+            f"{scores['map'].keyframes} of them, in millimeters:",
+            *_table(scores),
+            f"({UNMARKED_FOLDER.replace('_', ' ')}: by contours, and keypoints as detectors see them)",
+            f"Open in Blender: {output / BLEND}",
+            missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
+            f"Without markers: {output / UNMARKED_FOLDER / BLEND}",
+            f"Pictures:        {output / REPORT}",
+        ]
+        console.finish(result, "\n".join(lines))
+
+
+def _character(folder: Path) -> tuple[CharacterSettings | None, str]:
+    """Rigify's basic human in a file of the folder; or None, and why there is none."""
+    try:
+        write_demo_character(folder / CHARACTER_FILE)
+    except ConversionError as error:
+        return None, f"Without a character: {error}"
+    return CharacterSettings(CharacterFile(folder / CHARACTER_FILE)), ""
+
+
+def _score(take: Take, motion: Motion) -> Score:
+    truth = read_truth(take.folder / "truth.json", motion.frame_start, len(motion.time_s))
+    known = motion.method != "interpolation"
+    sigma = motion.sigma_m if known else None
+    return score_points(motion.points, truth, motion.keyframe_indices, take.camera, sigma)
+
+
+def _table(scores: Mapping[str, Score]) -> list[str]:
+    lines = [" " * 17 + "".join(f"{title:>12}" for title in COLUMNS.values())]
+    for name, score in scores.items():
+        values = score.to_dict()
+        lines.append(
+            f"  {name.replace('_', ' '):15}" + "".join(f"{values[column]:12.1f}" for column in COLUMNS)
+        )
+    return lines
+
+
+SCRIPT = Path(__file__).parent.with_name("generate_rigify_human.py")
+LONGEST_S = 300.0
+"""Generating takes a second or two; a process that takes this long hangs."""
+
+
+def write_demo_character(file: Path) -> None:
+    """Generate the rig with a simple body into a .blend.
+
+    Raises:
+        ConversionError: Blender could not generate it.
+    """
+    import bpy
+
+    program = bpy.app.binary_path
+    command = [program, "-b", "--factory-startup", "--python"] if program else [sys.executable, "-P"]
+    arguments = ["--", str(file)] if program else [str(file)]
+    try:
+        done = subprocess.run(
+            [*command, str(SCRIPT), *arguments],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            timeout=LONGEST_S,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise ConversionError(f"{file}: Rigify's human cannot be generated ({error})") from error
+    if done.returncode or not file.is_file():
+        said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason is given"]
+        raise ConversionError(f"{file}: Rigify's human cannot be generated ({said[-1]})")
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--output",
         "-o",
@@ -18,20 +151,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Convert and score the demonstration take."""
-    from ..use_cases.demo import demo_command
-
-    demo_command(arguments)
-
-
 DEMO = Command(
     name="demo",
-    summary="convert the demonstration take and score the result",
     description=(
         "Converts the take that comes with Keymark, whose true motion is known, and prints how far each "
         "method is from it."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=demo_command,
 )

@@ -46,7 +46,6 @@ def run(arguments: argparse.Namespace) -> None:
 
 DETECT = Command(
     name="detect",
-    summary="run your own detector of keypoints on clips",
     description=(
         "Calls a program of yours with each clip, reads the keypoints that it writes, checks them against "
         "the clip and keeps them beside it. The command is words with {clip}, {output}, {output_folder}, "

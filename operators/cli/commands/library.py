@@ -224,7 +224,6 @@ READ = Command(
 
 LIBRARY = CommandGroup(
     name="library",
-    summary="list, show, check, merge, mirror, learn and exchange keyframe libraries",
     description="Lists, looks at, checks, joins and makes keyframe libraries.",
     epilog="""\
 examples:

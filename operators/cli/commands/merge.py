@@ -1,13 +1,236 @@
-"""`keymark merge`: its arguments."""
+"""`keymark merge`: gather the motions of a batch in one asset library."""
 
 import argparse
+import os
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from ....core.errors import ConversionError, InputError
+from ....core.files.digest import content_digest
+from ....core.files.fields import listed
+from ....core.files.paths import absolute_path
+from ....core.progress import Progress
+from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
+from ....core.retarget.retarget_record import read_retarget_record
+from ....core.shoot.outcomes.failures import Failure, read_failures
+from ....core.shoot.outcomes.results import Result, Results, find_results
+from ....core.take.motion import Motion
+from ....core.take.motion_file import read_motion
+from ....core.text import pluralize
+from ..blender_silence import blender_silence
 from ..command import Command
+from ..console import Console, arguments_console, terminal_columns, wrapped
+from ..conversion.character_result import CHARACTER_BLEND
+from ..conversion.convert_take import MOTION
+from ..usage import require_blender
+
+if TYPE_CHECKING:
+    from ...bridge.assets.character_actions import CharacterAsset
+    from ...bridge.assets.motions import MotionAsset
+
+SUFFIX = ".blend"
+LONGEST_NAME_BYTES = 63
+"""Of a data-block's name in Blender 4.5; later versions allow more."""
+LONGEST_TAG_BYTES = 63
+LONGEST_DESCRIPTION = 1000
+MOST_NAMED = 5
+"""Takes named in the last line."""
+STAGE = "Gathering the motions"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the results, the .blend to write and the shoot's name in it."""
+def merge_command(arguments: argparse.Namespace) -> None:
+    """Gather all results below a folder in one .blend of Action assets.
+
+    Raises:
+        InputError: There are no results, or the .blend cannot be written where it is asked for.
+        ConversionError: Some results are damaged, or takes have failed; all others have been gathered.
+    """
+    require_blender("an asset library needs")
+    with arguments_console(arguments) as console:
+        console.stage("Looking for results")
+        found = find_results(arguments.results)
+        _check_output(arguments.output, found)
+        name = arguments.name or absolute_path(arguments.results).name
+        gathering = MotionGathering(found, read_failures(arguments.results), name, console)
+        console.stage(STAGE)
+        with blender_silence(arguments.debug):
+            from ...bridge.assets.catalogs import NAME
+            from ...bridge.assets.motions import write_motion_library
+
+            write_motion_library(arguments.output, gathering.assets())
+        files = [str(arguments.output), str(arguments.output.parent / NAME)]
+        problems = gathering.problems
+        counts = {"motions": gathering.count, "character_actions": gathering.character_count}
+        console.finish({**counts, "wrong": problems, "files": files}, _text(counts, files, problems))
+    if problems:
+        named = listed(sorted(problems), MOST_NAMED)
+        raise ConversionError(f"{arguments.output} lacks takes or holds earlier results of them: {named}")
+
+
+class MotionGathering:
+    """Yields the assets of sound results one by one, and collects the problems of the others."""
+
+    def __init__(self, found: Results, failures: Sequence[Failure], shoot: str, console: Console) -> None:
+        self.problems = dict(found.damaged)
+        """The problem of each take that the library lacks or has of an earlier input, in a sentence."""
+        self.problems |= {failure.take: failure.error for failure in failures}
+        self.count = 0
+        """Number of motions in the library."""
+        self.character_count = 0
+        """Number of characters' Actions in the library."""
+        self._found, self._shoot, self._console = found, shoot, console
+
+    def assets(self) -> "Iterator[MotionAsset | CharacterAsset]":
+        """Yield the asset of every sound motion, one at a time: together they may not fit into memory.
+
+        Raises:
+            ConversionError: No motion is sound.
+        """
+        from ...bridge.assets.motions import MotionAsset
+
+        names: set[str] = set()
+        for index, result in enumerate(self._found.sound):
+            self._console.progress(Progress(STAGE, index / len(self._found.sound)))
+            try:
+                motion = _motion(result)
+            except InputError as error:
+                self.problems[result.name] = str(error)
+                continue
+            name = asset_name(result.name, names)
+            names.add(name)
+            self.count += 1
+            catalog = "/".join(catalog_part(part) for part in (self._shoot, *result.name.split("/")[:-1]))
+            yield MotionAsset(name, catalog, description(result), tags(result), motion)
+            yield from self._character(result, catalog, motion, names)
+        if not names:
+            raise ConversionError(f"none of the results can be used: {_listed(self.problems)}")
+
+    def _character(
+        self, result: Result, catalog: str, motion: Motion, names: set[str]
+    ) -> "Iterator[CharacterAsset]":
+        """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
+        from ...bridge.assets.character_actions import CharacterAsset, load_character_action
+
+        made = result.record.files
+        if CHARACTER_BLEND not in made:
+            return
+        try:
+            if content_digest(result.folder / RETARGET) != made.get(RETARGET):
+                raise InputError(f"{result.folder / RETARGET}: is not the file that the conversion wrote")
+            record = read_retarget_record(result.folder)
+            blend = result.folder / CHARACTER_BLEND
+            action = load_character_action(blend, record.action, made[CHARACTER_BLEND])
+        except InputError as error:
+            self.problems[result.name] = str(error)
+            return
+        name = asset_name(f"{result.name} {record.character_object}", names)
+        names.add(name)
+        self.character_count += 1
+        words = f"For the character '{record.character_object}' of {record.character_file}. "
+        about = shortened(words + description(result))
+        marks = (*tags(result), *_short_tags(record.character_object, record.preset))
+        yield CharacterAsset(name, catalog, about, marks, motion, action)
+
+
+def asset_name(take: str, taken: Collection[str]) -> str:
+    """A unique name for a take's Action, short enough for Blender not to cut it.
+
+    Of a long name the end is kept, for there takes differ.
+    """
+    whole = " ".join(take.split("/"))
+    for number in range(1, len(taken) + 2):
+        number_suffix = "" if number == 1 else f" {number}"
+        name = whole
+        while len(f"{name}{number_suffix}".encode()) > LONGEST_NAME_BYTES:
+            name = f"…{name.lstrip('…')[1:]}"
+        if f"{name}{number_suffix}" not in taken:
+            break
+    return f"{name}{number_suffix}"
+
+
+def catalog_part(name: str) -> str:
+    """A folder's name as a part of a catalog's path, in which slashes and colons have a meaning."""
+    return "".join("-" if letter in ":/\\" or not letter.isprintable() else letter for letter in name)
+
+
+def description(result: Result) -> str:
+    """The description of a motion in an asset browser: frames, confidence and notes."""
+    record = result.record
+    last = record.frame_start + record.frames - 1
+    sentences = [
+        f"Take {result.name}: {record.frames} frames at {record.fps:g} per second, {record.frame_start} to "
+        f"{last}"
+    ]
+    if record.evidence is not None:
+        sentences.append(f"Held against {record.evidence.words}")
+    if record.confidence is not None:
+        weakest = "" if record.weakest is None else f", {record.weakest:.0%} where it is weakest"
+        sentences.append(f"Confidence {record.confidence:.0%}{weakest}")
+    return shortened(" ".join(f"{sentence.rstrip('.')}." for sentence in (*sentences, *record.notes)))
+
+
+def shortened(text: str) -> str:
+    """A description that an asset browser has room for."""
+    return text if len(text) <= LONGEST_DESCRIPTION else f"{text[: LONGEST_DESCRIPTION - 3]}..."
+
+
+def tags(result: Result) -> tuple[str, ...]:
+    """The tags of a motion in an asset browser."""
+    return _short_tags("keymark", result.record.method, result.record.library)
+
+
+def _short_tags(*words: str | None) -> tuple[str, ...]:
+    return tuple(
+        word.encode()[:LONGEST_TAG_BYTES].decode(errors="ignore") for word in words if word is not None
+    )
+
+
+def _motion(result: Result) -> Motion:
+    """The motion of a result, as it was when the record was written.
+
+    Raises:
+        InputError: The motion is missing, unusable, or has changed.
+    """
+    file = result.folder / MOTION
+    if content_digest(file) != result.record.files.get(MOTION):
+        raise InputError(f"{file}: is not the file that the conversion wrote")
+    return read_motion(file)
+
+
+def _check_output(output: Path, found: Results) -> None:
+    if output.suffix.lower() != SUFFIX:
+        raise InputError(f"{output}: is no name of a .blend; it must end in {SUFFIX}, as in library.blend")
+    if output.is_dir():
+        raise InputError(f"{output}: is a folder; it must be a file to write, as in library.blend")
+    real = Path(os.path.realpath(output))
+    for result in found.sound:
+        if Path(os.path.realpath(result.folder)) in real.parents:
+            raise InputError(
+                f"{output}: lies in the results of the take {result.name}; name a file outside of them"
+            )
+
+
+def _text(counts: dict[str, int], files: Sequence[str], problems: dict[str, str]) -> str:
+    heading = pluralize(counts["motions"], "motion")
+    if counts["character_actions"]:
+        heading += f" and {pluralize(counts['character_actions'], 'Action')} of characters"
+    lines = [f"{heading}:", *(f"  {file}" for file in files)]
+    if problems:
+        lines.append("Takes that are not in it, or as they were before:")
+    for name in sorted(problems):
+        lines += wrapped(f"{name}: {problems[name]}", 2, terminal_columns())
+    return "\n".join(lines)
+
+
+def _listed(problems: dict[str, str]) -> str:
+    """The first few of the problems."""
+    reasons = [problems[name] for name in sorted(problems)]
+    more = [f"{len(reasons) - MOST_NAMED} more"] if len(reasons) > MOST_NAMED else []
+    return "; ".join([*reasons[:MOST_NAMED], *more])
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", metavar="DIR", type=Path, help="folder of results, as batch writes it")
     parser.add_argument(
         "--output", "-o", metavar="FILE", type=Path, required=True, help="the .blend to write, new or old"
@@ -15,22 +238,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--name", metavar="NAME", help="what the shoot is called; by default DIR's name")
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Gather the motions."""
-    from ..use_cases.merge import merge_command
-
-    merge_command(arguments)
-
-
 MERGE = Command(
     name="merge",
-    summary="gather the motions of a batch in one asset library",
     description=(
         "Gathers the motions found below DIR in one .blend to add to Blender's asset libraries, with "
         "catalogs by shoot and folder: each as an Action, which any actor of Keymark's can be given, and as "
         "an actor to drag into a scene. Exit status: 0 all takes are in it, 1 some have failed or are "
         "damaged and the others are in it, 2 there are none."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=merge_command,
 )

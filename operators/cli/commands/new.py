@@ -1,34 +1,101 @@
-"""`keymark new`: its arguments."""
+"""`keymark new`: describe a folder of clips in a shoot.json."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
+from ....core.errors import InputError
+from ....core.files.json_layout import write_readable_json
+from ....core.files.paths import absolute_path
+from ....core.progress import run, within
+from ....core.shoot.discovery.find_takes import find_takes
+from ....core.shoot.template.clip_survey import ClipSurvey, survey_clips
+from ....core.shoot.template.shoot_template import clip_lines, evidence_lines, shoot_template
+from ....core.take.shoot_file import SHOOT_FILE, find_shoot_files
 from ..command import Command
+from ..console import arguments_console
+from ..usage import program_name
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the folder of clips and the file to write."""
+def new_command(arguments: argparse.Namespace) -> None:
+    """Write a shoot's description from its clips, and list the fields that a person must fill in.
+
+    Raises:
+        InputError: The file exists, or no clip can be read or needs a description.
+    """
+    folder: Path = arguments.shoot
+    output: Path = arguments.output or folder / SHOOT_FILE
+    with arguments_console(arguments) as console:
+        if output.exists():
+            raise InputError(
+                f"{output}: is there already and is never replaced; move it away, or name another file with "
+                "--output"
+            )
+        shoot = find_takes(folder, undescribed=True)
+        survey = run(within("Looking at the clips", survey_clips(shoot), 0.0, 1.0), console.progress)
+        _check_clips(folder, survey)
+        above = [file for file in find_shoot_files(folder) if file != absolute_path(folder) / SHOOT_FILE]
+        template = shoot_template(survey, bool(above))
+        write_readable_json(output, template)
+        todo = null_fields(template)
+        console.finish(_summary(survey, output, todo), _text(folder, survey, output, todo))
+
+
+def null_fields(template: object, path: str = "") -> list[str]:
+    """Paths of the fields that are null and must be filled in, as `camera.lens_mm`."""
+    if template is None:
+        return [path]
+    if not isinstance(template, dict):
+        return []
+    found = []
+    for name, value in template.items():
+        found += null_fields(value, f"{path}.{name}" if path else name)
+    return found
+
+
+def _check_clips(folder: Path, survey: ClipSurvey) -> None:
+    if survey.clips:
+        return
+    if survey.unreadable:
+        raise InputError(f"{folder}: none of its clips can be read; the first: {survey.unreadable[0]}")
+    raise InputError(
+        f"{folder}: every take in it has a take.json of its own, and no clip needs a description; run "
+        "keymark check to look through them"
+    )
+
+
+def _summary(survey: ClipSurvey, output: Path, todo: Sequence[str]) -> dict[str, object]:
+    return {
+        "file": str(output),
+        "clips": len(survey.clips),
+        "described": list(survey.described),
+        "unreadable": list(survey.unreadable),
+        "evidence": {clip.name: list(clip.evidence) for clip in survey.clips},
+        "fill_in": list(todo),
+    }
+
+
+def _text(folder: Path, survey: ClipSurvey, output: Path, todo: Sequence[str]) -> str:
+    lines = [*clip_lines(survey), *evidence_lines(survey), "", f"{output} describes them. Now fill in"]
+    lines += [f"  {field_path}" for field_path in todo]
+    lines.append("and correct the lens, which is a guess; the comment beside each field says how.")
+    return "\n".join([*lines, f"Then run: {program_name()} check {folder}"])
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shoot", metavar="SHOOT", type=Path, help="folder of clips")
     parser.add_argument(
         "--output", "-o", metavar="FILE", type=Path, help="where to write; by default SHOOT/shoot.json"
     )
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Write the shoot's description."""
-    from ..use_cases.new import new_command
-
-    new_command(arguments)
-
-
 NEW = Command(
     name="new",
-    summary="describe a folder of clips: write its shoot.json",
     description=(
         "Looks at the clips below a folder and writes shoot.json there, with what the clips tell filled in "
         "and comments on what a person must say, once for all clips: camera, actor, and markers if any. It "
         "also says what each clip's motion can be held against."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=new_command,
 )

@@ -1,14 +1,81 @@
-"""`keymark propose`: its arguments."""
+"""`keymark propose`: propose the frames of a take to pose."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
+from ....core.arrays import Array, IndexArray
+from ....core.files.json_file import write_atomically
+from ....core.prior.evidence_speed import EvidenceSpeed, evidence_speed
+from ....core.prior.keyframe_proposals import propose_keyframes
+from ....core.progress import Job, run, stretch, within
+from ....core.report.canvas import write_png
+from ....core.report.speed_plot import speed_plot
+from ....core.shoot.discovery.take_path import take_path
+from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.description import describe
+from ....core.take.performer_keypoints import performer_keypoints
+from ....core.take.read_footage import read_footage
+from ....core.take.take import Take
+from ....core.take.take_file import read_described
+from ....core.text import Sentence
 from ..command import Command
-from .evidence_options import add_evidence, add_keypoint_files
+from ..console import arguments_console
+from ..options import add_evidence, add_keypoint_files
+
+UNPOSED = Sentence(
+    "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
+)
+READING_SHARE = 0.9
+"""Share of the work that reading the clip is."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the take, how many frames of it to propose, and the picture."""
+def propose_command(arguments: argparse.Namespace) -> None:
+    """Print the frames that are worth posing, with the performer's speed for `--json`."""
+    with arguments_console(arguments) as console:
+        take = _read(arguments)
+        moved = run(_speed_job(take), console.progress)
+        speed = moved.values
+        indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
+        frames = [int(index) + take.frame_start for index in indices]
+        if arguments.picture is not None:
+            _write_picture(arguments.picture, speed, indices, take.frame_start)
+        notes = [moved.note] if moved.note else []
+        if not take.keyframes and (take.markers or take.keypoints):
+            notes.append(UNPOSED)
+        rounded = [round(float(value), 3) for value in speed]
+        lines = [" ".join(str(frame) for frame in frames), *(f"Note: {note}." for note in notes)]
+        result = {"frames": frames, "speed_px_per_frame": rounded, "notes": notes}
+        console.finish(result, "\n".join(lines))
+
+
+def _read(arguments: argparse.Namespace) -> Take:
+    description = describe(take_path(arguments.take))
+    given = ConversionSettings(
+        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
+        evidence=arguments.evidence,
+    )
+    settings = given.with_defaults(description.settings)
+    return read_described(description, keyframes_required=False, settings=settings)
+
+
+def _speed_job(take: Take) -> Job[EvidenceSpeed]:
+    """V_sum of the take's evidence; its keyframes have no part in it."""
+    # Pictures are kept only where nothing else tells how fast the performer moves.
+    bare = not take.markers and not take.keypoints
+    unposed = replace(take, keyframes=(), contours=take.contours and bare)
+    reading = yield from stretch(read_footage(unposed), 0.0, READING_SHARE)
+    keypoints = performer_keypoints(unposed, None, reading.tracks)
+    moved = evidence_speed(reading.tracks, unposed.marker_segments, keypoints, reading.album)
+    return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
+
+
+def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
+    picture = speed_plot(speed, [int(index) for index in indices], start)
+    write_atomically(path, lambda staged: write_png(str(staged), picture))
+
+
+def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
     add_keypoint_files(parser)
     add_evidence(parser)
@@ -19,20 +86,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
 
 
-def run(arguments: argparse.Namespace) -> None:
-    """Propose the frames."""
-    from ..use_cases.propose import propose_command
-
-    propose_command(arguments)
-
-
 PROPOSE = Command(
     name="propose",
-    summary="propose the frames to pose",
     description=(
         "Follows the performer by markers or keypoints, else by what moves in the picture, and proposes "
         "frames to pose as keyframes: about evenly spaced, where the performer moves slowly."
     ),
-    add_arguments=add_arguments,
-    run=run,
+    add_arguments=_add_arguments,
+    run=propose_command,
 )

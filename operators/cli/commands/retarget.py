@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from ..command import Command
-from .character_options import CHARACTER_HELP, MAP_HELP, add_retarget_options
+from ..options import CHARACTER_HELP, MAP_HELP, add_retarget_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +38,6 @@ def run(arguments: argparse.Namespace) -> None:
 
 RETARGET = Command(
     name="retarget",
-    summary="put a motion onto a character: character.blend, and .fbx, .glb, .usd or .bvh",
     description=(
         "Puts the motion of a finished conversion onto a character. DIR then holds character.blend, the "
         "character with the motion as its Action in front of the camera that filmed it, and retarget.json, "

@@ -14,8 +14,6 @@ def run(_arguments: argparse.Namespace) -> None:
 
 WORKER = Command(
     name="worker",
-    summary="convert the takes told on standard input",
     description="",
     run=run,
-    hidden=True,
 )

@@ -34,7 +34,7 @@ from ....core.take.take import Take
 from ....core.text import Sentence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
-from ..require_blender import require_blender
+from ..usage import require_blender
 from ..version import version
 from .blender_files import BLEND, BVH, write_blender_files
 from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests

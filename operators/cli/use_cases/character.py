@@ -8,11 +8,9 @@ from ....core.retarget.maps.choose_map import ChosenMap
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.retarget.roles import ROLES
 from ....core.take.character_settings import CharacterFile
-from ..console import arguments_console
+from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import opened_character
-from ..line_wrapping import terminal_columns, wrapped
-from ..refuse_existing import refuse_existing
-from ..require_blender import require_blender
+from ..usage import refuse_existing, require_blender
 
 UNSURE = 0.75
 """Confidence below which a role is marked."""

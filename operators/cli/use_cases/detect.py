@@ -21,8 +21,7 @@ from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
 from ...bridge.detector.detector_setting import Detector
 from ..console import Console, arguments_console
 from ..detector_choice import chosen_detector
-from ..refuse_existing import refuse_existing
-from ..usage import UsageError
+from ..usage import UsageError, refuse_existing
 
 MOST_NAMED = 5
 

@@ -27,8 +27,7 @@ from ..conversion.changed_files import AS_MADE, changed_files, kept_note, write_
 from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
 from ..conversion.convert_take import MOTION
 from ..conversion.unsupported_paths import refuse_unsupported_output
-from ..require_blender import require_blender
-from ..usage import UsageError
+from ..usage import UsageError, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
 """Every file that the command may make."""

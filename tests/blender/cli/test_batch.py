@@ -18,9 +18,9 @@ from _synthetic_take import true_postures, write_json, write_keypoints
 from keymark.core.files.json_file import read_json
 from keymark.core.library.library_file import write_library
 from keymark.core.take.conversion_record import read_record
+from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.library_search_path import VARIABLE
 from keymark.operators.cli.main import main
-from keymark.operators.cli.use_cases import batch as command
 
 TESTS = Path(__file__).resolve().parents[2]
 GOOD = ("day1/take01", "day1/take02", "day1/take03")

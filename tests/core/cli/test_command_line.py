@@ -18,8 +18,8 @@ from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.report.pictures import MATCHES
 from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli import require_blender
-from keymark.operators.cli.commands import COMMANDS
+from keymark.operators.cli import usage
+from keymark.operators.cli.commands import SUMMARIES
 from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
@@ -98,10 +98,8 @@ def test_help_has_examples_and_version_is_the_manifests(
 def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A new file in `commands/` is on the list, in --help and in the sentence on a missing command."""
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
-    assert files - {"__init__", "shoot_options", "character_options", "evidence_options"} == {
-        command.name for command in COMMANDS
-    }
-    shown = [command.name for command in COMMANDS if not getattr(command, "hidden", False)]
+    assert files - {"__init__"} == {*SUMMARIES, "worker"}
+    shown = list(SUMMARIES)
     assert main(["--help"]) == 0
     helped = capsys.readouterr().out
     assert all(re.search(rf"\n    {name}\s", helped) for name in shown) and "\n    worker" not in helped
@@ -296,7 +294,7 @@ def test_without_blender_one_sentence_says_what_to_install(
     take: Path, out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Before any work, and with the output folder as it was."""
-    monkeypatch.setattr(require_blender.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(usage.importlib.util, "find_spec", lambda name: None)
     before = tree(out.parent)
     assert convert(take, out, "--quiet") == 1
     assert "pip install 'keymark[blender]'" in one_line(capsys.readouterr().err)

@@ -15,8 +15,8 @@ from keymark.core.review.score import read_truth, score_points
 from keymark.core.take import examples
 from keymark.core.take.motion_file import read_motion
 from keymark.core.take.take_file import read_take
+from keymark.operators.cli.commands import demo
 from keymark.operators.cli.main import main
-from keymark.operators.cli.use_cases import demo
 
 FRAMES = 16
 

@@ -60,7 +60,7 @@ def options(task: dict[str, Any]) -> dict[str, Any]:
     """A task's arguments, parsed by Keymark."""
     found = words(task)
     assert found[:2] == ["--command", "keymark"]
-    return vars(build_parser().parse_args(found[2:]))
+    return vars(build_parser(found[2]).parse_args(found[2:]))
 
 
 def test_every_task_has_its_share_and_the_merge_waits_for_all(script: Path) -> None:

@@ -21,7 +21,7 @@ ONLY_IN = {
     "ctypes": ("operators.cli.blender_silence", "core.files"),
     "subprocess": (
         "operators.cli.batch",  # workers: Keymark itself
-        "operators.cli.use_cases.demo_character",  # Blender, which generates a rig
+        "operators.cli.commands.demo",  # Blender, which generates a rig
         "operators.bridge.detector.detector_process",  # the program that the user has set, and no other
     ),
     "asyncio": ("operators.cli.batch",),

@@ -8,8 +8,7 @@ from .....core.library.texts import checked_identifier
 from ...blender_silence import blender_silence
 from ...console import arguments_console
 from ...library_search_path import library_folders
-from ...refuse_existing import refuse_existing
-from ...require_blender import require_blender
+from ...usage import refuse_existing, require_blender
 from .library_summary import library_summary
 from .new_library_file import write_new_library
 

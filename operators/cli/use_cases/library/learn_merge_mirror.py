@@ -13,8 +13,7 @@ from .....core.library.texts import LONGEST_NAME, checked_identifier, identifier
 from .....core.take.motion_file import read_motion
 from ...console import arguments_console
 from ...library_search_path import library_folders
-from ...refuse_existing import refuse_existing
-from ...usage import UsageError
+from ...usage import UsageError, refuse_existing
 from .new_library_file import write_new_library
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import bpy
 
-sys.path.append(str(Path(__file__).resolve().parents[2] / "bridge" / "character"))
+sys.path.append(str(Path(__file__).resolve().parents[1] / "bridge" / "character"))
 
 rigify_human = import_module("rigify_human")
 """What the button in Blender uses too; Keymark itself is not loaded here."""

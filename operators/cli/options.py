@@ -1,0 +1,186 @@
+"""Options that several commands share: evidence, keyframes and libraries, shoots, characters."""
+
+import argparse
+from pathlib import Path, PureWindowsPath
+
+from ...core.library.several_libraries import EVERY_LIBRARY
+from ...core.take.character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
+from ...core.take.evidence_kinds import EVIDENCE, evidence_mistake, in_order
+from ...core.take.methods import METHODS
+from .usage import UsageError
+
+KINDS = ",".join(EVIDENCE)
+
+
+def add_evidence(parser: argparse.ArgumentParser, condition: str = "") -> None:
+    """Add the kinds of evidence; `condition` says for which takes the option counts."""
+    parser.add_argument(
+        "--evidence",
+        metavar="KINDS",
+        type=_kinds,
+        help=f"what the motion is held against{condition}, one or more of {KINDS}; by default whatever a "
+        "take has",
+    )
+
+
+def add_keypoint_files(parser: argparse.ArgumentParser) -> None:
+    """Add keypoint files of one take."""
+    parser.add_argument(
+        "--keypoints",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        help="file or folder of keypoints that a detector has found in the clip; may be given several times; "
+        "by default TAKE/keypoints.json where it is there",
+    )
+
+
+def add_keypoint_names(parser: argparse.ArgumentParser) -> None:
+    """Add keypoint files by the name that they have in every take."""
+    parser.add_argument(
+        "--keypoints",
+        metavar="NAME",
+        type=_name_in_take,
+        action="append",
+        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
+        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
+        "it is there",
+    )
+
+
+def _kinds(text: str) -> tuple[str, ...] | None:
+    """The kinds of evidence; None for an empty text, which farms pass for a setting that is not filled in."""
+    if not text:
+        return None
+    kinds = [kind.strip().replace("-", "_") for kind in text.split(",")]
+    mistake = evidence_mistake(kinds)
+    if mistake is not None:
+        raise argparse.ArgumentTypeError(f"evidence is {text}; {mistake}")
+    return in_order(kinds)
+
+
+def _name_in_take(text: str) -> Path | None:
+    """A path within a take; None for an empty text, as above."""
+    if not text:
+        return None
+    path = PureWindowsPath(text)  # it reads both kinds of slash
+    if path.anchor or Path(text).is_absolute() or ".." in path.parts or not path.name:
+        raise argparse.ArgumentTypeError(
+            f"keypoints is {text}; the name that the file has in every take is valid, as in keypoints.json"
+        )
+    return Path(text)
+
+
+SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
+
+
+def add_defaults(parser: argparse.ArgumentParser) -> None:
+    """Add keypoints, evidence, keyframes, library, floor and method for takes whose shoot names none."""
+    add_keypoint_names(parser)
+    add_evidence(parser, " where nothing in SHOOT says it")
+    parser.add_argument(
+        "--keyframes",
+        metavar="auto",
+        type=_auto,
+        help="auto: find keyframes in the footage with all libraries there are, beside those that a take has "
+        "posed, where nothing in SHOOT says how",
+    )
+    parser.add_argument(
+        "--library",
+        metavar="NAME|FILE|auto",
+        type=_none_if_empty,
+        help="find keyframes by matching takes with this keyframe library alone where nothing in SHOOT says "
+        "how; auto is --keyframes auto",
+    )
+    parser.add_argument(
+        "--floor",
+        metavar="HEIGHT",
+        type=float,
+        help="height of the floor in meters where nothing in SHOOT says it",
+    )
+    parser.add_argument(
+        "--method", choices=METHODS, help="method where nothing in SHOOT names one; map is the default"
+    )
+
+
+def _auto(text: str) -> str | None:
+    """The word for finding keyframes; None for an empty text, as below."""
+    if text not in ("", EVERY_LIBRARY):
+        raise argparse.ArgumentTypeError(
+            f"keyframes is {text}; {EVERY_LIBRARY} is valid: a keyframe file is a take's own, named in its "
+            "description"
+        )
+    return text or None
+
+
+def _none_if_empty(text: str) -> str | None:
+    """The text; None for an empty one, which farms pass for a setting that is not filled in."""
+    return text or None
+
+
+CHARACTER_HELP = (
+    "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "
+    "where it has several"
+)
+MAP_HELP = (
+    "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
+    "recognition; none: recognition"
+)
+
+
+def add_retarget_options(parser: argparse.ArgumentParser) -> None:
+    """Add how the motion is put onto the character."""
+    parser.add_argument(
+        "--limbs",
+        choices=LIMB_KEYS,
+        help="controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
+        "controls is keyed in FK",
+    )
+    parser.add_argument("--arms", choices=LIMB_KEYS, help="of the arms, where it is not that of --limbs")
+    parser.add_argument("--legs", choices=LIMB_KEYS, help="of the legs, where it is not that of --limbs")
+    parser.add_argument(
+        "--root-motion",
+        choices=ROOT_MOTIONS,
+        default=ROOT_MOTIONS[0],
+        help="where the way over the ground goes: on the hips, nowhere, or on the root bone "
+        "(default: %(default)s)",
+    )
+    parser.add_argument(
+        "--place",
+        choices=PLACEMENTS,
+        default=PLACEMENTS[0],
+        help="where the character performs: where the performer stood and faced, or where it stands itself "
+        "(default: %(default)s)",
+    )
+    parser.add_argument("--no-plant-feet", action="store_true", help="let resting feet move")
+    parser.add_argument(
+        "--no-reach-hands", action="store_true", help="let hands miss what the performer's reached"
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="MM|none",
+        default="5",
+        help="largest distance of any joint from the motion in millimeters, for few keys; none keeps a key "
+        "on every frame (default: %(default)s)",
+    )
+
+
+def wanted_keyframes(keyframes: str | None, library: str | None) -> tuple[Path | None, str | None]:
+    """The keyframe file, and the library to find keyframes with, as settings have them.
+
+    Args:
+        keyframes: A file's path; `EVERY_LIBRARY` to find keyframes with all libraries, as `library` may also
+            say; None or an empty text where nothing is said.
+        library: Name or file of a library, or `EVERY_LIBRARY`.
+
+    Raises:
+        UsageError: The options contradict each other.
+    """
+    if keyframes != EVERY_LIBRARY:
+        return Path(keyframes) if keyframes else None, library
+    if library not in (None, EVERY_LIBRARY):
+        raise UsageError(
+            f"--keyframes {keyframes} finds keyframes with all libraries, --library {library} with one; give "
+            "one of them"
+        )
+    return None, EVERY_LIBRARY
