@@ -25,8 +25,13 @@ def done(result: str, error: str | None = None, kind: str | None = None, memory:
 
 def work(job: dict[str, Any]) -> None:
     """Do what the take's name asks for."""
-    name, place, nearest, said_in = job["take"]
-    told = {"take": name, "process": os.getpid(), "again": job["again"], "nearest": nearest}
+    name, place = job["take"]["name"], job["take"]["path"]
+    told = {
+        "take": name,
+        "process": os.getpid(),
+        "again": job["again"],
+        "nearest": job["take"]["overrides"],
+    }
     with log.open("ab", buffering=0) as file:  # in one piece: another worker may write as well
         file.write(json.dumps(told).encode() + b"\n")
     times = log.read_text(encoding="utf-8").count(json.dumps(name))
@@ -56,6 +61,6 @@ def work(job: dict[str, Any]) -> None:
 print("Blender 9.9 says good morning")
 if log.name == "broken.log":
     sys.exit("the module cv9 is missing")
-say("ready", keymark="0")
+say("ready")
 for line in sys.stdin:
     work(json.loads(line))

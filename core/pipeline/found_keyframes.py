@@ -34,7 +34,7 @@ class FoundReconstruction:
     """What was found; None where that was not asked for."""
 
 
-def read_take(description: Description, settings: ConversionSettings) -> Take:
+def take_to_convert(description: Description, settings: ConversionSettings) -> Take:
     """A described take with its posed keyframes, which may lack where others are found.
 
     Raises:

@@ -7,7 +7,7 @@ from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...matching.match_input import check_followed
-from ...pipeline.found_keyframes import read_take
+from ...pipeline.found_keyframes import take_to_convert
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -118,7 +118,7 @@ def check_take(
 def _read(description: Description, settings: ConversionSettings, findings: Findings) -> Take | None:
     """Read the take as its conversion will; without keyframes and keypoints where one is unusable."""
     with findings.catching():
-        return read_take(description, settings)
+        return take_to_convert(description, settings)
     with findings.catching():
         without = replace(settings, keypoints=())
         return read_described(

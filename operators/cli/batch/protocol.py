@@ -1,7 +1,6 @@
 """The protocol between a batch and its workers: JSON Lines, jobs one way and messages the other."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from ....core.take.conversion_settings import ConversionSettings
 
 LONGEST_BYTES = 2**22
 """Of a line: a list of takes may hold a megabyte on one of them."""
+CONVERTED, UNCHANGED, FAILED, BUSY = "converted", "unchanged", "failed", "busy"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,51 +28,28 @@ class Job:
 
     def to_line(self) -> bytes:
         """Encode the job as a line."""
-        take, defaults = self.take, self.defaults
-        value = {
-            "take": [take.name, str(take.path), take.overrides, take.overrides_location],
-            "folder": str(self.folder),
-            "defaults": {
-                **vars(defaults),
-                "keyframes": defaults.keyframes and str(defaults.keyframes),
-                "keypoints": defaults.keypoints and [str(file) for file in defaults.keypoints],
-            },
-            "again": self.again,
-            "debug": self.debug,
-        }
-        return _line(value)
+        return _line(asdict(self))
 
     @classmethod
     def from_line(cls, line: bytes) -> "Job":
-        """Decode a job.
-
-        Raises:
-            ValueError: The line is no JSON.
-            KeyError: A field is missing.
-        """
+        """Decode a job, which a batch has encoded."""
         value = json.loads(line)
-        name, place, nearest, said_in = value["take"]
-        defaults = value["defaults"]
-        keyframes = defaults["keyframes"] and Path(defaults["keyframes"])
-        keypoints = defaults["keypoints"] and tuple(map(Path, defaults["keypoints"]))
-        evidence = defaults["evidence"] and tuple(defaults["evidence"])
+        take, defaults = value["take"], value["defaults"]
+        defaults["keyframes"] = defaults["keyframes"] and Path(defaults["keyframes"])
+        defaults["keypoints"] = defaults["keypoints"] and tuple(map(Path, defaults["keypoints"]))
+        defaults["evidence"] = defaults["evidence"] and tuple(defaults["evidence"])
         return cls(
-            ShootTake(name, Path(place), nearest, said_in),
-            Path(value["folder"]),
-            ConversionSettings(
-                **{**defaults, "keyframes": keyframes, "keypoints": keypoints, "evidence": evidence}
-            ),
-            value["again"],
-            value["debug"],
+            take=ShootTake(**{**take, "path": Path(take["path"])}),
+            folder=Path(value["folder"]),
+            defaults=ConversionSettings(**defaults),
+            again=value["again"],
+            debug=value["debug"],
         )
 
 
 @dataclass(frozen=True)
 class Ready:
     """A worker has started and accepts jobs."""
-
-    keymark: str
-    """Its version."""
 
 
 @dataclass(frozen=True)
@@ -99,11 +76,8 @@ class Done:
     """Resident memory of the worker after the job; None where the system does not tell."""
 
 
-CONVERTED, UNCHANGED, FAILED, BUSY = "converted", "unchanged", "failed", "busy"
 Message = Ready | Step | Done
-MESSAGES: Mapping[str, type[Ready] | type[Step] | type[Done]] = {
-    kind.__name__.lower(): kind for kind in (Ready, Step, Done)
-}
+MESSAGES: dict[str, type[Ready] | type[Step] | type[Done]] = {"ready": Ready, "step": Step, "done": Done}
 
 
 def message_line(message: Message) -> bytes:
@@ -114,8 +88,7 @@ def message_line(message: Message) -> bytes:
 def read_message(line: bytes) -> Message | None:
     """Decode a message; None for any other line, as those that Blender prints while it starts."""
     try:
-        value = json.loads(line)
-        ((name, said),) = value.items()
+        ((name, said),) = json.loads(line).items()
         kind = MESSAGES[name]
         return kind(**{field.name: said[field.name] for field in fields(kind)})
     except (ValueError, AttributeError, KeyError, TypeError):
@@ -123,4 +96,4 @@ def read_message(line: bytes) -> Message | None:
 
 
 def _line(value: Any) -> bytes:
-    return json.dumps(value).encode("ascii") + b"\n"
+    return json.dumps(value, default=str).encode("ascii") + b"\n"

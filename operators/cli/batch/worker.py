@@ -15,10 +15,8 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion.convert_take import convert_take
-from ..conversion.skip_unchanged import convert_if_changed
+from ..conversion.convert_take import convert_if_changed, convert_take
 from ..usage import UsageError
-from ..version import version
 from .machine_resources import resident_bytes
 from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
 
@@ -35,7 +33,7 @@ def run_worker() -> None:
     cv2.setNumThreads(1)  # the workers share the processors; one thread each is fastest
     with blender_silence(debug=False):
         from ...bridge import result_files  # noqa: F401  starts Blender before the first take is timed
-    send(Ready(version()))
+    send(Ready())
     for line in sys.stdin.buffer:
         send(run_job(Job.from_line(line), send))
 

@@ -3,18 +3,20 @@
 A job is retried where its worker crashes or stalls, and where another process holds the take's results.
 """
 
-import asyncio
 import signal
+import time
 from collections import deque
-from collections.abc import Awaitable, Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from queue import Empty
+from types import FrameType
+from typing import Protocol
 
 from ....core.errors import ConversionError
 from ....core.shoot.outcomes.failures import CRASH
-from .protocol import BUSY, FAILED, Done, Job, Step
-from .worker_process import WorkerLostError, WorkerProcess
+from .protocol import BUSY, FAILED, Done, Job, Message, Ready, Step
+from .worker_process import START_TIMEOUT_S, Events, WorkerProcess
 
 MOST_ATTEMPTS = 2
 """A job whose worker is lost is retried once, by a new worker; the start of a worker likewise."""
@@ -22,6 +24,8 @@ LARGEST_WORKER_BYTES = 2**30
 """A worker that holds more memory than this after a job is replaced by a new one."""
 SHORTEST_BACKOFF_S, LONGEST_BACKOFF_S = 0.5, 10.0
 """Wait before the retry of a job that another process is at work on; it doubles with each retry."""
+LONGEST_WAIT_S = 1.0
+"""For the next event: on Windows no signal is handled meanwhile."""
 
 
 class PoolListener(Protocol):
@@ -42,26 +46,37 @@ class _QueuedJob:
     job: Job
     lost_workers: int = 0
     busy_answers: int = 0
+    not_before: float = 0.0
 
 
 class WorkerPool:
     """Hands jobs to worker processes until the queue is empty."""
 
     def __init__(
-        self, jobs: Sequence[Job], start: Callable[[], Awaitable[WorkerProcess]], listener: PoolListener
+        self,
+        jobs: Sequence[Job],
+        words: Sequence[str],
+        listener: PoolListener,
+        heartbeat_timeout_s: float,
+        debug: bool,
     ) -> None:
         """Queue the jobs.
 
         Args:
             jobs: In the order in which they are handed out.
-            start: Starts a worker.
+            words: The command that starts a worker.
             listener: Receives progress and results.
+            heartbeat_timeout_s: Longest time between two messages [s].
+            debug: Whether the workers' standard error is shown.
         """
         self._queue = deque(_QueuedJob(job) for job in jobs)
-        self._start = start
+        self._words, self._debug = words, debug
         self._listener = listener
-        self._workers: set[WorkerProcess] = set()
-        self._start_error = ""
+        self._heartbeat_timeout_s = heartbeat_timeout_s
+        self._events: Events = Events()
+        self._workers: dict[WorkerProcess, _QueuedJob | None] = {}
+        """The workers, each with the job that it runs."""
+        self._failed_starts, self._start_error = 0, ""
 
     def run(self, workers: int) -> None:
         """Run all jobs, as many at a time as there are workers.
@@ -70,132 +85,137 @@ class WorkerPool:
             KeyboardInterrupt: A signal asked the batch to end; all workers have ended.
             ConversionError: No worker starts.
         """
-        try:
-            asyncio.run(self._run(workers))
-        except asyncio.CancelledError:
-            raise KeyboardInterrupt from None
-        if self._queue:
+        with self._interruptible():
+            try:
+                while self._queue or any(self._workers.values()):
+                    self._hand_out()
+                    self._start_workers(workers)
+                    self._handle_events()
+                for worker in self._workers:
+                    worker.close()
+            except BaseException:
+                for worker in self._workers:
+                    worker.terminate()
+                raise
+            finally:
+                for worker in self._workers:
+                    worker.wait()
+
+    def _hand_out(self) -> None:
+        """Give idle workers the next jobs; those that other processes hold come last, and wait."""
+        for worker, current in self._workers.items():
+            if current is None and worker.ready and self._queue:
+                queued = min(self._queue, key=lambda each: each.not_before)
+                if queued.not_before > time.monotonic():
+                    return
+                self._queue.remove(queued)
+                self._workers[worker] = queued
+                worker.deadline = time.monotonic() + self._heartbeat_timeout_s
+                worker.send(queued.job)
+
+    def _start_workers(self, most: int) -> None:
+        """Start as many workers as there are jobs for."""
+        idle = sum(job is None for job in self._workers.values())
+        for _ in range(min(most - len(self._workers), len(self._queue) - idle)):
+            if self._failed_starts >= MOST_ATTEMPTS:
+                break
+            try:
+                self._workers[WorkerProcess(self._words, self._debug, self._events)] = None
+            except OSError as error:
+                self._note_failed_start(f"{self._words[0]}: cannot be run ({error.strerror or error})")
+        if self._queue and not self._workers and self._failed_starts >= MOST_ATTEMPTS:
             raise ConversionError(f"no worker process starts: {self._start_error}")
 
-    async def _run(self, workers: int) -> None:
-        with self._interruptible():
-            slots = [asyncio.create_task(self._worker_slot()) for _ in range(workers)]
-            try:
-                await asyncio.wait(slots)
-            finally:
-                for slot in slots:
-                    slot.cancel()
-                await asyncio.wait(slots)
-            for slot in slots:
-                slot.result()
+    def _note_failed_start(self, reason: str) -> None:
+        self._failed_starts, self._start_error = self._failed_starts + 1, reason
 
-    async def _worker_slot(self) -> None:
-        """Run jobs in one worker after the other, each as long as it is good for another job."""
-        worker: WorkerProcess | None = None
-        try:
-            while queued := await self._next():
-                if worker is None:
-                    worker = await self._new_worker()
-                if worker is None:
-                    self._queue.appendleft(queued)
-                    return
-                if not await self._run_job(worker, queued):
-                    await self._discard(worker)
-                    worker = None
-            if worker is not None:
-                await worker.retire()
-        finally:
-            if worker is not None:
-                await self._discard(worker)
+    def _handle_events(self) -> None:
+        """Wait for an event and handle it; give up workers that are overdue."""
+        moments = [worker.deadline for worker in self._workers]
+        if any(worker.ready and job is None for worker, job in self._workers.items()):
+            moments += [queued.not_before for queued in self._queue]
+        wait_s = min(moments, default=0.0) - time.monotonic()
+        with suppress(Empty):
+            event = self._events.get(timeout=min(max(wait_s, 0.0), LONGEST_WAIT_S))
+            if event is None:
+                raise KeyboardInterrupt
+            worker, message = event
+            if worker in self._workers:  # else it was given up
+                self._handle(worker, message)
+        now = time.monotonic()
+        for worker in [each for each in self._workers if each.deadline < now]:
+            silent_s = self._heartbeat_timeout_s if worker.ready else START_TIMEOUT_S
+            self._lose(worker, f"told of no progress for {silent_s / 60.0:.3g} minutes")
 
-    async def _next(self) -> _QueuedJob | None:
-        """Take the next job; where other processes hold all that are left, wait before the retry."""
-        free = next((queued for queued in self._queue if not queued.busy_answers), None)
-        if free is not None:
-            self._queue.remove(free)
-            return free
-        if not self._queue:
-            return None
-        queued = self._queue.popleft()
-        try:
-            doublings = min(queued.busy_answers - 1, 10)
-            await asyncio.sleep(min(SHORTEST_BACKOFF_S * 2.0**doublings, LONGEST_BACKOFF_S))
-        except asyncio.CancelledError:
-            self._queue.append(queued)
-            raise
-        return queued
+    def _handle(self, worker: WorkerProcess, message: Message | None) -> None:
+        queued = self._workers[worker]
+        if isinstance(message, Ready):
+            worker.rest()
+            self._failed_starts = 0
+        elif message is None:
+            self._lose(worker, worker.exit_description())
+        elif queued is not None and isinstance(message, Step):
+            worker.deadline = time.monotonic() + self._heartbeat_timeout_s
+            self._listener.job_progressed(queued.job, message)
+        elif queued is not None and isinstance(message, Done):
+            worker.rest()
+            self._workers[worker] = None
+            self._finish(queued, message)
+            if (message.memory_bytes or 0) > LARGEST_WORKER_BYTES:
+                del self._workers[worker]
+                worker.terminate()
+                worker.wait()
 
-    async def _run_job(self, worker: WorkerProcess, queued: _QueuedJob) -> bool:
-        """Let a worker run a job; returns whether the worker is good for another."""
-        try:
-            done = await worker.convert(
-                queued.job, lambda step: self._listener.job_progressed(queued.job, step)
-            )
-        except WorkerLostError as lost:
-            self._retry_or_fail(queued, lost)
-            return False
-        if done.result == BUSY:
-            if not queued.busy_answers:
-                self._listener.job_requeued(queued.job, f"{done.error}; it is waited for")
-            queued.busy_answers += 1
-            queued.job = replace(queued.job, again=False)  # what the other process leaves is new enough
-            self._queue.append(queued)
-        else:
+    def _finish(self, queued: _QueuedJob, done: Done) -> None:
+        if done.result != BUSY:
             self._listener.job_finished(queued.job, done)
-        return (done.memory_bytes or 0) <= LARGEST_WORKER_BYTES
+            return
+        if not queued.busy_answers:
+            self._listener.job_requeued(queued.job, f"{done.error}; it is waited for")
+        backoff_s = min(SHORTEST_BACKOFF_S * 2.0 ** min(queued.busy_answers, 10), LONGEST_BACKOFF_S)
+        queued.not_before = time.monotonic() + backoff_s
+        queued.busy_answers += 1
+        queued.job = replace(queued.job, again=False)  # what the other process leaves is new enough
+        self._queue.append(queued)
 
-    def _retry_or_fail(self, queued: _QueuedJob, lost: WorkerLostError) -> None:
+    def _lose(self, worker: WorkerProcess, how: str) -> None:
+        """Do without a worker that has ended or was given up; retry its job once."""
+        queued = self._workers.pop(worker)
+        if not worker.ready:
+            self._note_failed_start(worker.last_line or how)
+        worker.terminate()
+        worker.wait()
+        if queued is None:
+            return
         queued.lost_workers += 1
         if queued.lost_workers < MOST_ATTEMPTS:
             self._queue.append(queued)
             self._listener.job_requeued(
-                queued.job, f"the process that converted it {lost}; it is tried once more"
+                queued.job, f"the process that converted it {how}; it is tried once more"
             )
         else:
-            error = f"the process that converted it {lost}, and so did the one that tried again"
+            error = f"the process that converted it {how}, and so did the one that tried again"
             self._listener.job_finished(queued.job, Done(FAILED, error=error, kind=CRASH))
-
-    async def _new_worker(self) -> WorkerProcess | None:
-        for _ in range(MOST_ATTEMPTS):
-            try:
-                worker = await self._start()
-            except WorkerLostError as lost:
-                self._start_error = str(lost)
-            else:
-                self._workers.add(worker)
-                return worker
-        return None
-
-    async def _discard(self, worker: WorkerProcess) -> None:
-        await worker.terminate()
-        self._workers.discard(worker)
 
     @contextmanager
     def _interruptible(self) -> Iterator[None]:
-        """Cancel the work on SIGINT and SIGTERM; a second signal kills the workers."""
-        task = asyncio.current_task()
-        assert task is not None
+        """Take SIGINT and SIGTERM as the next event, and kill the workers on a second one."""
         asked = False
 
-        def interrupt() -> None:
+        def interrupt(_signal: int, _frame: FrameType | None) -> None:
             nonlocal asked
             if asked:
-                for worker in self._workers:
+                for worker in list(self._workers):
                     worker.kill()
             asked = True
-            task.cancel()
+            self._events.put(None)
 
-        loop = asyncio.get_running_loop()
-        before: list[tuple[signal.Signals, Any]] = []
-        for wanted in (signal.SIGINT, signal.SIGTERM):
-            # Not on Windows, and not off the main thread: asyncio and the caller handle signals there.
-            with suppress(NotImplementedError, RuntimeError, ValueError):
-                handler = signal.getsignal(wanted)
-                loop.add_signal_handler(wanted, interrupt)
-                before.append((wanted, signal.SIG_DFL if handler is None else handler))
+        before = {}
+        with suppress(ValueError):  # not off the main thread: the caller handles signals there
+            for wanted in (signal.SIGINT, signal.SIGTERM):
+                before[wanted] = signal.signal(wanted, interrupt)
         try:
             yield
         finally:
-            for wanted, handler in before:
-                loop.remove_signal_handler(wanted)
-                signal.signal(wanted, handler)
+            for wanted, handler in before.items():
+                signal.signal(wanted, signal.SIG_DFL if handler is None else handler)

@@ -1,15 +1,19 @@
 """A worker as its batch sees it: a child process that answers jobs with messages, or is lost."""
 
-import asyncio
 import signal
+import subprocess
 import sys
-from asyncio.subprocess import PIPE, Process
-from collections.abc import Callable, Sequence
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
 from contextlib import suppress
+from math import inf
 from pathlib import Path
+from queue import SimpleQueue
 
 from ..usage import program_name
-from .protocol import LONGEST_BYTES, Done, Job, Message, Ready, Step, read_message
+from .protocol import LONGEST_BYTES, Job, read_message
 
 SCRIPT = Path(__file__).with_name("start_worker.py")
 START_TIMEOUT_S = 300.0
@@ -18,11 +22,10 @@ HEARTBEAT_TIMEOUT_S = 1800.0
 TERMINATION_GRACE_S = 10.0
 """Time that a worker has to clean up after SIGTERM."""
 STDERR_TAIL_BYTES = 2000
-"""Kept of what a worker writes on standard error, to say why it ended."""
+"""Read of what a worker has written on standard error, to say why it ended."""
 
-
-class WorkerLostError(Exception):
-    """A worker has crashed, does not start or has stalled; the text says how, as part of a sentence."""
+Events = SimpleQueue["tuple[WorkerProcess, Message | None] | None"]
+"""Messages of workers, None for the end of one; None alone where a signal asks the batch to end."""
 
 
 def worker_command_line() -> list[str]:
@@ -37,132 +40,101 @@ def worker_command_line() -> list[str]:
 
 
 class WorkerProcess:
-    """A running worker."""
+    """A running worker; a thread of its own reads its messages."""
 
-    def __init__(self, process: Process, heartbeat_timeout_s: float) -> None:
-        self._process = process
-        self._heartbeat_timeout_s = heartbeat_timeout_s
-        self._stderr_tail = b""
-        self._draining = None if process.stderr is None else asyncio.create_task(self._drain_stderr())
-
-    @classmethod
-    async def start(cls, words: Sequence[str], debug: bool, heartbeat_timeout_s: float) -> "WorkerProcess":
-        """Start a worker and wait until it is ready.
+    def __init__(self, words: Sequence[str], debug: bool, events: Events) -> None:
+        """Start a worker.
 
         Args:
             words: The command.
             debug: Whether its standard error is shown.
-            heartbeat_timeout_s: Longest time between two messages [s].
+            events: Receives its messages.
 
         Raises:
-            WorkerLostError: The worker does not start.
+            OSError: There is no such program.
         """
+        self.ready = False
+        self.deadline = time.monotonic() + START_TIMEOUT_S
+        """When it is lost unless it sends a message before."""
+        self._stderr = tempfile.TemporaryFile()
         try:
-            process = await asyncio.create_subprocess_exec(
-                *words, stdin=PIPE, stdout=PIPE, stderr=None if debug else PIPE, limit=LONGEST_BYTES
+            self._process = subprocess.Popen(
+                words,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=None if debug else self._stderr,
             )
-        except OSError as error:
-            raise WorkerLostError(f"{words[0]}: cannot be run ({error.strerror or error})") from error
-        worker = cls(process, heartbeat_timeout_s)
-        try:
-            while not isinstance(await worker._message(START_TIMEOUT_S), Ready):
-                pass
-        except WorkerLostError as lost:
-            await worker.terminate()
-            raise WorkerLostError(worker._last_line or str(lost)) from lost
-        except asyncio.CancelledError:
-            await worker.terminate()
+        except OSError:
+            self._stderr.close()
             raise
-        return worker
+        self._reader = threading.Thread(target=self._read, args=(events,), daemon=True)
+        self._reader.start()
 
-    async def convert(self, job: Job, step: Callable[[Step], None]) -> Done:
-        """Let the worker run a job.
+    def _read(self, events: Events) -> None:
+        stream = self._process.stdout
+        assert stream is not None
+        with stream:
+            while line := stream.readline(LONGEST_BYTES):
+                message = read_message(line)
+                if message is not None:
+                    events.put((self, message))
+        events.put((self, None))
 
-        Args:
-            job: The take and its settings.
-            step: Receives the progress.
-
-        Raises:
-            WorkerLostError: The worker ends before the job does, or sends nothing until the timeout.
-        """
+    def send(self, job: Job) -> None:
+        """Let the worker run a job; where it has ended, its end follows as an event."""
         assert self._process.stdin is not None
-        try:
+        with suppress(OSError):
             self._process.stdin.write(job.to_line())
-            await self._process.stdin.drain()
-        except OSError as error:
-            raise WorkerLostError(await self._exit_description()) from error
-        while True:
-            message = await self._message(self._heartbeat_timeout_s)
-            if isinstance(message, Done):
-                return message
-            if isinstance(message, Step):
-                step(message)
+            self._process.stdin.flush()
 
-    async def retire(self) -> None:
-        """Close the input of an idle worker, at whose end it exits."""
-        assert self._process.stdin is not None
-        self._process.stdin.close()
-        await self._exited_within(TERMINATION_GRACE_S)
-        await self.terminate()
+    def rest(self) -> None:
+        """Expect no message until the next job."""
+        self.ready, self.deadline = True, inf
 
-    async def terminate(self) -> None:
-        """End the worker: with SIGTERM, on which it cleans up, and after a grace period with SIGKILL."""
+    def close(self) -> None:
+        """Close its input, at whose end an idle worker exits."""
         assert self._process.stdin is not None
-        self._process.stdin.close()
-        with suppress(ProcessLookupError):
-            self._process.terminate()
-        if not await self._exited_within(TERMINATION_GRACE_S):
-            self.kill()
-            await self._process.wait()
-        if self._draining is not None:
-            await self._draining
+        with suppress(OSError):
+            self._process.stdin.close()
+
+    def terminate(self) -> None:
+        """Ask the worker to clean up and end."""
+        self.close()
+        self._process.terminate()
 
     def kill(self) -> None:
         """End the worker at once, without a clean-up."""
-        with suppress(ProcessLookupError):
-            self._process.kill()
+        self._process.kill()
 
-    async def _message(self, timeout_s: float) -> Message | None:
-        assert self._process.stdout is not None
-        try:
-            async with asyncio.timeout(timeout_s):  # wait_for of Python 3.11 may swallow a cancellation
-                line = await self._process.stdout.readline()
-        except TimeoutError as error:
-            raise WorkerLostError(f"told of no progress for {timeout_s / 60.0:.3g} minutes") from error
-        except ValueError as error:  # no end of a line within the limit
-            raise WorkerLostError("answered what is no answer") from error
-        if not line:
-            raise WorkerLostError(await self._exit_description())
-        return read_message(line)
+    def wait(self) -> None:
+        """Wait until it has ended; after a grace period it is asked to, after another one killed."""
+        for end in (self.terminate, self.kill):
+            if self._has_ended_within(TERMINATION_GRACE_S):
+                break
+            end()
+        self._process.wait()
+        self._reader.join(TERMINATION_GRACE_S)
+        self._stderr.close()
 
-    async def _exit_description(self) -> str:
+    def exit_description(self) -> str:
         """How the worker ended, as part of a sentence."""
-        if not await self._exited_within(TERMINATION_GRACE_S):
+        if not self._has_ended_within(TERMINATION_GRACE_S):
             return "fell silent"
-        if self._draining is not None:
-            await asyncio.wait([self._draining], timeout=TERMINATION_GRACE_S)
-        status = self._process.returncode or 0
+        status = self._process.returncode
         if status >= 0:
-            reason = f" ({self._last_line})" if self._last_line else ""
-            return f"ended with exit status {status}{reason}"
+            return f"ended with exit status {status}{f' ({self.last_line})' if self.last_line else ''}"
         with suppress(ValueError):
             return f"was killed by {signal.Signals(-status).name}"
         return f"was killed by signal {-status}"
 
     @property
-    def _last_line(self) -> str:
+    def last_line(self) -> str:
         """The last line on standard error, without the program's name."""
-        lines = self._stderr_tail.decode("utf-8", "replace").strip().splitlines()
+        self._stderr.seek(max(0, self._stderr.seek(0, 2) - STDERR_TAIL_BYTES))
+        lines = self._stderr.read().decode("utf-8", "replace").strip().splitlines()
         return lines[-1].removeprefix(f"{program_name()}: ") if lines else ""
 
-    async def _exited_within(self, timeout_s: float) -> bool:
-        with suppress(TimeoutError):
-            async with asyncio.timeout(timeout_s):
-                await self._process.wait()
+    def _has_ended_within(self, timeout_s: float) -> bool:
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(timeout_s)
         return self._process.returncode is not None
-
-    async def _drain_stderr(self) -> None:
-        """Read standard error, so that the worker never blocks on a full pipe; keep its end."""
-        assert self._process.stderr is not None
-        while chunk := await self._process.stderr.read(STDERR_TAIL_BYTES):
-            self._stderr_tail = (self._stderr_tail + chunk)[-STDERR_TAIL_BYTES:]

@@ -10,7 +10,6 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from difflib import get_close_matches
-from functools import partial
 from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
@@ -23,7 +22,7 @@ from ..batch.batch_outcomes import BatchOutcomes
 from ..batch.machine_resources import available_memory_bytes, processor_count
 from ..batch.protocol import Job
 from ..batch.worker_pool import WorkerPool
-from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, WorkerProcess, worker_command_line
+from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, worker_command_line
 from ..command import Command
 from ..console import Console, arguments_console
 from ..options import SHOOT_HELP, add_defaults, wanted_keyframes
@@ -61,9 +60,9 @@ def batch_command(arguments: argparse.Namespace) -> None:
 
 def _convert(shoot: Shoot, jobs: Sequence[Job], arguments: argparse.Namespace, console: Console) -> None:
     outcomes = BatchOutcomes(shoot, arguments.output, jobs, console)
-    start = partial(WorkerProcess.start, worker_command_line(), arguments.debug, HEARTBEAT_TIMEOUT_S)
+    pool = WorkerPool(jobs, worker_command_line(), outcomes, HEARTBEAT_TIMEOUT_S, arguments.debug)
     try:
-        WorkerPool(jobs, start, outcomes).run(min(_worker_count(arguments.jobs), max(len(jobs), 1)))
+        pool.run(_worker_count(arguments.jobs))
         outcomes.finish()
     except KeyboardInterrupt:
         with suppress(KeyboardInterrupt):  # a second interrupt skips the summary

@@ -1,11 +1,81 @@
-"""motion.blend and motion.bvh, written by Blender into the staging folder of a conversion."""
+"""Files that Blender writes: paths it can work with, hidden names meanwhile, motion.blend and motion.bvh."""
 
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
+from ....core.errors import InputError
+from ....core.files.paths import real_path
+from ....core.take.description import Description
 from ....core.take.motion import Motion
 from ....core.take.take import Take
 from ..blender_silence import blender_silence
-from .hidden_files import hidden_files
+
+
+@contextmanager
+def hidden_files(names: Iterable[str], staging_folder: Path, output: Path) -> Iterator[Mapping[str, Path]]:
+    """Give paths to write files to; when the block ends well, they are moved into the staging folder.
+
+    Blender stores paths relative to the folder that it writes in, which must therefore lie as deep as
+    `output`: where the staging folder does not, the files are written into `output` under hidden names.
+
+    Args:
+        names: Names of the files in the staging folder.
+        staging_folder: Where the files are wanted.
+        output: The folder of the result, as a real path.
+    """
+    folder = staging_folder if staging_folder.parent == output.parent else output
+    hidden = {name: folder / f"{staging_folder.name}-{name}" for name in names}
+    try:
+        yield hidden
+        for name, file in hidden.items():
+            os.replace(file, staging_folder / name)
+    finally:
+        for file in hidden.values():
+            file.unlink(missing_ok=True)
+
+
+LONGEST_BYTES = 1023
+"""Of a path in Blender."""
+FILE_NAME_BYTES = 64
+"""Room for the names of the files that Blender writes, below the folder's path."""
+
+
+def refuse_unsupported_paths(description: Description, output: Path) -> None:
+    """Refuse a take or an output folder whose path is too long for Blender or not valid UTF-8.
+
+    Raises:
+        InputError: A path is unsupported; the sentence says how long it may be.
+    """
+    _check(description.clip, 0)
+    refuse_unsupported_output(output)
+
+
+def refuse_unsupported_output(output: Path) -> None:
+    """Refuse an output folder in which Blender could not write.
+
+    Raises:
+        InputError: Its path is too long for Blender or not valid UTF-8.
+    """
+    _check(output, FILE_NAME_BYTES)
+
+
+def _check(path: Path, reserved_bytes: int) -> None:
+    try:
+        whole = str(real_path(path))
+        length = len(whole.encode())
+    except UnicodeEncodeError as error:
+        shown = str(path).encode(errors="backslashreplace").decode()
+        raise InputError(f"{shown}: the path is no text in UTF-8; rename the part that is not") from error
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: is no path ({error})") from error
+    if length + reserved_bytes > LONGEST_BYTES:
+        raise InputError(
+            f"{path}: the whole path has {length} bytes; Blender can work with one of up to "
+            f"{LONGEST_BYTES - reserved_bytes}, so move it nearer to the root"
+        )
+
 
 BLEND, BVH = "motion.blend", "motion.bvh"
 

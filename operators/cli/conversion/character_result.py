@@ -27,7 +27,7 @@ from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders
 from ..version import version
-from .hidden_files import hidden_files
+from .blender_files import hidden_files
 
 if TYPE_CHECKING:
     import bpy

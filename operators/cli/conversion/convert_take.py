@@ -12,7 +12,7 @@ from ....core.files.output_folder import output_folder
 from ....core.files.paths import real_path
 from ....core.library.library import Library
 from ....core.library.library_file import library_digest
-from ....core.pipeline.found_keyframes import find_and_reconstruct, read_take
+from ....core.pipeline.found_keyframes import find_and_reconstruct, take_to_convert
 from ....core.pipeline.result import Conversion, conversion_record
 from ....core.progress import run
 from ....core.report.body_outlines import performer_contours
@@ -23,7 +23,7 @@ from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.compare_keypoints import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
 from ....core.take.conversion_record import RECORD_FILE as RECORD
-from ....core.take.conversion_record import find_record, write_record
+from ....core.take.conversion_record import find_record, is_up_to_date, write_record
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.keyframe_file import write_keyframes
@@ -36,10 +36,9 @@ from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..usage import require_blender
 from ..version import version
-from .blender_files import BLEND, BVH, write_blender_files
+from .blender_files import BLEND, BVH, refuse_unsupported_paths, write_blender_files
 from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
 from .character_result import CHARACTER_BLEND, CHARACTER_PICTURE, opened_character, write_character_result
-from .unsupported_paths import refuse_unsupported_paths
 
 MOTION, REPORT, KEYFRAMES = "motion.json", "report", "keyframes.json"
 RESULT_FILES = (
@@ -60,7 +59,7 @@ EDITABLE_FILES = (BLEND, CHARACTER_BLEND, KEYFRAMES)
 
 
 @dataclass(frozen=True, eq=False)
-class PreparedConversion:
+class _Prepared:
     """One conversion before it runs: its whole input, and the output folder, which is locked meanwhile."""
 
     description: Description
@@ -97,14 +96,35 @@ def convert_take(
         InputError: The take or the output folder is unusable.
         ConversionError: No motion could be computed or written, or there is no Blender to write with.
     """
-    with prepared_conversion(description, output, console, settings) as prepared:
-        return convert_prepared(prepared, console, debug)
+    with _prepared(description, output, console, settings) as prepared:
+        return _convert(prepared, console, debug)
+
+
+def convert_if_changed(
+    description: Description,
+    output: Path,
+    console: Console,
+    settings: ConversionSettings,
+    debug: bool = False,
+) -> Conversion | None:
+    """Convert a take as `convert_take` does, unless `output` holds the whole result of the same input.
+
+    The input is the same where its digest (`core/take/conversion_digest`) is the one in the result's record;
+    the result is whole where every file of the record is there. Times of files do not count.
+
+    Returns:
+        What was made; None where the take was skipped.
+    """
+    with _prepared(description, output, console, settings) as prepared:
+        if is_up_to_date(output, prepared.digest):
+            return None
+        return _convert(prepared, console, debug)
 
 
 @contextmanager
-def prepared_conversion(
+def _prepared(
     description: Description, output: Path, console: Console, settings: ConversionSettings
-) -> Iterator[PreparedConversion]:
+) -> Iterator[_Prepared]:
     """Lock the output folder and gather the input; what is staged is committed when the block ends well."""
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
@@ -115,15 +135,15 @@ def prepared_conversion(
         digests = [library_digest(library) for library in libraries]
         maps = () if settings.character is None else map_digests(settings.character.map, library_folders())
         digest = conversion_digest(description, settings, digests, output, version(), maps)
-        yield PreparedConversion(description, settings, libraries, digest, output, staging_folder, kept_names)
+        yield _Prepared(description, settings, libraries, digest, output, staging_folder, kept_names)
 
 
-def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool) -> Conversion:
+def _convert(prepared: _Prepared, console: Console, debug: bool) -> Conversion:
     """Make every file of the result in the staging folder; the record comes last."""
     settings, output, staging_folder = prepared.settings, prepared.output, prepared.staging_folder
     if settings.library is not None:
         _refuse_own_folder(prepared.description, output)
-    take = read_take(prepared.description, settings)
+    take = take_to_convert(prepared.description, settings)
     method = settings.method or METHODS[0]
     check_method(take, method)
     if settings.character is not None:
@@ -179,7 +199,7 @@ def convert_prepared(prepared: PreparedConversion, console: Console, debug: bool
 
 
 def _write_character(
-    prepared: PreparedConversion, take: Take, motion: Motion, console: Console, debug: bool
+    prepared: _Prepared, take: Take, motion: Motion, console: Console, debug: bool
 ) -> RetargetRecord | None:
     """Put the motion onto the character that the take names, if any."""
     if prepared.settings.character is None:

@@ -22,11 +22,10 @@ from ....core.take.character_settings import (
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion_file import read_motion
 from ..console import Console, arguments_console
-from ..conversion.blender_files import BLEND
+from ..conversion.blender_files import BLEND, refuse_unsupported_output
 from ..conversion.changed_files import AS_MADE, changed_files, kept_note, write_made_digests
 from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
 from ..conversion.convert_take import MOTION
-from ..conversion.unsupported_paths import refuse_unsupported_output
 from ..usage import UsageError, require_blender
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))

@@ -9,7 +9,7 @@ from _synthetic_take import write_synthetic_take
 from keymark.core.take.conversion_settings import ConversionSettings
 from keymark.core.take.description import describe
 from keymark.operators.cli.console import Console
-from keymark.operators.cli.conversion.skip_unchanged import convert_if_changed
+from keymark.operators.cli.conversion.convert_take import convert_if_changed
 
 FAST = ConversionSettings(method="interpolation", pictures=False)
 
