@@ -24,7 +24,7 @@ from keymark.core.library.library_file import library_to_json, read_library
 from keymark.core.retarget.maps.character_map_file import map_to_json, read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
 from keymark.core.review.score import read_truth
-from keymark.core.shoot.discovery.take_list import read_take_list
+from keymark.core.shoot.discovery import read_take_list
 from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes

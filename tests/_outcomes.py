@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
 from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 

@@ -40,7 +40,7 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> None:
         """Read the take, and only then change the scene."""
-        from ...core.shoot.discovery.take_path import take_path
+        from ...core.shoot.discovery import take_path
         from .take_to_scene import open_in_scene, read_for_scene
 
         open_in_scene(self, context, read_for_scene(take_path(chosen_path(self)), self.keyframes))

@@ -11,7 +11,7 @@ from typing import Any
 import bpy
 import pytest
 from keymark.core.library.library_file import library_digest, library_to_json, read_library
-from keymark.core.shoot.discovery.take_path import take_path
+from keymark.core.shoot.discovery import take_path
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import is_up_to_date, read_record
 from keymark.core.take.description import describe, effective_settings

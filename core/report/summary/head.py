@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from ...shoot.outcomes.outcome import Outcome, Status
+from ...shoot.outcomes import Outcome, Status
 from ...text import pluralize
 from .html_text import duration, isolated, percent
 from .verdict import Verdict, current_record

@@ -9,7 +9,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ...shoot.outcomes.outcome import Outcome, Status
+from ...shoot.outcomes import Outcome, Status
 from ...text import pluralize
 from .head import counts, urgent_items
 from .html_text import escaped, isolated, percent

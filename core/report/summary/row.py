@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 
 from ...library.several_libraries import COMPOSED
-from ...shoot.outcomes.outcome import Outcome, Status
+from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 from ...take.used_evidence import UsedEvidence
 from ...text import pluralize

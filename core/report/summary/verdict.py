@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from enum import StrEnum
 
 from ...review.weak_frames import WEAK_CONFIDENCE
-from ...shoot.outcomes.outcome import Outcome, Status
+from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 
 GOOD = WEAK_CONFIDENCE

@@ -1,11 +1,16 @@
-"""The check of one take before it is converted: description, clip, keyframes, evidence, cost."""
+"""Check of one take before it is converted: description, clip, keyframes, evidence, cost; outliers of a shoot."""
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ...estimate.reconstruct import check_method
+from ...files.fields import Fields
+from ...files.inherited_fields import PLACED, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
+from ...library.several_libraries import EVERY_LIBRARY
 from ...matching.match_input import check_followed
 from ...pipeline.found_keyframes import take_to_convert
 from ...take.character_settings import CharacterSettings
@@ -13,18 +18,117 @@ from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
 from ...take.description import Description
 from ...take.evidence import evidence_of
-from ...take.evidence_kinds import CONTOURS
+from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
 from ...text import Sentence
 from ..shoot import ShootTake
-from .cost_estimate import CostEstimate, estimate_cost
 from .findings import Findings
 from .footage_check import check_footage, count_frames
 from .keyframe_check import check_keyframes
 from .keypoint_check import KeypointReadout, check_keypoints
-from .unfilled_fields import find_unfilled_fields
+
+_CAMERA = {
+    "lens_mm": "the focal length in millimeters",
+    "sensor_width_mm": "the sensor's width in millimeters, 36 where lens_mm is that of full frame",
+    "height_m": "the camera's height above the floor in meters",
+    "tilt_deg": "by how many degrees the camera looked up, negative where it looked down, 0 where level",
+    "matrix_world": "where the camera stood, four rows of four numbers; height_m and tilt_deg do as well",
+}
+_POSES = ("matrix_world", "matrix_world_frames")
+_PLACE = (*PLACED, *_POSES)
+_COLOR = "three numbers from 0 to 255, as an eyedropper gives them on the marker"
+_HEIGHT = "the performer's height in meters"
+
+
+def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
+    """A sentence on each field of a take that is null and must not be.
+
+    Args:
+        fields: The fields of its description.
+    """
+    sentences = []
+    camera = _child(fields, "camera")
+    posed = any(camera.has(name) for name in _POSES)
+    for name, valid in _CAMERA.items():
+        said_otherwise = (name in _PLACE and posed) or (name in _POSES and camera.has("height_m"))
+        if name in camera.values and not camera.has(name) and not said_otherwise:
+            sentences.append(_sentence(camera, name, valid))
+    markers = _child(fields, "markers")
+    for name in markers.values:
+        marker = _child(markers, name)
+        if "color_srgb" in marker.values and not marker.has("color_srgb"):
+            sentences.append(_sentence(marker, "color_srgb", _COLOR))
+    actor = _child(fields, "actor")
+    if "height_m" in actor.values and not actor.has("height_m") and not actor.has("segments_m"):
+        sentences.append(_sentence(actor, "height_m", _HEIGHT))
+    return tuple(sentences)
+
+
+def _child(fields: Fields, name: str) -> Fields:
+    value: Any = fields.values.get(name)
+    values: Mapping[str, Any] = value if isinstance(value, Mapping) else {}
+    return Fields(values, child_location(fields.source_of(name), name))
+
+
+def _sentence(fields: Fields, name: str, valid: str) -> str:
+    return f"{fields.source_of(name)}: {name} is still to be filled in: {valid}"
+
+
+SECONDS_A_TAKE = 0.9
+"""Writing Blender's files and drawing pictures."""
+SECONDS_A_FRAME = {"map": 0.004, "ekf": 0.004, "interpolation": 0.002}
+"""By method, without reading the frame and without what follows."""
+SECONDS_FOR_KEYPOINTS = 0.001
+"""A frame."""
+SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
+"""A frame, with markers and without, where contours are searched far and wide."""
+SECONDS_A_MEGAPIXEL = 0.012
+"""Decoding and following the markers."""
+SECONDS_TO_MATCH = 0.02
+"""A frame, with one library."""
+SECONDS_TO_POSE = 0.1
+"""A frame, with all libraries."""
+BYTES_A_TAKE = 1_800_000
+BYTES_A_FRAME = 5_000
+
+
+@dataclass(frozen=True)
+class CostEstimate:
+    """Cost of one conversion."""
+
+    seconds: float
+    """Time of one processor."""
+    size_bytes: int
+    """Size of the files written."""
+
+
+def estimate_cost(
+    frames: int,
+    size: tuple[int, int],
+    method: str,
+    library: str | None,
+    evidence: Collection[str] = (MARKERS, CONTOURS),
+) -> CostEstimate:
+    """Estimate the cost of converting a take.
+
+    Args:
+        frames: Number of frames of its clip.
+        size: Width and height of the clip [px].
+        method: One of `METHODS`.
+        library: The library that keyframes are found with, `EVERY_LIBRARY` for all of them, or None.
+        evidence: Kinds of evidence that it is held against.
+    """
+    a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
+    if method == "map":
+        a_frame += SECONDS_FOR_KEYPOINTS * (KEYPOINTS in evidence)
+    if method == "map" and CONTOURS in evidence:
+        a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
+    if library is not None:
+        a_frame += SECONDS_TO_POSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
+    return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)
+
 
 CONTOURS_ALONE = Sentence(
     "the motion is held against contours alone, which tell least of all evidence; keypoints of a detector, "
@@ -151,3 +255,39 @@ def _checked(
         library=settings.library,
         cost=cost,
     )
+
+
+FEWEST_TAKES = 5
+"""Known values below which none is usual."""
+USUAL_SHARE = 0.8
+"""Share of the takes that must have the same value for it to be usual."""
+
+
+def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
+    """The checks, with a warning for each clip whose size or rate is an outlier of the shoot."""
+    sizes = [None if one.size is None else f"{one.size[0]} x {one.size[1]} pixels" for one in checks]
+    rates = [None if one.fps is None else f"{one.fps:.4g} frames per second" for one in checks]
+    warned = []
+    for check, size, rate in zip(checks, _outliers(sizes), _outliers(rates), strict=True):
+        more = [
+            Sentence(
+                "the clip has {own}, nearly all others have {usual}; check that it is this camera's",
+                own=own,
+                usual=usual,
+            )
+            for own, usual in filter(None, (size, rate))
+        ]
+        check = replace(check, warnings=(*check.warnings, *more))
+        warned.append(check)
+    return warned
+
+
+def _outliers(values: Sequence[str | None]) -> list[tuple[str, str] | None]:
+    """Each outlier with the usual value; None where a value is usual or unknown, or none is usual."""
+    known = Counter(value for value in values if value is not None)
+    if known.total() < FEWEST_TAKES:
+        return [None] * len(values)
+    usual, count = known.most_common(1)[0]
+    if count < USUAL_SHARE * known.total():
+        return [None] * len(values)
+    return [None if value in (None, usual) else (str(value), usual) for value in values]

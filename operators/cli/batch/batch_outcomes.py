@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from ....core.errors import KeymarkError
-from ....core.shoot.outcomes.failures import (
+from ....core.shoot.outcomes import (
     CONVERSION,
     Failure,
+    Outcome,
+    Status,
+    read_outcome,
+    read_outcomes,
     remove_failure,
     remove_failures_of_deleted_takes,
     write_failure,
 )
-from ....core.shoot.outcomes.outcome import Outcome, Status, read_outcome, read_outcomes
 from ....core.shoot.shoot import Shoot
 from ....core.take.conversion_record import ConversionRecord, find_record
 from ....core.text import pluralize

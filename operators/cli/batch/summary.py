@@ -10,7 +10,7 @@ from ....core.files.paths import absolute_path
 from ....core.report.summary.html_text import relative_path
 from ....core.report.summary.page import summary_page
 from ....core.report.summary.verdict import current_record
-from ....core.shoot.outcomes.outcome import Outcome
+from ....core.shoot.outcomes import Outcome
 from ....core.shoot.shoot import Shoot
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 

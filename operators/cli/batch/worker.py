@@ -12,7 +12,7 @@ import cv2
 
 from ....core.errors import BusyError, InputError, KeymarkError, describe_unexpected
 from ....core.progress import Progress
-from ....core.shoot.outcomes.failures import CONVERSION, CRASH, INPUT
+from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
 from ..conversion.convert_take import convert_if_changed, convert_take

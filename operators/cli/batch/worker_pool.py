@@ -14,7 +14,7 @@ from types import FrameType
 from typing import Protocol
 
 from ....core.errors import ConversionError
-from ....core.shoot.outcomes.failures import CRASH
+from ....core.shoot.outcomes import CRASH
 from .protocol import BUSY, FAILED, Done, Job, Message, Ready, Step
 from .worker_process import START_TIMEOUT_S, Events, WorkerProcess
 

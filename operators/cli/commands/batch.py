@@ -14,8 +14,7 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
-from ....core.shoot.discovery.find_takes import open_shoot
-from ....core.shoot.discovery.take_names import check_output
+from ....core.shoot.discovery import check_output, open_shoot
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ..batch.batch_outcomes import BatchOutcomes

@@ -12,9 +12,8 @@ from ....core.errors import ConversionError, describe_unexpected
 from ....core.files.fields import listed
 from ....core.files.paths import absolute_path
 from ....core.progress import Job, Progress, run
-from ....core.shoot.check.outlier_takes import flag_outliers
-from ....core.shoot.check.take_check import TakeCheck, check_take
-from ....core.shoot.discovery.find_takes import open_shoot
+from ....core.shoot.check.take_check import TakeCheck, check_take, flag_outliers
+from ....core.shoot.discovery import open_shoot
 from ....core.shoot.shoot import Shoot, ShootTake
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.evidence_kinds import KEYPOINTS

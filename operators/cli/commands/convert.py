@@ -8,7 +8,7 @@ from typing import Any
 
 from ....core.pipeline.found_keyframes import found_summary
 from ....core.pipeline.result import Conversion
-from ....core.shoot.discovery.take_path import take_path
+from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS

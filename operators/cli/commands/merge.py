@@ -13,8 +13,7 @@ from ....core.files.paths import absolute_path
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record
-from ....core.shoot.outcomes.failures import Failure, read_failures
-from ....core.shoot.outcomes.results import Result, Results, find_results
+from ....core.shoot.outcomes import Failure, Result, Results, find_results, read_failures
 from ....core.take.motion import Motion
 from ....core.take.motion_file import read_motion
 from ....core.text import pluralize

@@ -8,9 +8,8 @@ from ....core.errors import InputError
 from ....core.files.json_layout import write_readable_json
 from ....core.files.paths import absolute_path
 from ....core.progress import run, within
-from ....core.shoot.discovery.find_takes import find_takes
-from ....core.shoot.template.clip_survey import ClipSurvey, survey_clips
-from ....core.shoot.template.shoot_template import clip_lines, evidence_lines, shoot_template
+from ....core.shoot.discovery import find_takes
+from ....core.shoot.template import ClipSurvey, clip_lines, evidence_lines, shoot_template, survey_clips
 from ....core.take.shoot_file import SHOOT_FILE, find_shoot_files
 from ..command import Command
 from ..console import arguments_console

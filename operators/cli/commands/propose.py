@@ -11,7 +11,7 @@ from ....core.prior.keyframe_proposals import propose_keyframes
 from ....core.progress import Job, run, stretch, within
 from ....core.report.canvas import write_png
 from ....core.report.speed_plot import speed_plot
-from ....core.shoot.discovery.take_path import take_path
+from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
 from ....core.take.performer_keypoints import performer_keypoints

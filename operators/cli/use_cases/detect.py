@@ -12,7 +12,7 @@ from ....core.files.fields import listed
 from ....core.footage.clips.image_sequence import find_images
 from ....core.footage.keypoints.keypoint_file import write_keypoints
 from ....core.progress import run, stretch
-from ....core.shoot.discovery.find_takes import VIDEOS, find_takes, open_shoot
+from ....core.shoot.discovery import VIDEOS, find_takes, open_shoot
 from ....core.shoot.shoot import ShootTake
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, sidecar_file
 from ....core.take.shoot_file import find_shoot_files

@@ -11,7 +11,7 @@ import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.body.kinematics import Body
 from keymark.core.files.digest import content_digest
-from keymark.core.shoot.outcomes.failures import Failure, write_failure
+from keymark.core.shoot.outcomes import Failure, write_failure
 from keymark.core.take.conversion_record import ConversionRecord, write_record
 from keymark.core.take.motion import Motion
 from keymark.core.take.motion_file import write_motion

@@ -7,7 +7,7 @@ import bpy
 import pytest
 from _shoot import write_shoot
 from keymark.core.errors import InputError
-from keymark.core.shoot.discovery.take_path import take_path
+from keymark.core.shoot.discovery import take_path
 from keymark.core.take.take_file import read_take
 from keymark.operators.shell.takes import active_take
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from keymark.core.shoot.outcomes.failures import read_failure
+from keymark.core.shoot.outcomes import read_failure
 from keymark.operators.cli.batch import worker_pool
 from keymark.operators.cli.batch.batch_progress import BatchProgress
 from keymark.operators.cli.commands import batch as command

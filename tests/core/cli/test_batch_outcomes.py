@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 from _outcomes import RECORD
-from keymark.core.shoot.outcomes.failures import Failure, read_failures, write_failure
-from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.shoot.outcomes import Failure, Outcome, Status, read_failures, write_failure
 from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.take.conversion_record import write_record
 from keymark.operators.cli.batch import batch_outcomes

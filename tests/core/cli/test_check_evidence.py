@@ -11,7 +11,7 @@ import pytest
 from _shoot import write_shoot
 from _synthetic_take import BODY, SIZE, true_postures, write_json, write_keypoints
 from keymark.core.footage.keypoints.body_points import mirrored_point
-from keymark.core.shoot.check.cost_estimate import estimate_cost
+from keymark.core.shoot.check.take_check import estimate_cost
 from keymark.operators.cli.main import main
 
 FRAMES = 10

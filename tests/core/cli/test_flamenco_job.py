@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from keymark.core.shoot.discovery.find_takes import VIDEOS, find_takes
+from keymark.core.shoot.discovery import VIDEOS, find_takes
 from keymark.operators.cli.parser import build_parser
 
 NODE = shutil.which("node")

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from _outcomes import FILES, RECORD, converted, failed, waiting
 from keymark.core.errors import ConversionError
-from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.shoot.shoot import Shoot
 from keymark.operators.cli.batch.summary import LINES, PAGE, write_summary
 

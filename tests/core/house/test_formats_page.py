@@ -14,8 +14,7 @@ from keymark.core.footage.keypoints import frame_folder, keypoint_file
 from keymark.core.library import library_file
 from keymark.core.retarget import retarget_record
 from keymark.core.retarget.maps import character_map_file
-from keymark.core.shoot import shoot
-from keymark.core.shoot.discovery import take_list
+from keymark.core.shoot import discovery, shoot
 from keymark.core.take import (
     conversion_record,
     conversion_settings,
@@ -28,7 +27,7 @@ from keymark.core.take import (
 MIB = 2**20
 LIMITS = {
     f"{json_file.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
-    f"{take_list.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
+    f"{discovery.LARGEST_BYTES // MIB} MiB": "`take.json`, `keyframes.json`, `truth.json`, a list of takes",
     f"{motion_file.LARGEST_BYTES // MIB} MiB": "`motion.json`",
     f"{library_file.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
     f"{conversion_record.LARGEST_BYTES // MIB} MiB": "a library, `conversion.json`, `retarget.json`",
@@ -36,7 +35,7 @@ LIMITS = {
     f"{keypoint_file.LARGEST_BYTES // MIB} MiB; "
     f"{frame_folder.LARGEST_FILE_BYTES // MIB} MiB": "a file of keypoints; a file of a detector's folder",
     f"{shoot_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
-    f"{take_list.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
+    f"{discovery.LONGEST_LINE_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{character_map_file.LARGEST_BYTES // MIB} MiB": "`shoot.json`, a line of a list, a character map",
     f"{json_file.MOST_LISTS}, {json_file.DEEPEST} levels deep": "lists and objects in a file",
     f"{safe_path.LONGEST_PATH} characters; {safe_path.LONGEST_NAME_BYTES} bytes": "a path; a name in it",

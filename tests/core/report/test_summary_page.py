@@ -16,7 +16,7 @@ from keymark.core.report.summary.html_text import LONGEST, duration, percent, vi
 from keymark.core.report.summary.page import summary_page
 from keymark.core.report.summary.style_and_script import STYLE
 from keymark.core.report.summary.verdict import Verdict, sections, verdict
-from keymark.core.shoot.outcomes.outcome import Outcome, Status
+from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
 from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 

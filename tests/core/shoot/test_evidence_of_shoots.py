@@ -9,7 +9,7 @@ import pytest
 from _shoot import write_shoot
 from _synthetic_take import true_postures, write_json, write_keypoints
 from keymark.core.errors import InputError
-from keymark.core.shoot.discovery.find_takes import open_shoot
+from keymark.core.shoot.discovery import open_shoot
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSettings
 from keymark.core.take.description import Description, describe, effective_settings

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from _outcomes import RECORD
 from keymark.core.errors import InputError
-from keymark.core.shoot.outcomes import results
-from keymark.core.shoot.outcomes.results import find_results
+from keymark.core.shoot import outcomes
+from keymark.core.shoot.outcomes import find_results
 from keymark.core.take.conversion_record import write_record
 
 
@@ -61,7 +61,7 @@ def test_folders_that_cannot_be_read_are_named(tmp_path: Path, monkeypatch: pyte
             raise PermissionError(13, "Permission denied")
         return through(folder)
 
-    monkeypatch.setattr(results.Path, "iterdir", iterdir)
+    monkeypatch.setattr(outcomes.Path, "iterdir", iterdir)
     shut = "shut"
     found = find_results(tmp_path)
     assert [result.name for result in found.sound] == ["a"]

@@ -6,10 +6,8 @@ from pathlib import Path
 
 import pytest
 from keymark.core.errors import InputError
-from keymark.core.shoot.discovery import find_takes as discovery
-from keymark.core.shoot.discovery import take_list
-from keymark.core.shoot.discovery.find_takes import find_takes, open_shoot
-from keymark.core.shoot.discovery.take_names import check_output
+from keymark.core.shoot import discovery
+from keymark.core.shoot.discovery import check_output, find_takes, open_shoot
 
 
 def make(folder: Path, *paths: str) -> Path:
@@ -217,7 +215,7 @@ def test_a_list_is_bounded_and_must_be_text(tmp_path: Path, monkeypatch: pytest.
         ("MOST_TAKES", 1, "more than 1 takes"),
     ):
         with monkeypatch.context() as bounded, pytest.raises(InputError, match=sentence):
-            bounded.setattr(take_list, name, value)
+            bounded.setattr(discovery, name, value)
             open_shoot(listed)
     listed.write_bytes(b"\xff\xfe{}")
     with pytest.raises(InputError, match="in UTF-8"):

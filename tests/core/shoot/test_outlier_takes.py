@@ -1,9 +1,7 @@
 """Outlier takes of a shoot, and estimates of a conversion's cost."""
 
 import pytest
-from keymark.core.shoot.check.cost_estimate import estimate_cost
-from keymark.core.shoot.check.outlier_takes import flag_outliers
-from keymark.core.shoot.check.take_check import TakeCheck
+from keymark.core.shoot.check.take_check import TakeCheck, estimate_cost, flag_outliers
 
 
 def check(width: int | None, fps: float = 25.0) -> TakeCheck:

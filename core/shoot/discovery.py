@@ -1,0 +1,304 @@
+"""Discovery of takes: below a folder, in a list (JSON Lines), of one file; and the rules for their names."""
+
+import os
+import unicodedata
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path, PurePath, PurePosixPath
+from typing import Any
+
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.inherited_fields import COMMENT_PREFIX
+from ..files.json_file import parse_json, shown
+from ..files.regular_file import regular_file_size
+from ..files.safe_path import check_symlinks, safe_path
+from ..footage.clips.image_sequence import is_image, stem_of_number
+from ..take.conversion_record import RECORD_FILE
+from ..take.description import TAKE_FILE, clip_name
+from ..take.shoot_file import SETTING_FIELDS, SHARED_FIELDS, SHOOT_FILE, find_shoot_files
+from .shoot import MOST_TAKES, Shoot, ShootTake
+
+RESERVED = (".keymark", "summary.html", "summary.jsonl")
+"""Files and folders that a batch itself writes into the folder of the results."""
+
+
+def take_name(path: PurePath) -> str:
+    """The name of a take from its path relative to the shoot: with slashes, and always valid text."""
+    return path.as_posix().encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def check_names(shoot: Path, takes: Sequence[ShootTake]) -> None:
+    """Refuse takes whose results would lie in one folder on some file system, or one below another.
+
+    Raises:
+        InputError: Two takes collide, or one has a reserved name.
+    """
+    known: dict[str, ShootTake] = {}
+    for take in takes:
+        if PurePosixPath(take.name).parts[:1] and _folded(PurePosixPath(take.name).parts[0]) in RESERVED:
+            raise InputError(
+                f"{take.path}: its results would lie where a batch keeps its own {take.name.split('/')[0]}; "
+                "rename it"
+            )
+        twin = known.setdefault(_folded(take.name), take)
+        if twin is not take:
+            raise InputError(
+                f"{shoot}: the takes {shown(str(twin.path))} and {shown(str(take.path))} have one name, "
+                f"{shown(take.name)}, and their results would lie in one folder; rename one of them"
+            )
+    for take in takes:
+        for parent in PurePosixPath(_folded(take.name)).parents:
+            above = known.get(str(parent))
+            if above is not None and above is not take:
+                raise InputError(
+                    f"{shoot}: the results of {shown(str(take.path))} would lie among those of "
+                    f"{shown(str(above.path))}; rename one of them"
+                )
+
+
+def check_output(shoot: Shoot, output: Path) -> None:
+    """Refuse an output folder in which results would lie among the takes.
+
+    Raises:
+        InputError: The folder is the shoot's own, or results would lie in a folder that holds takes.
+    """
+    target = Path(os.path.realpath(output))
+    if target.exists() and not target.is_dir():
+        raise InputError(f"{output}: is a file; the output must be a folder, new or old")
+    if target == Path(os.path.realpath(shoot.folder)):
+        raise InputError(f"{output}: is the shoot's own folder; name another one, which may lie in it")
+    paths = [Path(os.path.realpath(take.path)) for take in shoot.takes]
+    taken = {folder for path in paths for folder in (path, *path.parents)}
+    for take in shoot.takes:
+        if target / take.name in taken:
+            raise InputError(
+                f"{output}: the results of {shown(take.name)} would lie in {target / take.name}, which holds "
+                "takes; name another folder"
+            )
+
+
+def _folded(name: str) -> str:
+    """A name as the least discerning file system compares it: Windows drops dots and spaces at ends."""
+    parts = [part.rstrip(". ") or part for part in name.split("/")]
+    return unicodedata.normalize("NFC", "/".join(parts)).casefold()
+
+
+ENDING = ".jsonl"
+LARGEST_BYTES = 64 * 2**20
+LONGEST_LINE_BYTES = 2**20
+TAKE_FIELD = "take"
+TAKE_VALID = "a path inside the list's folder, as in day1/clip01.mp4"
+KNOWN_FIELDS = (TAKE_FIELD, "clip", "frame_count", "keyframes", *SHARED_FIELDS, *SETTING_FIELDS)
+
+
+def read_take_list(path: Path) -> Shoot:
+    """Read a list of takes; the values of their fields are checked where each take uses them.
+
+    Args:
+        path: The list, UTF-8. Takes are relative to its folder, paths in a take's own fields to the take's.
+
+    Raises:
+        InputError: The list cannot be read, is too large or holds no take; or a line is no object, or has an
+            unknown field, a path outside the folder or the name of another take.
+    """
+    takes: list[ShootTake] = []
+    for number, line in enumerate(_lines(path), 1):
+        if not line.strip():
+            continue
+        takes.append(_take(path, f"{path}, line {number}", line))
+        if len(takes) > MOST_TAKES:
+            raise InputError(f"{path}: lists more than {MOST_TAKES} takes; make several lists of it")
+    if not takes:
+        raise InputError(f'{path}: lists no take; it must hold lines such as {{"take": "day1/clip01.mp4"}}')
+    check_names(path, takes)
+    return Shoot(path, tuple(sorted(takes, key=lambda take: take.name)))
+
+
+def _lines(path: Path) -> list[str]:
+    valid = "it must be a list of takes in UTF-8, one JSON object a line"
+    regular_file_size(path, "a list of takes in UTF-8, one JSON object a line")
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_BYTES + 1)
+        if len(content) > LARGEST_BYTES:
+            raise InputError(f"{path}: is longer than {LARGEST_BYTES // 2**20} MiB; {valid}")
+        lines = content.decode("utf-8-sig").split("\n")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); {valid}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: cannot be read ({error}); {valid}") from error
+    return lines
+
+
+def _take(path: Path, where: str, line: str) -> ShootTake:
+    if len(line) > LONGEST_LINE_BYTES:
+        raise InputError(f"{where}: has {len(line)} characters; at most {LONGEST_LINE_BYTES} are read")
+    values: dict[str, Any] = parse_json(line, where)
+    fields = Fields(values, where)
+    fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
+    take = safe_path(fields, TAKE_FIELD, path.parent, TAKE_VALID)
+    check_symlinks([take], [path.parent])
+    relative = take.relative_to(path.parent)
+    if not relative.parts:
+        raise InputError(f"{where}: {TAKE_FIELD} is {shown(values[TAKE_FIELD])}; it must be {TAKE_VALID}")
+    if os.path.isfile(take):  # which is false for an impossible file name, too
+        relative = relative.with_name(clip_name(take))
+    overrides = {name: value for name, value in values.items() if name != TAKE_FIELD}
+    return ShootTake(take_name(relative), take, overrides, where)
+
+
+VIDEOS = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".mts", ".mxf", ".webm", ".wmv"})
+NO_TAKE = (
+    f"holds no take; a take is a folder with {TAKE_FILE}, or a clip with a {SHOOT_FILE}, "
+    "which keymark new writes"
+)
+NO_CLIP = "holds no clip; a clip is a video or a folder of numbered images"
+DEEPEST = 64
+"""Levels of folders that are searched: more are a cycle in the file system."""
+
+
+def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:
+    """Find the takes of a shoot as the command line names it; their files are not read yet.
+
+    Args:
+        path: A folder of takes or one take, a list of takes (.jsonl), or one video.
+        excluded: A folder that is not searched, as that of the results.
+
+    Raises:
+        InputError: There is no such shoot, it cannot be read, it has no take, or two takes of one name.
+    """
+    if path.suffix.lower() == ENDING and not path.is_dir():
+        return read_take_list(path)
+    if path.suffix.lower() in VIDEOS and path.is_file():
+        takes = (ShootTake(take_name(Path(path.stem)), path),)
+        check_names(path, takes)
+        return Shoot(path, takes)
+    return find_takes(path, excluded)
+
+
+def find_takes(folder: Path, excluded: Path | None = None, undescribed: bool = False) -> Shoot:
+    """Find every take below a folder.
+
+    Takes are folders with `take.json`, and, where a `shoot.json` describes them, videos and folders of
+    images. Takes, hidden folders, results of a conversion and links to folders are not searched. A folder
+    that cannot be read counts as a take that will fail: it may hold some.
+
+    Args:
+        folder: The shoot's folder.
+        excluded: A folder that is not searched, as that of the results.
+        undescribed: Whether clips count that no `shoot.json` describes yet.
+
+    Raises:
+        InputError: There is no such folder, it cannot be read, is itself excluded, or holds no take or two
+            of one name.
+    """
+    if not folder.is_dir():
+        wrong = "is no folder" if os.path.exists(folder) else "no such folder"
+        raise InputError(f"{folder}: {wrong}; a shoot is a folder of takes, or a list of them (.jsonl)")
+    real_excluded = None if excluded is None else os.path.realpath(excluded)
+    if os.path.realpath(folder) == real_excluded:
+        raise InputError(f"{excluded}: is the shoot's own folder; name another one, which may lie in it")
+    search = _Search(folder, real_excluded)
+    search.visit(folder, described=undescribed or bool(find_shoot_files(folder)))
+    if not search.takes:
+        raise InputError(f"{folder}: {NO_CLIP if undescribed else NO_TAKE}")
+    takes = tuple(sorted(search.takes, key=lambda take: take.name))
+    check_names(folder, takes)
+    return Shoot(folder, takes)
+
+
+class _Search:
+    """A depth-first search for takes."""
+
+    def __init__(self, folder: Path, excluded: str | None) -> None:
+        self.folder = folder
+        self.excluded = excluded
+        self.takes: list[ShootTake] = []
+
+    def visit(self, folder: Path, described: bool, depth: int = 0) -> None:
+        """Add the takes in a folder and below it; `described`: whether a `shoot.json` describes clips."""
+        if os.path.realpath(folder) == self.excluded:
+            return
+        if depth > DEEPEST:
+            raise InputError(
+                f"{folder}: lies more than {DEEPEST} folders deep; name a folder nearer to the takes"
+            )
+        try:
+            inside = sorted(file for file in folder.iterdir() if not file.name.startswith("."))
+            names = {file.name for file in inside}
+            kinds = [(file, file.is_dir(), file.is_symlink()) for file in inside]
+        except OSError as error:
+            if depth == 0:
+                raise InputError(
+                    f"{folder}: cannot be read ({error.strerror}); a shoot is a folder of takes"
+                ) from error
+            self._add(folder)
+            return
+        described = described or SHOOT_FILE in names
+        if TAKE_FILE in names:
+            self._add(folder)
+            return
+        if RECORD_FILE in names and SHOOT_FILE not in names:
+            return
+        below = [file for file, is_folder, is_link in kinds if is_folder and not is_link]
+        videos = [file for file, is_folder, _ in kinds if not is_folder and file.suffix.lower() in VIDEOS]
+        if described and not videos and _is_sequence(inside, alone=not below):
+            self._add(folder)
+            return
+        for video in videos if described else ():
+            self._add(video)
+        for child in below:
+            self.visit(child, described, depth + 1)
+
+    def _add(self, path: Path) -> None:
+        relative = path.relative_to(self.folder)
+        if relative.parts and path.is_file():
+            relative = relative.with_name(clip_name(path))
+        self.takes.append(ShootTake(take_name(relative), path))
+        if len(self.takes) > MOST_TAKES:
+            raise InputError(f"{self.folder}: holds more than {MOST_TAKES} takes; name a folder of fewer")
+
+
+def _is_sequence(inside: list[Path], alone: bool) -> bool:
+    """Whether a folder's images are a clip: its only content, or numbered; else they are stills."""
+    images = [file for file in inside if is_image(file)]
+    stems = Counter(stem_of_number(file) for file in images)
+    return bool(images) and (alone or any(count > 1 for stem, count in stems.items() if stem is not None))
+
+
+def take_path(file: Path) -> Path:
+    """The path of a file's take: the folder of a `take.json`, the clip of a `NAME.take.json`, else itself.
+
+    Raises:
+        InputError: Not exactly one clip beside `NAME.take.json` has that name.
+    """
+    if file.name == TAKE_FILE:
+        return file.parent
+    name = file.name.removesuffix(f".{TAKE_FILE}")
+    if name == file.name or file.is_dir():
+        return file
+    beside = [other for other in sorted(file.parent.glob("*")) if clip_name(other) == name]
+    clips = [clip for clip in beside if clip.is_dir() or clip.suffix.lower() in VIDEOS]
+    if len(clips) != 1:
+        raise InputError(f"{file}: {len(clips)} clips beside it are called {name}; it must tell of one")
+    return clips[0]
+
+
+def check_hides_no_take(folder: Path) -> None:
+    """Refuse a folder in which a new `take.json` would hide takes: inside a take no other is searched.
+
+    Raises:
+        InputError: The folder holds clips of a shoot, or folders that are takes.
+    """
+    if not folder.is_dir() or (folder / TAKE_FILE).exists():
+        return
+    shared = bool(find_shoot_files(folder))
+    for other in sorted(folder.iterdir()):
+        if other.name.startswith("."):
+            continue
+        if (other / TAKE_FILE).is_file() or (shared and other.suffix.lower() in VIDEOS):
+            raise InputError(
+                f"{folder}: holds other takes, as {other.name}, which a {TAKE_FILE} there would hide; name a "
+                "folder of its own"
+            )

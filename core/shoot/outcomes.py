@@ -1,0 +1,216 @@
+"""Outcomes of takes in a batch: results and failures, written beside each other and read again."""
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from ..errors import InputError
+from ..files.fields import Fields
+from ..files.json_file import read_json, write_json
+from ..files.paths import absolute_path
+from ..take.conversion_record import RECORD_FILE, ConversionRecord, find_record, read_record
+from ..take.description import clip_name
+from .discovery import RESERVED, take_name
+from .shoot import Shoot, ShootTake
+
+FOLDER = Path(RESERVED[0]) / "failures"
+"""Below the folder of the results."""
+LARGEST_BYTES = 2**16
+DIGITS = 16
+INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a take did not convert."""
+
+    take: str
+    """Its name in the shoot."""
+    error: str
+    """The reason, in a sentence."""
+    kind: str
+    """`input`, `conversion`, or `crash` where the process itself died."""
+
+
+def write_failure(output: Path, failure: Failure) -> None:
+    """Write a failure.
+
+    Args:
+        output: The folder of all results.
+        failure: The failure of one take.
+
+    Raises:
+        ConversionError: The file cannot be written.
+    """
+    write_json(_file(output, failure.take), asdict(failure), indent=1)
+
+
+def remove_failure(output: Path, take: str) -> None:
+    """Remove a take's failure, if there is one."""
+    with suppress(OSError):
+        _file(output, take).unlink(missing_ok=True)
+
+
+def read_failures(output: Path) -> list[Failure]:
+    """All failures that can be read, in the order of the takes' names."""
+    with suppress(OSError):
+        found = [_read(file) for file in (output / FOLDER).glob("*.json")]
+        return sorted((failure for failure in found if failure is not None), key=lambda one: one.take)
+    return []
+
+
+def read_failure(output: Path, take: str) -> Failure | None:
+    """A take's failure; None where it has none, or none that can be read."""
+    found = _read(_file(output, take))
+    return found if found is not None and found.take == take else None
+
+
+def remove_failures_of_deleted_takes(output: Path, shoot: Shoot) -> None:
+    """Remove failures of takes that no longer exist: else every library merged later would seem incomplete.
+
+    A list or one clip does not tell whether other takes exist.
+
+    Args:
+        output: The folder of all results.
+        shoot: All takes.
+    """
+    known = {take.name for take in shoot.takes}
+    for failure in read_failures(output):
+        if failure.take not in known and _is_deleted(shoot.path, failure.take):
+            remove_failure(output, failure.take)
+
+
+def _is_deleted(folder: Path, take: str) -> bool:
+    """Whether neither the folder nor the clip of a take exists any more."""
+    if not folder.is_dir():
+        return False
+    try:
+        siblings = [file.relative_to(folder) for file in (folder / take).parent.iterdir()]
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):  # it may exist
+        return False
+    return take not in {take_name(path.with_name(clip_name(folder / path))) for path in siblings}
+
+
+def _read(path: Path) -> Failure | None:
+    with suppress(InputError):
+        fields = Fields(read_json(path, LARGEST_BYTES), str(path))
+        return Failure(*(fields.text(name, "a text") for name in ("take", "error", "kind")))
+    return None
+
+
+def _file(output: Path, take: str) -> Path:
+    digest = hashlib.sha256(take.encode("utf-8", "surrogatepass")).hexdigest()
+    return output / FOLDER / f"{digest[:DIGITS]}.json"
+
+
+class Status(StrEnum):
+    """Status of a take in a batch."""
+
+    CONVERTED = "converted"
+    UNCHANGED = "unchanged"
+    """Converted before, from the same input."""
+    FAILED = "failed"
+    WAITING = "waiting"
+    """Not converted yet, or interrupted."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """The outcome of one take."""
+
+    take: str
+    """Its name in the shoot."""
+    folder: Path
+    """The folder of its results, which may not exist."""
+    status: Status
+    record: ConversionRecord | None = None
+    """Of the results in the folder, if there are any: of an earlier input where this run has failed."""
+    error: str | None = None
+    """Why it failed, in a sentence."""
+    seconds: float | None = None
+    """Duration of its conversion in this run."""
+
+
+def read_outcomes(shoot: Shoot, output: Path) -> list[Outcome]:
+    """The outcome of every take as the folder of the results shows it, in the order of their names."""
+    return [read_outcome(take, output) for take in shoot.takes]
+
+
+def read_outcome(take: ShootTake, output: Path) -> Outcome:
+    """The outcome of one take as the folder of the results shows it; its input is not looked at."""
+    folder = output / take.name
+    record = find_record(folder)
+    failure = read_failure(output, take.name)
+    if failure is not None:
+        return Outcome(take.name, folder, Status.FAILED, record, failure.error)
+    return Outcome(take.name, folder, Status.WAITING if record is None else Status.CONVERTED, record)
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The result of one take's conversion."""
+
+    name: str
+    """Its path from the folder that was searched, with slashes: the take's name in its shoot."""
+    folder: Path
+    record: ConversionRecord
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Results below a folder, in the order of their names."""
+
+    sound: tuple[Result, ...]
+    damaged: dict[str, str]
+    """By name of each result whose record is unusable, the reason in a sentence."""
+
+
+def find_results(folder: Path) -> Results:
+    """Find every result below a folder; hidden folders and links to folders are skipped.
+
+    Raises:
+        InputError: There is no such folder, it cannot be read, or it holds no result.
+    """
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder; it must be a folder of results, as batch writes it")
+    sound: list[Result] = []
+    damaged: dict[str, str] = {}
+    for path, error in _result_folders(folder):
+        relative = path.relative_to(folder) if path != folder else Path(absolute_path(path).name)
+        name = take_name(relative)
+        if error is not None:
+            sentence = f"{path}: cannot be read ({error.strerror or error})"
+            if path == folder:
+                raise InputError(sentence) from error
+            damaged[name] = sentence
+            continue
+        try:
+            sound.append(Result(name, path, read_record(path)))
+        except InputError as unusable:
+            damaged[name] = str(unusable)
+    if not sound and not damaged:
+        raise InputError(
+            f"{folder}: holds no result; a result is a folder with {RECORD_FILE}, "
+            "as convert and batch write it"
+        )
+    return Results(tuple(sorted(sound, key=lambda result: result.name)), dict(sorted(damaged.items())))
+
+
+def _result_folders(folder: Path) -> Iterator[tuple[Path, OSError | None]]:
+    """Folders with a record, and those that cannot be read."""
+    try:
+        inside = sorted(folder.iterdir())
+    except OSError as error:
+        yield folder, error
+        return
+    if any(file.name == RECORD_FILE for file in inside):
+        yield folder, None
+        return
+    for path in inside:
+        if path.is_dir() and not path.is_symlink() and not path.name.startswith("."):
+            yield from _result_folders(path)

@@ -1,1 +1,0 @@
-"""A new `shoot.json`, filled in from a survey of its clips."""
