@@ -1,4 +1,4 @@
-"""Check of one take before it is converted: description, clip, keyframes, evidence, cost; outliers of a shoot."""
+"""Check of one take before it is converted: description, clip, keyframes, evidence, cost; and outliers."""
 
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
