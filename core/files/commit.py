@@ -1,8 +1,8 @@
 """Two-phase commit of a result folder: moves are journaled, so that another process can finish them.
 
 First the files are made in a staging folder; then a journal beside the target folder lists the moves. From
-then on the commit counts as made: a process that finds the journal, and its writer dead, rolls it forward
-(see `recovery`).
+then on the commit counts as made: a process that finds the journal, and its writer dead, rolls it forward;
+what has no complete journal it removes.
 """
 
 import itertools
@@ -12,13 +12,18 @@ import shutil
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
+from typing import Any
 
+from ..errors import InputError
 from .fsync import fsync_path
+from .json_file import read_json
 
 STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
 """Endings of the hidden names. They and the journal's fields never change, so that a run that was interrupted
 before an update of Keymark is recovered after it."""
+LARGEST_BYTES = 2**24
+"""Of a journal."""
 
 Moves = list[tuple[Path, Path]]
 
@@ -43,22 +48,25 @@ class Commit:
     @property
     def staging_folder(self) -> Path:
         """The folder in which the set is made."""
-        return self.stem.with_name(self.stem.name + STAGING)
+        return self._hidden(STAGING)
 
     @property
     def rollback_folder(self) -> Path:
         """The folder for what the set replaces, as long as it may have to go back."""
-        return self.stem.with_name(self.stem.name + ROLLBACK)
+        return self._hidden(ROLLBACK)
 
     @property
     def journal(self) -> Path:
         """The list of moves; while it exists, the set is complete but not all in the target."""
-        return self.stem.with_name(self.stem.name + JOURNAL)
+        return self._hidden(JOURNAL)
 
     @property
     def journal_draft(self) -> Path:
         """The journal while it is written."""
-        return self.stem.with_name(self.stem.name + JOURNAL_DRAFT)
+        return self._hidden(JOURNAL_DRAFT)
+
+    def _hidden(self, ending: str) -> Path:
+        return self.stem.with_name(self.stem.name + ending)
 
 
 def write_journal(commit: Commit) -> None:
@@ -140,6 +148,52 @@ def clean_up(commit: Commit) -> None:
         file.unlink(missing_ok=True)
     for folder in (commit.staging_folder, commit.rollback_folder):
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def recover(commit: Commit) -> None:
+    """Finish or remove what a killed process has left of a commit to the same target.
+
+    Args:
+        commit: An empty one: its target and its hidden names.
+
+    Raises:
+        OSError: A file cannot be moved, or not removed.
+    """
+    interrupted = _read_journal(commit)
+    if interrupted is not None:
+        roll_forward(interrupted, [])
+    clean_up(commit)
+    if commit.stem.parent == commit.target:
+        for file in commit.target.glob(f"{commit.stem.name}-*"):  # by Blender, see `convert_take`
+            file.unlink(missing_ok=True)
+    for folder in (commit.staging_folder, commit.rollback_folder):
+        if os.path.lexists(folder):
+            shutil.rmtree(folder)  # `clean_up` could not remove it: this time with the reason
+
+
+def _read_journal(commit: Commit) -> Commit | None:
+    """The commit that another process has journaled and not finished.
+
+    None where there is no journal, or it is damaged, of another target, names paths outside the target, or
+    files of the set are missing.
+    """
+    try:
+        fields = read_json(commit.journal, LARGEST_BYTES)
+        written, removed, backups, manifest = (fields[name] for name in ("made", "gone", "aside", "seal"))
+        names = [*written, *removed, *backups, *backups.values(), *(() if manifest is None else (manifest,))]
+        if fields["target"] != commit.target.name or not all(map(_is_inside, names)):
+            return None
+    except (InputError, LookupError, TypeError, AttributeError):
+        return None
+    found = Commit(commit.target, commit.stem, manifest, tuple(written), tuple(removed), dict(backups))
+    folders = (found.staging_folder, found.target)
+    complete = all(any((folder / name).is_file() for folder in folders) for name in written)
+    return found if complete else None
+
+
+def _is_inside(name: Any) -> bool:
+    path = PureWindowsPath(name)  # which reads both kinds of slash
+    return not path.anchor and ".." not in path.parts and bool(path.name)
 
 
 def files_below(folder: Path) -> tuple[str, ...]:

@@ -7,11 +7,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import ConversionError, InputError, KeymarkError
-from .commit import Commit, Moves, clean_up, files_below, roll_back, roll_forward, write_journal
+from .commit import Commit, Moves, clean_up, files_below, recover, roll_back, roll_forward, write_journal
 from .file_lock import LOCK, file_lock, hidden_prefix
 from .fsync import DISK_ERRORS
 from .paths import real_path
-from .recovery import recover
 
 NO_BACKUPS: Mapping[str, str] = {}
 
