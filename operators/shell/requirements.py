@@ -99,12 +99,6 @@ def motion(context: bpy.types.Context) -> str | None:
     return None if take and take.motion_action else label("Reconstruct the motion first")
 
 
-def turntable(context: bpy.types.Context) -> str | None:
-    """The take has a turntable."""
-    take = find_take(context.scene)
-    return None if take and take.turntable.collection else label("Set up the turntable first")
-
-
 def weak_frames(context: bpy.types.Context) -> str | None:
     """The review found frames worth another keyframe."""
     take = find_take(context.scene)

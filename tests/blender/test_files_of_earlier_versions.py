@@ -65,8 +65,11 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return scene.keymark.takes[scene.keymark.active_take]
 
 
-DROPPED = ("].matching.ranking",)
-"""Properties of then that nothing needs any more: libraries are not ranked, all of them take part."""
+DROPPED = (
+    "].matching.ranking",  # libraries are not ranked, all of them take part
+    "].turntable.",
+)
+"""Properties of then that nothing needs any more."""
 REPLACED = {"].matching.library_name": "auto", "].matching.library": "auto"}
 """Values of then that say what another button says now: to find keyframes with all libraries is Pose All."""
 
@@ -258,16 +261,6 @@ def test_the_motion_is_exported(saved: Saved, scene: bpy.types.Scene) -> None:
     path = saved.folder / "motion.bvh"
     assert bpy.ops.keymark.export_motion(format="BVH", filepath=str(path)) == {"FINISHED"}
     assert f"Frames: {scene.frame_end}" in path.read_text(encoding="utf-8")
-
-
-def test_the_turntable_is_known_as_keymarks(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Set up anew it takes the place of the one in the file; removed, it leaves nothing."""
-    names = sorted(thing.name for thing in scene.objects)
-    assert bpy.ops.keymark.set_up_turntable() == {"FINISHED"}
-    assert sorted(thing.name for thing in scene.objects) == names
-    assert bpy.ops.keymark.remove_turntable() == {"FINISHED"}
-    left = sorted(name for name in names if "Turntable" not in name)
-    assert sorted(thing.name for thing in scene.objects) == left and len(left) == len(names) - 5
 
 
 def test_the_take_opens_from_its_folder(saved: Saved) -> None:

@@ -200,15 +200,12 @@ def make_library(scene: bpy.types.Scene) -> None:
 
 
 def dress(scene: bpy.types.Scene) -> None:
-    """Settings unlike the defaults, views from other sides, and a second performer."""
+    """Settings unlike the defaults, and a second performer."""
     overlays, timeline = scene.keymark.overlays, scene.keymark.timeline
     overlays.show_paths, overlays.show_legend, overlays.path_points = True, False, {"ankle.L", "head"}
     overlays.path_before, overlays.path_after, overlays.opacity = 7, 9, 0.6
     overlays.line_width, overlays.uncertain_beyond = 2.5, 0.04
     timeline.show_speed, timeline.show_weak_frames = False, False
-    bpy.ops.keymark.set_up_turntable(side="RIGHT", lens=40.0)
-    views = active_take(scene).turntable
-    views.reference_view, views.reference_offset = "FRONT", 3
     bpy.ops.keymark.add_performer()
     other = active_take(scene)
     other.name, other.method, other.stature, other.live_preview = "Partner", "ekf", 1.6, False

@@ -26,7 +26,6 @@ ENGLISH = {
     "operators.bridge.library.pose_assets": "names of data, and the places of errors of core's",
     "operators.bridge.result_files": "names of data blocks",
     "operators.bridge.review_curves": "names and descriptions that are kept in a file",
-    "operators.bridge.turntable": "names of data blocks",
     "operators.keyframes.store_keyframe": "what a notice is about, which nobody sees",
     "operators.library.editing.asset_updates": "a name of data",
     "operators.library.editing.library_from_scene": "an author in a file",

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.operators.shell.takes import active_take
-from keymark.operators.turntable.look_from_side import look_from_side
+from keymark.operators.review.look_from_side import look_from_side
 from mathutils import Matrix, Quaternion, Vector
 
 
