@@ -21,7 +21,6 @@ STEPS = (
     "reconstruct",
     "review",
     "overlays",
-    "turntable",
     "finish",
     "character",
     "library",

@@ -86,7 +86,7 @@ def learn_library(
     chosen = spread_frames(
         shape_vectors(body, posture), time_s, duration_s, count, cyclic=period_s is not None
     )
-    names = _names(about.title, len(chosen))
+    names = numbered_names(about.title, len(chosen))
     tags = _tags(body, posture[chosen])
     motion = LibraryMotion(
         name=about.title,
@@ -190,7 +190,8 @@ def _turned_travel(
     return float(onward[0]), float(onward[1]), heading
 
 
-def _names(title: str, count: int) -> list[str]:
+def numbered_names(title: str, count: int) -> list[str]:
+    """Names of postures that begin with their library's title."""
     digits = len(str(count))
     stem = title[: LONGEST_NAME - 1 - digits].rstrip()
     return [f"{stem} {number:0{digits}}" for number in range(1, count + 1)]

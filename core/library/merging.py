@@ -1,11 +1,10 @@
-"""Comparing, merging and joining libraries; a conflict is never resolved silently.
+"""Merging and joining libraries; a conflict is never resolved silently.
 
 Names are equal where people could not tell them apart.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from enum import Enum
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 from ..body.kinematics import Body
@@ -17,62 +16,27 @@ from .library_file import library_to_json
 from .texts import checked_identifier, name_key, unique_name
 from .transfer import transferred
 
-
-class Choice(Enum):
-    """Resolution of a conflict between two versions."""
-
-    KEEP = "keep"
-    """Mine stays."""
-    REPLACE = "replace"
-    """Theirs replaces it."""
-
-
 Entry = TypeVar("Entry", bound=LibraryPosture | LibraryMotion)
-Choices = Choice | Mapping[str, Choice] | None
-"""One for all, or by name of the posture or motion; without one a conflict is an error."""
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Differences of another version of a library (theirs) from the present one (mine)."""
-
-    newer: bool
-    """Whether theirs has the higher version."""
-    header: bool
-    """Whether title, version, author, license, description, sources, tags or proportions differ."""
-    added: tuple[str, ...]
-    """Names of the postures and motions in theirs alone."""
-    missing: tuple[str, ...]
-    """Those in mine alone."""
-    changed: tuple[str, ...]
-    """Those in both that differ."""
-
-    @property
-    def same(self) -> bool:
-        """Whether both are equal."""
-        return not (self.header or self.added or self.missing or self.changed)
-
-
-def compare(mine: Library, theirs: Library) -> Comparison:
-    """Compare two versions of a library.
+def differing_names(mine: Library, theirs: Library) -> tuple[str, ...]:
+    """Names of the postures and motions that two versions of a library both have and that differ.
 
     Raises:
-        InputError: They have different identifiers.
+        InputError: The libraries have different identifiers.
     """
-    _refuse_others(mine, theirs)
-    there, offered = _rows(mine), _rows(theirs)
-    return Comparison(
-        newer=theirs.version > mine.version,
-        header=_header(mine) != _header(theirs),
-        added=tuple(name for key, (name, _) in offered.items() if key not in there),
-        missing=tuple(name for key, (name, _) in there.items() if key not in offered),
-        changed=tuple(
-            name for key, (name, row) in there.items() if key in offered and offered[key][1] != row
-        ),
+    if mine.identifier != theirs.identifier:
+        raise InputError(
+            f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} have different identifiers "
+            "and cannot be merged; join them to a new library instead"
+        )
+    offered = _rows(theirs)
+    return tuple(
+        name for key, (name, row) in _rows(mine).items() if key in offered and offered[key][1] != row
     )
 
 
-def merge_versions(mine: Library, theirs: Library, choices: Choices = None) -> Library:
+def merge_versions(mine: Library, theirs: Library, replaces: bool | None = None) -> Library:
     """Merge two versions of a library: theirs is fitted to my actor's proportions and added to mine.
 
     The header is that of the higher version. The result's version is one above both, unless it equals one
@@ -81,25 +45,20 @@ def merge_versions(mine: Library, theirs: Library, choices: Choices = None) -> L
     Args:
         mine: The present library.
         theirs: Another one of the same identifier.
-        choices: Resolution of postures and motions that are in both and differ.
+        replaces: Whether theirs replaces what is in both and differs; None where nothing does.
 
     Raises:
-        InputError: A choice is missing, or the libraries have different identifiers.
+        InputError: Some differ and nothing says which counts, or the libraries have different identifiers.
     """
-    _refuse_others(mine, theirs)
     fitted = _fitted(theirs, mine)
-    undecided = [name for name in compare(mine, fitted).changed if _choice(choices, name) is None]
-    if undecided:
+    differing = differing_names(mine, fitted)
+    if differing and replaces is None:
         raise InputError(
-            f"library {shown(mine.identifier)}: {listed(map(shown, undecided), 5)} differ between version "
-            f"{mine.version} and version {theirs.version}; choose for each which to keep"
+            f"library {shown(mine.identifier)}: {listed(map(shown, differing), 5)} differ between version "
+            f"{mine.version} and version {theirs.version}; choose which to keep"
         )
-
-    def pick(name: str) -> bool:
-        return _choice(choices, name) is Choice.REPLACE
-
-    postures = _united(mine.postures, fitted.postures, pick)
-    motions = _united(mine.motions, fitted.motions, pick)
+    postures = _united(mine.postures, fitted.postures, bool(replaces))
+    motions = _united(mine.motions, fitted.motions, bool(replaces))
     spelled = {name_key(posture.name): posture.name for posture in postures}
     head = fitted if theirs.version > mine.version else mine
     whole = replace(
@@ -158,14 +117,6 @@ def _both_licenses(first: str, second: str) -> str:
     return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
 
 
-def _refuse_others(mine: Library, theirs: Library) -> None:
-    if mine.identifier != theirs.identifier:
-        raise InputError(
-            f"libraries {shown(mine.identifier)} and {shown(theirs.identifier)} have different identifiers "
-            "and cannot be merged; join them to a new library instead"
-        )
-
-
 def _fitted(library: Library, other: Library) -> Library:
     """A library transferred to the proportions of another."""
     body = Body(other.actor)
@@ -185,22 +136,10 @@ def _rows(library: Library) -> dict[tuple[str, str], tuple[str, Any]]:
     return rows
 
 
-def _header(library: Library) -> dict[str, Any]:
-    return {
-        name: item for name, item in library_to_json(library).items() if name not in ("postures", "motions")
-    }
-
-
-def _choice(choices: Choices, name: str) -> Choice | None:
-    if choices is None or isinstance(choices, Choice):
-        return choices
-    return {name_key(other): choice for other, choice in choices.items()}.get(name_key(name))
-
-
-def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: Callable[[str], bool]) -> list[Entry]:
+def _united(mine: Sequence[Entry], theirs: Sequence[Entry], replaces: bool) -> list[Entry]:
     """The union: mine in their order, then those in theirs alone."""
     offered = {name_key(entry.name): entry for entry in theirs}
-    kept = [offered.get(name_key(own.name), own) if replaces(own.name) else own for own in mine]
+    kept = [offered.get(name_key(own.name), own) if replaces else own for own in mine]
     there = {name_key(own.name) for own in mine}
     return [*kept, *(entry for entry in theirs if name_key(entry.name) not in there)]
 

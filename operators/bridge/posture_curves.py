@@ -11,7 +11,6 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind
@@ -49,15 +48,6 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
         if model.chain:
             for (path, index), value in zip(_channels(body, model), values[model.name], strict=True):
                 set_posed_keys(channelbag, path, index, model.name, np.array([FRAME]), np.array([value]))
-
-
-def rewrite_posture_curves(action: bpy.types.Action, actor: Actor, posture: Posture) -> None:
-    """Give a pose asset the curves of another posture; it has no others afterwards."""
-    for slot in list(action.slots):
-        action.slots.remove(slot)
-    for layer in list(action.layers):
-        action.layers.remove(layer)
-    write_posture_curves(action, Body(actor), posture)
 
 
 def read_posture_curves(

@@ -1,16 +1,14 @@
-"""Import keyframe libraries: from a .json, or from a .blend of pose assets."""
+"""Load keyframe libraries: from a .json, or from a .blend of pose assets."""
 
 from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.error_reports import reported
 from ..shell.file_browser import browse, chosen_file
 from ..shell.messages import label, say
 from ..shell.requirements import idle
-from .conflict_dialog import CHOICES, WIDTH, Conflict, draw_question
-from .publication import publish, registry_conflicts
 from .registry import refresh
 
 if TYPE_CHECKING:
@@ -18,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
-    """Import a keyframe library from a file, to match footage with it and to pose with it"""
+    """Load a keyframe library from a file, so that poses are found with it from now on"""
 
     bl_idname = "keymark.import_library"
-    bl_label = "Import Library"
+    bl_label = "Load Library"
     bl_options = {"REGISTER"}
     requirements = (idle,)
 
@@ -31,53 +29,52 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
         subtype="FILE_PATH",
         options={"SKIP_SAVE"},
     )
-    existing: bpy.props.EnumProperty(
-        name="Existing",
-        description="Action where another library of the same identifier is at hand",
-        items=CHOICES,
+    replace: bpy.props.BoolProperty(
+        name="Replace",
+        description="Replace another library of the same identifier that is at hand",
         options={"SKIP_SAVE"},
     )
     filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
-    _found: list[Conflict] = []
-
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped; then what to do where its identifier is taken."""
-        if not self.filepath:
-            return browse(self, context)
-        with reported(self):
-            self._found = registry_conflicts(self._read())
-            if not self._found:
-                return self.execute(context)
-            self.existing = "KEEP"
-            return context.window_manager.invoke_props_dialog(self, width=WIDTH, confirm_text="Continue")
-        return {"CANCELLED"}
+        """Ask for the file, unless one was dropped."""
+        return self.execute(context) if self.filepath else browse(self, context)
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the question."""
-        if self._found:
-            draw_question(self.layout, self, self._found)
-
-    def run(self, context: bpy.types.Context) -> set[str] | None:
+    def run(self, context: bpy.types.Context) -> None:
         """Read the whole file first, then write its libraries into the user's folder."""
-        libraries = self._read()
-        if self.existing == "ASK" and self.options.is_invoke and registry_conflicts(libraries):
-            # The file was chosen in a file browser: ask now.
-            return bpy.ops.keymark.import_library("INVOKE_DEFAULT", filepath=self.filepath)
-        published = publish(libraries, self.existing)
-        titles = ", ".join(f"'{library.title}'" for library in published)
-        if published:
-            say(self, "INFO", "Imported {titles}", titles=titles)
-        else:
-            refresh(libraries[0].identifier)  # the list points to it
-            say(self, "INFO", "Nothing to import: the library is at hand already")
-        return None
-
-    def _read(self) -> "tuple[Library, ...]":
+        from ...core.library.library_file import library_digest
         from ..bridge.library.library_file import read_libraries
+        from .registry_files import find_registered, write_to_registry
 
-        return read_libraries(chosen_file(self, label("a keyframe library, .json or .blend")))
+        libraries = read_libraries(chosen_file(self, label("a keyframe library, .json or .blend")))
+        new = []
+        for library in libraries:
+            there = find_registered(library.identifier)
+            if there is None or library_digest(there) != library_digest(library):
+                new.append(library)
+                if there is not None and not self.replace:
+                    raise InputError(_conflict(library, there))
+        write_to_registry(new)
+        refresh(libraries[0].identifier)  # the list points to it
+        titles = ", ".join(f"'{library.title}'" for library in new)
+        if new:
+            say(self, "INFO", "Loaded {titles}", titles=titles)
+        else:
+            say(self, "INFO", "Nothing to load: the library is at hand already")
+
+
+def _conflict(new: "Library", there: "Library") -> str:
+    return label(
+        "'{title}' ({identifier}) is there in version {version} by {author}, and this is version "
+        "{new_version} by {new_author}; load it with Replace, or give it another identifier",
+        title=there.title,
+        identifier=there.identifier,
+        version=there.version,
+        author=there.author,
+        new_version=new.version,
+        new_author=new.author,
+    )
 
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

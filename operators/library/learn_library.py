@@ -42,12 +42,6 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         min=0,
         max=1000,
     )
-    for_matching: bpy.props.BoolProperty(
-        name="Use for Matching",
-        description="Publish the library among your own at once, so that footage can be matched with it",
-        default=True,
-    )
-
     learned_as: bpy.props.StringProperty(
         name="Learned As",
         description="Identifier that the library was given, by which learning again replaces it",
@@ -70,33 +64,27 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         for name in ("title", "author", "license"):
             layout.prop(self, name)
         layout.prop(self, "count", text="Postures (0: Automatic)")
-        layout.prop(self, "for_matching")
 
     def run(self, context: bpy.types.Context) -> None:
-        """Learn the library, add it to the scene as pose assets, and publish it where that is wanted."""
+        """Learn the library, and write it into the user's folder."""
         from ...core.library.learning import LibraryMetadata
         from ..bridge.library.library_from_action import library_from_action
-        from .editing.library_to_scene import add_library
-        from .registry_files import registered_identifiers, replace_in_registry
+        from .registry_files import registered_identifiers, write_to_registry
 
         take, render = active_take(context.scene), context.scene.render
         title = self.title.strip() or take.name
-        taken = registered_identifiers()
-        taken |= {library.identifier for library in context.scene.keymark.libraries}
         about = LibraryMetadata(
             title=title,
             author=self.author.strip() or "Unknown",
             license=self.license.strip(),
-            identifier=self.learned_as or identifier_from(title, taken),
+            identifier=self.learned_as or identifier_from(title, registered_identifiers()),
         )
         action = take.finish.action or take.motion_action
         frame_s = render.fps_base / render.fps
         library = library_from_action(take.armature, action, frame_s, about, self.count or None)
         self.learned_as = library.identifier
-        if self.for_matching:
-            replace_in_registry(library)
-            refresh(library.identifier)
-        add_library(context.scene, library)
+        write_to_registry([library])
+        refresh(library.identifier)
         warn_if_outdated(self, take)
         (learned,) = library.motions
         count, seconds = len(library.postures), learned.duration_s

@@ -5,7 +5,6 @@ was found then.
 """
 
 from contextlib import suppress
-from typing import TYPE_CHECKING
 from zlib import crc32
 
 import bpy
@@ -13,9 +12,6 @@ from bpy.app import timers
 
 from ..shell.redraw import redraw_sidebars
 from . import user_folder
-
-if TYPE_CHECKING:
-    from ...core.library.library import Library
 
 SOON_S = 0.1
 """Delay before the folders are read, so that the panel is drawn first."""
@@ -28,6 +24,12 @@ def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
     """The entry that is chosen in the list."""
     listed = context.window_manager.keymark_shelf
     return listed.libraries[listed.active] if listed.active < len(listed.libraries) else None
+
+
+def chosen_identifier(context: bpy.types.Context) -> str:
+    """Identifier of the library that is chosen in the list; empty where there is none."""
+    entry = chosen_entry(context)
+    return "" if entry is None else str(entry.name)
 
 
 def library_items(_properties: object, context: bpy.types.Context | None) -> list[Item]:
@@ -59,26 +61,19 @@ def refresh(choose: str = "") -> None:
     from ...core.library.registry import registered_libraries
     from .registry_files import folders
 
-    manager = bpy.context.window_manager
-    listed, own = manager.keymark_shelf, user_folder.own_folder()
-    before = chosen_entry(bpy.context)
-    wanted = choose or (before.name if before is not None else "")
+    listed, own = bpy.context.window_manager.keymark_shelf, user_folder.own_folder()
+    wanted = choose or chosen_identifier(bpy.context)
     listed.libraries.clear()
     for found in registered_libraries(folders()):
         item = listed.libraries.add()
         item.name, item.title, item.problem = found.identifier, found.title, found.problem
-        item.version, item.is_own, item.path = found.version, found.path.parent == own, str(found.path)
+        item.version, item.is_own = found.version, found.path.parent == own
         if found.library is not None:
-            _describe(item, found.library)
+            library = found.library
+            item.author, item.license, item.description = library.author, library.license, library.description
+            item.motions, item.postures = len(library.motions), len(library.postures)
     names = [item.name for item in listed.libraries]
     listed.active = names.index(wanted) if wanted in names else 0
-
-
-def _describe(item: bpy.types.PropertyGroup, library: "Library") -> None:
-    item.author, item.license, item.description = library.author, library.license, library.description
-    item.motions = len(library.motions)
-    for posture in library.postures:
-        item.postures.add().name = posture.name
 
 
 def refresh_if_empty() -> None:

@@ -37,11 +37,6 @@ def registered_identifiers() -> set[str]:
     return {entry.identifier for entry in registered_libraries(folders())}
 
 
-def shipped_libraries() -> list[Library]:
-    """All libraries that come with Keymark."""
-    return list(find_libraries(EVERY_LIBRARY, [SHIPPED]))
-
-
 def all_libraries() -> Sequence[Library]:
     """All registered libraries; the same objects for as long as no file changes.
 
@@ -71,15 +66,6 @@ def write_to_registry(libraries: Iterable[Library]) -> None:
     files = [(_own_file(user_folder.own_folder(), library.identifier), library) for library in libraries]
     for file, library in files:
         write_library(file, library)
-
-
-def replace_in_registry(library: Library) -> None:
-    """Write a library into the user's folder under its own file name.
-
-    Raises:
-        ConversionError: The file cannot be written.
-    """
-    write_library(library_path(user_folder.own_folder(), library.identifier), library)
 
 
 def _own_file(folder: Path, identifier: str) -> Path:

@@ -5,10 +5,6 @@ import bpy
 from . import registry
 
 
-class KEYMARK_PG_shelved_posture(bpy.types.PropertyGroup):
-    """A posture of a registered library, by its name."""
-
-
 class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     """A registered library; `name` is its identifier."""
 
@@ -18,17 +14,9 @@ class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
     license: bpy.props.StringProperty(name="License")
     description: bpy.props.StringProperty(name="Description")
     motions: bpy.props.IntProperty(name="Motions")
-    path: bpy.props.StringProperty(name="File")
     is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
     problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
-    postures: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved_posture)
-
-
-def _chosen(listed: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Keep the posture to apply one of the chosen library's."""
-    postures = listed.libraries[listed.active].postures if listed.active < len(listed.libraries) else ()
-    if listed.posture not in [posture.name for posture in postures]:
-        listed.posture = postures[0].name if len(postures) else ""
+    postures: bpy.props.IntProperty(name="Postures")
 
 
 class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
@@ -36,21 +24,11 @@ class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
 
     libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
     active: bpy.props.IntProperty(
-        name="Active Library",
-        description="The library that is chosen in the list",
-        default=0,
-        min=0,
-        update=_chosen,
-    )
-    posture: bpy.props.StringProperty(
-        name="Posture", description="The posture of the chosen library to apply to the actor"
-    )
-    mirrored: bpy.props.BoolProperty(
-        name="Mirrored", description="Apply the posture with left and right exchanged"
+        name="Active Library", description="The library that is chosen in the list", default=0, min=0
     )
 
 
-CLASSES = (KEYMARK_PG_shelved_posture, KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+CLASSES = (KEYMARK_PG_shelved, KEYMARK_PG_shelf)
 
 
 def register() -> None:

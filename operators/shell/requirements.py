@@ -99,12 +99,6 @@ def motion(context: bpy.types.Context) -> str | None:
     return None if take and take.motion_action else label("Reconstruct the motion first")
 
 
-def turntable(context: bpy.types.Context) -> str | None:
-    """The take has a turntable."""
-    take = find_take(context.scene)
-    return None if take and take.turntable.collection else label("Set up the turntable first")
-
-
 def weak_frames(context: bpy.types.Context) -> str | None:
     """The review found frames worth another keyframe."""
     take = find_take(context.scene)
@@ -113,18 +107,10 @@ def weak_frames(context: bpy.types.Context) -> str | None:
     return None if len(take.review.weak_frames) else label("No frame needs another keyframe")
 
 
-def scene_library(context: bpy.types.Context) -> str | None:
-    """The scene has a keyframe library of its own."""
-    return None if len(context.scene.keymark.libraries) else label("Begin a keyframe library first")
-
-
 def registered_library(context: bpy.types.Context) -> str | None:
     """The registry has a keyframe library."""
-    return (
-        None
-        if len(context.window_manager.keymark_shelf.libraries)
-        else label("Import a keyframe library first")
-    )
+    there = len(context.window_manager.keymark_shelf.libraries)
+    return None if there else label("Load a keyframe library first")
 
 
 def object_mode_possible(context: bpy.types.Context) -> str | None:

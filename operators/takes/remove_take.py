@@ -9,9 +9,6 @@ from ..shell.messages import label
 from ..shell.requirements import idle
 from ..shell.takes import active_take, find_take
 
-TURNTABLE_TYPES = {"CAMERA", "EMPTY"}
-"""Types of the objects that a turntable consists of."""
-
 
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
@@ -67,8 +64,6 @@ def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
             yield from _data_of(value)
         elif isinstance(value, bpy.types.ID):
             yield value
-            if isinstance(value, bpy.types.Collection):  # the turntable's
-                yield from (each for each in value.objects if each.type in TURNTABLE_TYPES)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_take,))

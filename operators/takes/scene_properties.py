@@ -1,9 +1,8 @@
-"""Keymark's properties of a scene: its takes and keyframe libraries, and which are active."""
+"""Keymark's properties of a scene: its takes, and which is active."""
 
 import bpy
 
 from ..footage.take_footage import is_missing
-from ..library.editing.properties import KEYMARK_PG_library
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..overlays.timeline_properties import KEYMARK_PG_timeline
 from ..shell.takes import find_take, show_active_take
@@ -30,10 +29,6 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         default=0,
         min=0,
         update=_active_take_changed,
-    )
-    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_library)
-    active_library: bpy.props.IntProperty(
-        name="Active Library", description="The keyframe library that is worked on", default=0, min=0
     )
     overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
     timeline: bpy.props.PointerProperty(type=KEYMARK_PG_timeline)

@@ -23,7 +23,6 @@ from ..shell.contradictions import KEYMARK_PG_contradiction
 from ..shell.messages import label
 from ..shell.notices import KEYMARK_PG_notice
 from ..shell.takes import unique_name
-from ..turntable.properties import KEYMARK_PG_turntable
 
 METHODS = (
     ("map", "Whole Clip", "Estimate all frames at once; the most accurate"),
@@ -158,7 +157,6 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         description="What the camera was found from, and how sure that is",
         options={"HIDDEN"},
     )
-    turntable: bpy.props.PointerProperty(type=KEYMARK_PG_turntable)
     armature: bpy.props.PointerProperty(
         name="Actor",
         description="The performer's armature, as Keymark builds it; other characters come in the last step",

@@ -1,4 +1,7 @@
-"""Files of earlier versions: they open as they were saved, and the work goes on in them."""
+"""Files of earlier versions: they open as they were saved, and the work goes on in them.
+
+Those in the folder `saved` were written by the version that it is called after, in Blender 4.5.
+"""
 
 import json
 import os
@@ -65,8 +68,13 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     return scene.keymark.takes[scene.keymark.active_take]
 
 
-DROPPED = ("].matching.ranking",)
-"""Properties of then that nothing needs any more: libraries are not ranked, all of them take part."""
+DROPPED = (
+    "].matching.ranking",  # libraries are not ranked, all of them take part
+    "].turntable.",
+    "keymark.libraries",  # the library is in its pose assets
+    "keymark.active_library",
+)
+"""Properties of then that nothing needs any more."""
 REPLACED = {"].matching.library_name": "auto", "].matching.library": "auto"}
 """Values of then that say what another button says now: to find keyframes with all libraries is Pose All."""
 
@@ -111,13 +119,6 @@ def keys_by_type(curve: bpy.types.FCurve) -> dict[str, int]:
     """The number of keys of each type in a curve."""
     types = [key.type for key in curve.keyframe_points]
     return {kind: types.count(kind) for kind in sorted(set(types))}
-
-
-def exported_library(folder: Path) -> dict[str, Any]:
-    """The library made in the scene, exported to a file."""
-    path = folder / "exported.json"
-    assert bpy.ops.keymark.export_library(filepath=str(path)) == {"FINISHED"}
-    return json.loads(path.read_text(encoding="utf-8"))
 
 
 def test_every_property_has_its_value(saved: Saved, scene: bpy.types.Scene) -> None:
@@ -237,20 +238,12 @@ def test_the_review_leads_to_its_weak_frames(saved: Saved, scene: bpy.types.Scen
     assert len(keyed(active_take(scene))) == before + 1
 
 
-def test_the_library_in_the_file_says_the_same_and_grows(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Exported, it is the file of then; another posture joins it, and an old one poses the actor."""
+def test_the_library_in_the_file_is_in_its_pose_assets(saved: Saved, scene: bpy.types.Scene) -> None:
+    """Saved, it is the file of then."""
     written = json.loads((saved.folder / "shoot" / "gestures.json").read_text(encoding="utf-8"))
-    assert exported_library(saved.folder) == written
-    scene.frame_set(1)
-    upright = [list(row) for row in active_take(scene).armature.pose.bones["thigh.L"].matrix_basis]
-    assert bpy.ops.keymark.apply_posture(posture="Left Knee") == {"FINISHED"}
-    raised = active_take(scene).armature.pose.bones["thigh.L"].matrix_basis
-    assert abs(raised[1][2] - upright[1][2]) > 0.3
-    assert bpy.ops.keymark.add_posture(posture="Raised", tags="new") == {"FINISHED"}
-    grown = exported_library(saved.folder)
-    names = [posture["name"] for posture in written["postures"]]
-    assert [posture["name"] for posture in grown["postures"]] == [*names, "Raised"]
-    assert grown["postures"][: len(names)] == written["postures"] and grown["motions"] == written["motions"]
+    path = saved.folder / "saved.json"
+    assert bpy.ops.keymark.export_library(filepath=str(path), source="ASSETS") == {"FINISHED"}
+    assert json.loads(path.read_text(encoding="utf-8")) == written
 
 
 def test_the_motion_is_exported(saved: Saved, scene: bpy.types.Scene) -> None:
@@ -258,16 +251,6 @@ def test_the_motion_is_exported(saved: Saved, scene: bpy.types.Scene) -> None:
     path = saved.folder / "motion.bvh"
     assert bpy.ops.keymark.export_motion(format="BVH", filepath=str(path)) == {"FINISHED"}
     assert f"Frames: {scene.frame_end}" in path.read_text(encoding="utf-8")
-
-
-def test_the_turntable_is_known_as_keymarks(saved: Saved, scene: bpy.types.Scene) -> None:
-    """Set up anew it takes the place of the one in the file; removed, it leaves nothing."""
-    names = sorted(thing.name for thing in scene.objects)
-    assert bpy.ops.keymark.set_up_turntable() == {"FINISHED"}
-    assert sorted(thing.name for thing in scene.objects) == names
-    assert bpy.ops.keymark.remove_turntable() == {"FINISHED"}
-    left = sorted(name for name in names if "Turntable" not in name)
-    assert sorted(thing.name for thing in scene.objects) == left and len(left) == len(names) - 5
 
 
 def test_the_take_opens_from_its_folder(saved: Saved) -> None:

@@ -59,8 +59,6 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
         ("reconstruct again", ops.reconstruct),
         ("bake_motion", ops.bake_motion),
         ("mark_asset", lambda: (_no_catalog(), ops.mark_asset())),
-        ("set_up_turntable", ops.set_up_turntable),
-        ("remove_turntable", ops.remove_turntable),
         ("add_performer", ops.add_performer),
         ("remove_take", ops.remove_take),
     ]

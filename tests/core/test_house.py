@@ -41,7 +41,7 @@ ROOMS = (
     ("operators.matching",),
     ("operators.keyframes", "operators.review"),
     ("operators.reconstruct",),
-    ("operators.finish", "operators.turntable"),
+    ("operators.finish",),
     ("operators.character",),
     ("operators.takes", "operators.cli"),
 )

@@ -35,7 +35,7 @@ def listed(source: str) -> list[str]:
 
 
 def topic_of(name: str) -> str:
-    """`operators.library.editing.add_motion` belongs to `operators.library`."""
+    """`operators.bridge.library.pose_assets` belongs to `operators.bridge`."""
     return ".".join(name.split(".")[:2])
 
 

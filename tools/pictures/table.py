@@ -29,7 +29,6 @@ Box = tuple[int, int, int, int]
 VIEWPORT: Box = (0, 27, 1315, 980)
 """Left, top, right and bottom, on a session's screen, of the viewport with sidebar and timeline [px]."""
 SIDEBAR: Box = (1029, 78, 1315, 804)
-BROWSER: Box = (0, 27, 1315, 802)
 SHOWN_WIDTH = 1053
 """Width to which a part of the screen is reduced, where it is wider [px]."""
 
@@ -76,8 +75,6 @@ SCREENSHOTS: Mapping[str, Screenshot] = {
     "workflow_finish.jpg": Screenshot("demo", "finish"),
     "workflow_character.jpg": Screenshot("demo", "retargeted"),
     "libraries_match.jpg": Screenshot("library", "posed_all"),
-    "libraries_panel.jpg": Screenshot("shelf", "libraries", SIDEBAR),
-    "libraries_assets.jpg": Screenshot("shelf", "assets", BROWSER),
 }
 """Pictures that show Blender."""
 ALL = (*DRAWN, *SCREENSHOTS)

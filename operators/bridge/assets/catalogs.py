@@ -35,12 +35,16 @@ def catalog_file() -> Path:
             "the asset catalog is kept beside the .blend, which has not been saved; save it first, or leave "
             "Catalog empty"
         )
-    folder = Path(bpy.data.filepath).parent
+    return asset_root(Path(bpy.data.filepath).parent) / NAME
+
+
+def asset_root(folder: Path) -> Path:
+    """The asset library of the preferences that a folder lies in; the folder itself where there is none."""
     for library in bpy.context.preferences.filepaths.asset_libraries:
         root = Path(bpy.path.abspath(library.path)) if library.path else None
         if root is not None and root in (folder, *folder.parents):
-            return root / NAME
-    return folder / NAME
+            return root
+    return folder
 
 
 def catalog_identifier(catalog: str) -> str:

@@ -1,12 +1,11 @@
 """Keyframe libraries as .blend files of pose assets with catalogs: written, and read from untrusted files."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
 
-from ....core.arrays import Image
 from ....core.errors import InputError
 from ....core.library.library import Library
 from ....core.library.library_fields import MOST_POSTURES
@@ -19,9 +18,7 @@ LARGEST_BYTES = 256 * 2**20
 """Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
 
 
-def write_library_blend(
-    path: Path, library: Library, root: Path | None = None, pictures: Iterable[Image] | None = None
-) -> None:
+def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
     """Write a library's pose assets and nothing else into a .blend, and its catalogs into their file.
 
     The open file is not touched. Both files appear whole, or neither.
@@ -31,7 +28,6 @@ def write_library_blend(
         library: The library.
         root: Folder of the asset library that `path` lies in, whose catalogs are kept there; by default that
             of the .blend itself.
-        pictures: A picture of each posture; drawn by default.
 
     Raises:
         InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
@@ -40,7 +36,7 @@ def write_library_blend(
     """
     catalogs = [catalog_of(library, posture) for posture in library.postures]
     with bpy.data.temp_data() as data:
-        assets = zip(add_assets(library, data, pictures), catalogs, strict=True)
+        assets = zip(add_assets(library, data), catalogs, strict=True)
         write_asset_blend(path, root or path.parent, data, assets)
 
 

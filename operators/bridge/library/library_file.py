@@ -1,14 +1,11 @@
 """Keyframe libraries in files, by their suffix: .json, or .blend with pose assets."""
 
-from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.library.library import Library
-from ....core.library.library_file import library_from_json, library_to_json, read_library, write_library
+from ....core.library.library_file import read_library, write_library
 from .library_blend import read_library_blend, write_library_blend
-from .pose_assets import present_motions
 
 JSON, BLEND = ".json", ".blend"
 
@@ -27,8 +24,13 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
     raise InputError("{path}: is neither a .json nor a .blend; libraries are kept in these", path=path)
 
 
-def write_library_file(path: Path, library: Library) -> None:
+def write_library_file(path: Path, library: Library, root: Path) -> None:
     """Write a library in the format of the file's suffix.
+
+    Args:
+        path: The file.
+        library: The library.
+        root: Folder of the asset library that a .blend lies in.
 
     Raises:
         InputError: The file is of another kind, or the library is incomplete.
@@ -36,7 +38,7 @@ def write_library_file(path: Path, library: Library) -> None:
     """
     suffix = path.suffix.lower()
     if suffix == BLEND:
-        write_library_blend(path, library)
+        write_library_blend(path, library, root)
     elif suffix == JSON:
         write_library(path, library)
     else:
@@ -45,21 +47,3 @@ def write_library_file(path: Path, library: Library) -> None:
             path=path,
             suffix=suffix or "nothing",
         )
-
-
-def with_postures(library: Library, names: Iterable[str]) -> Library:
-    """A library reduced to some of its postures; motions keep the steps to these.
-
-    Raises:
-        InputError: None of its postures is named.
-    """
-    wanted = {name: name for name in names}
-    kept = tuple(posture for posture in library.postures if posture.name in wanted)
-    if not kept:
-        raise InputError(
-            "no posture of '{library}' is selected; select some, or take all", library=library.title
-        )
-    document = library_to_json(replace(library, postures=kept))
-    document["motions"] = present_motions(document.get("motions", []), wanted)
-    motions = library_from_json(document, f"library '{library.title}'").motions
-    return replace(library, postures=kept, motions=motions)

@@ -6,7 +6,7 @@ changes of an asset's curves, name and tags take precedence over the text.
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
@@ -14,7 +14,6 @@ from typing import Any
 
 import bpy
 
-from ....core.arrays import Image
 from ....core.body.actor import Actor
 from ....core.body.kinematics import Body
 from ....core.errors import InputError
@@ -46,60 +45,19 @@ def catalog_of(library: Library, posture: LibraryPosture) -> str:
     return "/".join([CATALOGS, *("".join("-" if a in ":/\\" else a for a in name) for name in names)])
 
 
-def draw_pictures(library: Library) -> Iterator[Image]:
-    """The picture of each posture, in order; one takes a few hundredths of a second."""
-    return (posture_picture(_body(library), posture.posture) for posture in library.postures)
+def add_assets(library: Library, data: bpy.types.BlendData | None = None) -> list[bpy.types.Action]:
+    """Add an Action for each posture, in order, marked as asset, to a file; to the open one by default."""
+    made = []
+    for order, posture in enumerate(library.postures):
+        action = (data or bpy.data).actions.new(posture.name)
+        write_posture_curves(action, _body(library), posture.posture)
+        _stamp_asset(action, library, posture, order)
+        made.append(action)
+    return made
 
 
-def add_assets(
-    library: Library, data: bpy.types.BlendData | None = None, pictures: Iterable[Image] | None = None
-) -> list[bpy.types.Action]:
-    """Add an Action for each posture, in order, marked as asset.
-
-    Args:
-        library: The library.
-        data: The file to add to; the open one by default.
-        pictures: A picture of each posture; drawn by default.
-    """
-    drawn = draw_pictures(library) if pictures is None else pictures
-    return [
-        add_asset(library, posture, order, picture, data)
-        for order, (posture, picture) in enumerate(zip(library.postures, drawn, strict=True))
-    ]
-
-
-def add_asset(
-    library: Library,
-    posture: LibraryPosture,
-    order: int,
-    picture: Image | None = None,
-    data: bpy.types.BlendData | None = None,
-) -> bpy.types.Action:
-    """Add an Action for a posture of a library, marked as asset; its picture is drawn by default."""
-    action = (data or bpy.data).actions.new(posture.name)
-    write_posture_curves(action, _body(library), posture.posture)
-    if picture is None:
-        picture = posture_picture(_body(library), posture.posture)
-    stamp_asset(action, library, posture, order, picture)
-    return action
-
-
-def stamp_asset(
-    action: bpy.types.Action,
-    library: Library,
-    posture: LibraryPosture,
-    order: int,
-    picture: Image | None = None,
-) -> None:
-    """Write into an Action which posture of which library it is, for people and for `library_from_assets`.
-
-    Args:
-        action: The Action; its curves stay.
-        library: The library, or one with the same details.
-        posture: The posture of the Action's curves, with its name.
-        order: Its index among the library's postures.
-        picture: (S, S, 3) blue, green, red; None keeps the present one.
-    """
+def _stamp_asset(action: bpy.types.Action, library: Library, posture: LibraryPosture, order: int) -> None:
+    """Write into an Action which posture of which library it is, for people and for `library_from_assets`."""
     details = AssetDetails(
         catalog=catalog_identifier(catalog_of(library, posture)),
         tags=posture.tags,
@@ -107,26 +65,17 @@ def stamp_asset(
         license=library.license,
         description=library.description,
     )
-    mark_asset(action, details, picture)
+    mark_asset(action, details, posture_picture(_body(library), posture.posture))
     alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
     asset = {"name": action.name, "tags": _asset_tags(action)}
     action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
-    stamp_header(action, _header_text(library))
-
-
-def header_text(library: Library) -> str:
-    """A library without its postures, as JSON."""
-    return _text(library_to_json(replace(library, postures=())))
+    action[HEADER] = _header_text(library)
 
 
 @lru_cache(maxsize=4)
 def _header_text(library: Library) -> str:
-    return header_text(library)
-
-
-def stamp_header(action: bpy.types.Action, header: str) -> None:
-    """Write the library's header into an Action."""
-    action[HEADER] = header
+    """A library without its postures, as JSON."""
+    return _text(library_to_json(replace(library, postures=())))
 
 
 def is_posture(action: bpy.types.Action) -> bool:
@@ -195,22 +144,22 @@ def _merged(actions: Sequence[bpy.types.Action]) -> Library:
     for action in actions:
         posture = read_asset(action)
         name = unique_name(posture.name, [other.name for other in postures])
-        now.setdefault(stored_name(action), name)
+        now.setdefault(_stored_name(action), name)
         postures.append(replace(posture, name=name))
     one = library_from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))
     document = library_to_json(replace(one, postures=tuple(postures)))
-    motions = present_motions(header.get("motions", []), now)
+    motions = _present_motions(header.get("motions", []), now)
     return library_from_json({**document, "motions": motions}, f"library {one.identifier!r}")
 
 
-def stored_name(action: bpy.types.Action) -> str:
+def _stored_name(action: bpy.types.Action) -> str:
     """The name of a pose asset's posture in the motions of its header."""
     alone = _alone(action)
     first = alone[0] if isinstance(alone, list) and alone else {}
     return str(first.get("name", "")) if isinstance(first, Mapping) else ""
 
 
-def present_motions(motions: Any, now: Mapping[str, str]) -> Any:
+def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
     """Motions in JSON, reduced to the postures that are there, under their present names.
 
     Args:

@@ -198,10 +198,9 @@ def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Pat
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
     assert bpy.ops.keymark.export_motion(format="BVH", filepath=str(tmp_path / "motion.bvh")) == {"FINISHED"}
     assert (tmp_path / "motion.bvh").read_text().startswith("HIERARCHY")
-    assert bpy.ops.keymark.set_up_turntable() == {"FINISHED"}
     before = len(bpy.data.actions), len(bpy.data.cameras)
     assert bpy.ops.keymark.remove_take(delete_data=True) == {"FINISHED"}
-    assert len(bpy.data.objects) == 0 and min(before) > 1
+    assert len(bpy.data.objects) == 0 and min(before) > 0
 
 
 def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:  # noqa: ANN001

@@ -1,4 +1,4 @@
-"""Libraries learned from the motion of an Action, in the scene and in the registry."""
+"""Libraries learned from the motion of an Action."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +15,6 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.library import user_folder
-from keymark.operators.library.editing.library_from_scene import library_from_scene
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50
@@ -55,10 +54,8 @@ def take(registered: None, body: Body, posture: Posture) -> bpy.types.PropertyGr
     return result
 
 
-def test_a_motion_becomes_a_library_of_pose_assets_and_a_file(
-    take: bpy.types.PropertyGroup, posture: Posture, own: Path
-) -> None:
-    """Each posture is the motion's at its time; scene and file hold the same; the title is the take."""
+def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Posture, own: Path) -> None:
+    """Each posture is the motion's at its time; the title is the take."""
     assert bpy.ops.keymark.learn_library(count=12) == {"FINISHED"}
     (file,) = own.iterdir()
     library = read_library(file)
@@ -73,10 +70,6 @@ def test_a_motion_becomes_a_library_of_pose_assets_and_a_file(
     apart = apart.reshape(len(frames), -1, 3)
     apart -= apart.mean(axis=(0, 1)) * [0.0, 0.0, 1.0]  # the floor is found from the feet
     assert np.abs(apart).max() < 2e-3
-    (group,) = bpy.context.scene.keymark.libraries
-    here = library_from_scene(group)
-    assert here.motions == library.motions
-    assert all(entry.action.asset_data is not None for entry in group.postures)
 
 
 def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup, own: Path) -> None:
@@ -84,13 +77,11 @@ def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup
     for _ in range(2):
         assert bpy.ops.keymark.learn_library(title="Swing", author="Anna", license="CC0-1.0") == {"FINISHED"}
     assert sorted(file.name for file in own.iterdir()) == ["swing.json", "swing_2.json"]
-    assert [library.identifier for library in bpy.context.scene.keymark.libraries] == ["swing", "swing_2"]
 
 
 def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup, own: Path) -> None:
     """The redo panel goes back and does it anew: the file is the one it wrote before."""
     assert bpy.ops.keymark.learn_library(title="Swing") == {"FINISHED"}
-    bpy.context.scene.keymark.libraries.clear()
     assert bpy.ops.keymark.learn_library(title="Swing", count=14, learned_as="swing") == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["swing.json"]
     assert len(read_library(own / "swing.json").postures) == 14
@@ -103,13 +94,6 @@ def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, ow
         with pytest.raises(RuntimeError, match=sentence):
             bpy.ops.keymark.learn_library(**wrong)
     assert list(own.iterdir()) == [] and len(bpy.data.actions) == actions
-    assert len(bpy.context.scene.keymark.libraries) == 0
-
-
-def test_it_may_stay_in_the_scene_alone(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """Without Use for Matching no file is written."""
-    assert bpy.ops.keymark.learn_library(for_matching=False) == {"FINISHED"}
-    assert list(own.iterdir()) == [] and len(bpy.context.scene.keymark.libraries) == 1
 
 
 @pytest.mark.usefixtures("registered")

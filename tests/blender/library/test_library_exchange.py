@@ -1,21 +1,28 @@
-"""Libraries that come and go: imported, dropped, installed, and never overwritten silently."""
+"""Libraries that come and go: loaded, dropped, edited as pose assets, saved, never overwritten silently."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
+from keymark.core.body.soles import lower_sole_m
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.library_file import write_library
+from keymark.core.library.library_file import library_to_json, read_library, write_library
 from keymark.core.library.registry import registered_libraries
-from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
+from keymark.core.prior.keyframes import Keyframe
+from keymark.operators.bridge.actions import new_channelbag
+from keymark.operators.bridge.armature import build_armature
+from keymark.operators.bridge.keyframes import write_keyframes
+from keymark.operators.bridge.library.library_blend import read_library_blend
+from keymark.operators.bridge.library.pose_assets import add_assets
+from keymark.operators.bridge.posture_curves import write_posture_curves
 from keymark.operators.library import registry, registry_files, user_folder
-from keymark.operators.library.conflicts import resolve_conflicts
-from keymark.operators.library.editing.library_to_scene import add_library
-from keymark.operators.library.registry_files import find_registered, load_registered
+from keymark.operators.library.registry_files import load_registered
 from keymark.operators.shell.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -32,25 +39,13 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
 
 
 @pytest.fixture
-def assets(registered: None, tmp_path: Path) -> Iterator[Path]:
-    """The user's only asset library."""
-    listed = bpy.context.preferences.filepaths.asset_libraries
-    for library in list(listed):
-        listed.remove(library)
-    folder = tmp_path / "assets"
-    mine = listed.new(name="Mine", directory=str(folder))
-    yield folder
-    listed.remove(mine)
-
-
-@pytest.fixture
 def library(random_posture: RandomPosture) -> Library:
     """A library of two postures."""
     postures = tuple(LibraryPosture(name, random_posture(seed)) for seed, name in enumerate(("A", "B")))
     return Library("small", "Small", 2, "A. Person", "CC0-1.0", Actor.from_stature(1.7), postures)
 
 
-def imported(library: Library, folder: Path, **settings: str) -> set[str]:
+def imported(library: Library, folder: Path, **settings: bool) -> set[str]:
     """Write a library and import it."""
     write_library(folder / "offered.json", library)
     return set(bpy.ops.keymark.import_library(filepath=str(folder / "offered.json"), **settings))
@@ -70,38 +65,14 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
     assert imported(library, tmp_path) == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["small.json"]
     listed = bpy.context.window_manager.keymark_shelf.libraries
-    assert [(item.name, item.is_own, [p.name for p in item.postures]) for item in listed] == [
-        ("small", True, ["A", "B"])
-    ]
+    assert [(item.name, item.is_own, item.postures) for item in listed] == [("small", True, 2)]
     assert [item[0] for item in registry.library_items(None, bpy.context)] == ["small"]
     before = (own / "small.json").stat().st_mtime_ns
     assert imported(library, tmp_path) == {"FINISHED"}
     assert (own / "small.json").stat().st_mtime_ns == before
-    bpy.ops.keymark.discard_library()
-    assert list(own.iterdir()) == [] and not len(listed)
-
-
-@pytest.mark.parametrize(
-    ("choice", "expected"),
-    [
-        ("KEEP", [("small", "Small", 2, 2)]),
-        ("REPLACE", [("small", "Small", 3, 2)]),
-        ("MERGE", [("small", "Small", 4, 3)]),
-        ("BOTH", [("small", "Small", 2, 2), ("small_2", "Small 2", 3, 2)]),
-    ],
-)
-def test_another_version_is_asked_about(
-    own: Path, library: Library, tmp_path: Path, choice: str, expected: list[tuple[str, str, int, int]]
-) -> None:
-    """Without a choice nothing changes and the report names the library; then the choice is applied."""
-    imported(library, tmp_path)
-    first, second = library.postures
-    newer = replace(library, version=3, postures=(first, replace(second, name="C")))
-    with pytest.raises(RuntimeError, match="there in version 2 by A. Person; this is version 3 .* newer"):
-        imported(newer, tmp_path)
-    assert titles(own) == [("small", "Small", 2, 2)]
-    imported(newer, tmp_path, existing=choice)
-    assert titles(own) == expected
+    (own / "small.json").unlink()
+    bpy.ops.keymark.refresh_shelf()
+    assert not len(listed)
 
 
 def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Path) -> None:
@@ -123,90 +94,6 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
         bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "bad.json"))
 
 
-def test_a_library_is_installed_for_the_asset_browser(
-    own: Path, assets: Path, library: Library, tmp_path: Path
-) -> None:
-    """A .blend of its own, with catalogs at the root; another version is asked about; nothing stays."""
-    imported(library, tmp_path)
-    before = set(bpy.data.user_map())
-    assert bpy.ops.keymark.install_library(library="small") == {"FINISHED"}
-    assert sorted(str(f.relative_to(assets)) for f in assets.rglob("*") if f.is_file()) == [
-        "blender_assets.cats.txt",
-        str(Path("keymark", "small.blend")),
-    ]
-    blend = assets / "keymark" / "small.blend"
-    assert read_library_blend(blend)[0].version == 2
-    stamp = blend.stat().st_mtime_ns
-    bpy.ops.keymark.install_library(library="small")
-    assert blend.stat().st_mtime_ns == stamp  # the same already
-    imported(replace(library, version=5), tmp_path, existing="REPLACE")
-    with pytest.raises(RuntimeError, match="version 5 by A. Person, which is newer"):
-        bpy.ops.keymark.install_library(library="small")
-    assert read_library_blend(blend)[0].version == 2
-    bpy.ops.keymark.install_library(library="small", existing="REPLACE")
-    assert read_library_blend(blend)[0].version == 5
-    assert set(bpy.data.user_map()) == before
-
-
-def test_without_an_asset_library_the_preferences_are_named(own: Path, library: Library) -> None:
-    """The tooltip names the place in the preferences."""
-    listed = bpy.context.preferences.filepaths.asset_libraries
-    for known in list(listed):
-        listed.remove(known)
-    with pytest.raises(RuntimeError, match="Add an asset library in the preferences first"):
-        bpy.ops.keymark.install_shipped_libraries()
-
-
-def test_a_selection_is_exported(own: Path, library: Library, tmp_path: Path) -> None:
-    """Only marked postures; none marked is refused."""
-    imported(library, tmp_path)
-    bpy.ops.keymark.edit_library(library="small")
-    with pytest.raises(RuntimeError, match="is in this file already"):
-        bpy.ops.keymark.edit_library(library="small")
-    path = tmp_path / "part.json"
-    with pytest.raises(RuntimeError, match="No posture of 'Small' is selected"):
-        bpy.ops.keymark.export_library(filepath=str(path), only_selected=True)
-    bpy.context.scene.keymark.libraries[0].postures[1].selected = True
-    bpy.ops.keymark.export_library(filepath=str(path), only_selected=True)
-    imported_again = bpy.ops.keymark.import_library(filepath=str(path), existing="BOTH")
-    assert imported_again == {"FINISHED"}
-    assert titles(own) == [("small", "Small", 2, 2), ("small_2", "Small 2", 2, 1)]
-
-
-def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
-    """The suffix decides, not the last export; the format property decides for other suffixes."""
-    add_library(bpy.context.scene, library)
-    bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
-    bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
-    bpy.ops.keymark.export_library(filepath=str(tmp_path / "v1.2"), format="JSON")
-    assert {path.name for path in tmp_path.glob("*.*")} >= {"a.blend", "b.json", "v1.2.json"}
-    assert not list(tmp_path.glob("b.json.*"))
-
-
-def test_the_posture_to_apply_is_one_of_the_chosen_librarys(
-    own: Path, library: Library, tmp_path: Path
-) -> None:
-    """After choosing another library, the posture to apply is one of that library."""
-    other = replace(library, identifier="other", title="Other", postures=library.postures[1:])
-    imported(library, tmp_path)
-    at_hand = bpy.context.window_manager.keymark_shelf
-    assert at_hand.posture == "A"
-    imported(other, tmp_path)
-    assert (at_hand.libraries[at_hand.active].name, at_hand.posture) == ("other", "B")
-
-
-def test_a_library_of_this_file_is_published_for_matching(own: Path, library: Library) -> None:
-    """In its present state; after a change, the published one is not replaced unasked."""
-    add_library(bpy.context.scene, library)
-    bpy.ops.keymark.keep_library()
-    assert titles(own) == [("small", "Small", 2, 2)]
-    bpy.ops.keymark.remove_posture()
-    with pytest.raises(RuntimeError, match="same version, but not the same"):
-        bpy.ops.keymark.keep_library()
-    bpy.ops.keymark.keep_library(existing="REPLACE")
-    assert titles(own) == [("small", "Small", 2, 1)]
-
-
 def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
     """The stored number means the same library after another one is listed before it."""
     take = add_take(bpy.context.scene, "Take")
@@ -218,41 +105,12 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
 
 
 def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
-    """With the reason, and it can be deleted."""
+    """With the reason, and in no menu."""
     (own / "broken.json").write_text("{")
     bpy.ops.keymark.refresh_shelf()
     item = bpy.context.window_manager.keymark_shelf.libraries[0]
     assert "no valid JSON" in item.problem
     assert [entry[0] for entry in registry.library_items(None, bpy.context)] == []
-    bpy.ops.keymark.discard_library()
-    assert list(own.iterdir()) == []
-
-
-def test_pose_assets_brought_by_other_means_are_gathered(own: Path, library: Library, tmp_path: Path) -> None:
-    """Appended as Blender does, they become a library of this file again, to the last byte."""
-    write_library_blend(tmp_path / "small.blend", library)
-    with bpy.data.libraries.load(str(tmp_path / "small.blend")) as (found, wanted):
-        wanted.actions = found.actions
-    count = len(bpy.data.actions)
-    assert bpy.ops.keymark.gather_library() == {"FINISHED"}
-    assert len(bpy.data.actions) == count
-    bpy.ops.keymark.export_library(filepath=str(tmp_path / "back.json"))
-    write_library(tmp_path / "first.json", library)
-    assert (tmp_path / "back.json").read_bytes() == (tmp_path / "first.json").read_bytes()
-    with pytest.raises(RuntimeError, match="no pose assets of a library that is not listed"):
-        bpy.ops.keymark.gather_library()
-
-
-def test_two_that_come_at_once_do_not_get_one_name(own: Path, library: Library, tmp_path: Path) -> None:
-    """A .blend may hold the very library whose name another one of it would get."""
-    imported(library, tmp_path)
-    first = replace(library, version=3)
-    second = replace(library, identifier="small_2", title="Quite different")
-    kept = resolve_conflicts([first, second], find_registered, "BOTH")
-    assert [(one.identifier, one.title) for one in kept] == [
-        ("small_3", "Small 2"),
-        ("small_2", "Quite different"),
-    ]
 
 
 @pytest.mark.parametrize("content", ["another", "damaged"])
@@ -267,14 +125,14 @@ def test_a_file_that_only_has_the_name_is_not_lost(
         there.write_text("{")
     before = there.read_bytes()
     with pytest.raises(RuntimeError, match=r"small\.json: holds .* would be lost"):
-        imported(library, tmp_path, existing="REPLACE")
+        imported(library, tmp_path, replace=True)
     assert there.read_bytes() == before
 
 
 def test_an_older_version_that_shall_replace_does(own: Path, library: Library, tmp_path: Path) -> None:
     """Also where the newer one lies in a file of another name."""
     write_library(own / "a copy.json", replace(library, version=7))
-    imported(library, tmp_path, existing="REPLACE")
+    imported(library, tmp_path, replace=True)
     assert titles(own) == [("small", "Small", 2, 2)]
 
 
@@ -283,28 +141,6 @@ def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Li
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
     assert load_registered("small").title == "Zoo"
-
-
-def test_the_open_file_is_not_replaced_by_an_export(own: Path, library: Library, tmp_path: Path) -> None:
-    """Only pose assets would be left of it."""
-    add_library(bpy.context.scene, library)
-    path = tmp_path / "work.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    before = path.read_bytes()
-    with pytest.raises(RuntimeError, match="is the open file"):
-        bpy.ops.keymark.export_library(format="BLEND", filepath=str(path))
-    assert path.read_bytes() == before
-
-
-def test_a_damaged_file_of_catalogs_is_named_where_it_is(own: Path, assets: Path, library: Library) -> None:
-    """And left as it is; nothing is installed beside it."""
-    write_library(own / "small.json", library)
-    assets.mkdir()
-    (assets / "blender_assets.cats.txt").write_bytes(b"\xff\xfe")
-    with pytest.raises(RuntimeError) as caught:
-        bpy.ops.keymark.install_library(library="small")
-    assert str(assets / "blender_assets.cats.txt") in str(caught.value)
-    assert [file.name for file in assets.iterdir()] == ["blender_assets.cats.txt"]
 
 
 def test_libraries_are_the_same_objects_until_a_file_changes(
@@ -316,3 +152,167 @@ def test_libraries_are_the_same_objects_until_a_file_changes(
     assert registry_files.all_libraries() is first
     imported(replace(library, identifier="another", title="Another"), tmp_path)
     assert [each.identifier for each in registry_files.all_libraries()] == ["another", "small"]
+
+
+def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_path: Path) -> None:
+    """Else nothing changes, and the sentence names both."""
+    imported(library, tmp_path)
+    newer = replace(library, version=3, postures=library.postures[:1])
+    with pytest.raises(
+        RuntimeError, match="there in version 2 by A. Person, and this is version 3 .*Replace"
+    ):
+        imported(newer, tmp_path)
+    assert titles(own) == [("small", "Small", 2, 2)]
+    imported(newer, tmp_path, replace=True)
+    assert titles(own) == [("small", "Small", 3, 1)]
+
+
+def saved(path: Path, **settings: str) -> Library:
+    """Save a library, and read it."""
+    assert bpy.ops.keymark.export_library(filepath=str(path), **settings) == {"FINISHED"}
+    return (read_library_blend(path)[0]) if path.suffix == ".blend" else read_library(path)
+
+
+def same(first: Library, second: Library) -> bool:
+    """Whether a file of both would be the same."""
+    return library_to_json(first) == library_to_json(second)
+
+
+@pytest.mark.parametrize("suffix", [".json", ".blend"])
+def test_a_library_is_saved_and_loaded_without_loss(
+    own: Path, library: Library, tmp_path: Path, suffix: str
+) -> None:
+    """As a text file and as pose assets."""
+    imported(library, tmp_path)
+    path = tmp_path / f"again{suffix}"
+    assert same(saved(path), library)
+    (own / "small.json").unlink()
+    assert bpy.ops.keymark.import_library(filepath=str(path)) == {"FINISHED"}
+    assert same(load_registered("small"), library)
+
+
+def test_a_library_is_edited_as_pose_assets(own: Path, library: Library, tmp_path: Path) -> None:
+    """It comes back as it was, then with another name; a saved file's catalogs are named."""
+    imported(library, tmp_path)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "work.blend"))
+    assert bpy.ops.keymark.edit_library(library="small") == {"FINISHED"}
+    assert "Keymark/Small" in (tmp_path / "blender_assets.cats.txt").read_text(encoding="utf-8")
+    with pytest.raises(RuntimeError, match="is in this file already"):
+        bpy.ops.keymark.edit_library(library="small")
+    assert same(saved(tmp_path / "back.json", source="ASSETS"), library)
+    bpy.data.actions["A"].name = "Upright"
+    assert [each.name for each in saved(tmp_path / "b.json", source="ASSETS").postures] == ["Upright", "B"]
+
+
+def test_pose_assets_that_blender_made_of_the_actor_join_the_library(
+    own: Path, library: Library, body: Body, random_posture: RandomPosture, tmp_path: Path
+) -> None:
+    """On the library's proportions, leveled; a motion that is an asset does not, nor another rig's pose."""
+    take = add_take(bpy.context.scene, "Take")
+    take.armature = build_armature(bpy.context.scene, body)
+    mine = bpy.data.actions.new("Raised")
+    write_posture_curves(mine, body, random_posture(7))
+    other = bpy.data.actions.new("Other Rig")
+    new_channelbag(other).fcurves.new('pose.bones["tail"].location', index=0).keyframe_points.insert(1, 0.0)
+    motion = mine.copy()
+    for curve in motion.layers[0].strips[0].channelbags[0].fcurves:
+        curve.keyframe_points.insert(20, 0.0)
+    for action in (mine, other, motion):
+        action.asset_mark()
+    alone = saved(tmp_path / "own.json", source="ASSETS", title="Mine", author="Anna")
+    assert (alone.identifier, alone.author, [each.name for each in alone.postures]) == (
+        "mine",
+        "Anna",
+        ["Raised"],
+    )
+    assert alone.actor.stature_m == pytest.approx(body.actor.stature_m, rel=1e-6)
+    soles = lower_sole_m(Body(alone.actor), alone.postures[0].posture)
+    assert float(soles) == pytest.approx(0.0, abs=1e-6)
+    imported(library, tmp_path)
+    bpy.ops.keymark.edit_library(library="small")
+    joined = saved(tmp_path / "joined.json", source="ASSETS")
+    assert (joined.identifier, [each.name for each in joined.postures]) == ("small", ["A", "B", "Raised"])
+    assert joined.actor.stature_m == pytest.approx(1.7)
+    assert float(lower_sole_m(Body(joined.actor), joined.postures[2].posture)) == pytest.approx(0.0, abs=1e-6)
+    assert joined.postures[2].posture.angles == pytest.approx(alone.postures[0].posture.angles, abs=1e-5)
+
+
+def test_of_several_libraries_among_the_pose_assets_one_is_chosen(
+    own: Path, library: Library, tmp_path: Path
+) -> None:
+    """By its identifier; without it the sentence names them; without any there is nothing to save."""
+    with pytest.raises(RuntimeError, match="no pose assets of a library"):
+        bpy.ops.keymark.export_library(filepath=str(tmp_path / "c.json"), source="ASSETS")
+    for identifier in ("small", "other"):
+        add_assets(replace(library, identifier=identifier))
+    with pytest.raises(RuntimeError, match="pose assets of small, other; choose one"):
+        bpy.ops.keymark.export_library(filepath=str(tmp_path / "c.json"), source="ASSETS")
+    assert saved(tmp_path / "c.json", source="ASSETS", library="other").identifier == "other"
+
+
+def test_what_was_posed_becomes_a_library(
+    own: Path, body: Body, random_posture: RandomPosture, tmp_path: Path
+) -> None:
+    """Each keyframe a posture, at its time in the motion; the floor is under the lowest sole of all."""
+    scene = bpy.context.scene
+    scene.render.fps = 20
+    take = add_take(scene, "Bow")
+    take.armature = build_armature(scene, body)
+    with pytest.raises(RuntimeError, match="has no keyframes"):
+        bpy.ops.keymark.export_library(filepath=str(tmp_path / "c.json"), source="KEYFRAMES")
+    take.keyframe_action = bpy.data.actions.new("Posed")
+    posed = [Keyframe(index, random_posture(index), 0.0) for index in (0, 5, 9)]
+    write_keyframes(take.armature, take.keyframe_action, posed, np.arange(1.0, 11.0))
+    library = saved(tmp_path / "bow.json", source="KEYFRAMES")
+    assert (library.title, library.identifier, len(library.postures)) == ("Bow", "bow", 3)
+    assert [step.time_s for step in library.motions[0].steps] == pytest.approx([0.0, 0.25, 0.45])
+    own_body = Body(library.actor)
+    together = Posture.stack([each.posture for each in library.postures])
+    assert float(lower_sole_m(own_body, together).min()) == pytest.approx(0.0, abs=1e-6)
+    first = together.translation[0]
+    assert first[:2] == pytest.approx([0.0, 0.0], abs=1e-6)
+    apart = np.linalg.norm(np.diff([frame.posture.translation for frame in posed], axis=0), axis=1)
+    assert np.linalg.norm(np.diff(together.translation, axis=0), axis=1) == pytest.approx(apart, abs=1e-4)
+
+
+def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
+    """The suffix decides, not the last format; the format property decides for other suffixes."""
+    imported(library, tmp_path)
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
+    bpy.ops.keymark.export_library(filepath=str(tmp_path / "v1.2"), format="JSON")
+    assert {path.name for path in tmp_path.glob("*.*")} >= {"a.blend", "b.json", "v1.2.json"}
+    assert not list(tmp_path.glob("b.json.*"))
+
+
+def test_the_open_file_is_not_replaced_by_a_library(own: Path, library: Library, tmp_path: Path) -> None:
+    """Only pose assets would be left of it."""
+    imported(library, tmp_path)
+    path = tmp_path / "work.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    before = path.read_bytes()
+    with pytest.raises(RuntimeError, match="is the open file"):
+        bpy.ops.keymark.export_library(filepath=str(path))
+    assert path.read_bytes() == before
+
+
+def test_catalogs_lie_at_the_root_of_an_asset_library(own: Path, library: Library, tmp_path: Path) -> None:
+    """Saved anywhere in it the pose assets are found; a damaged file of catalogs is named and left alone."""
+    imported(library, tmp_path)
+    root = tmp_path / "assets"
+    (root / "mine").mkdir(parents=True)
+    listed = bpy.context.preferences.filepaths.asset_libraries
+    known = listed.new(name="Mine", directory=str(root))
+    try:
+        before = set(bpy.data.user_map())
+        saved(root / "mine" / "small.blend")
+        assert set(bpy.data.user_map()) == before
+        files = sorted(str(file.relative_to(root)) for file in root.rglob("*") if file.is_file())
+        assert files == ["blender_assets.cats.txt", str(Path("mine", "small.blend"))]
+        (root / "blender_assets.cats.txt").write_bytes(b"\xff\xfe")
+        with pytest.raises(RuntimeError) as caught:
+            bpy.ops.keymark.export_library(filepath=str(root / "mine" / "more.blend"))
+        assert str(root / "blender_assets.cats.txt") in str(caught.value)
+        assert not (root / "mine" / "more.blend").exists()
+    finally:
+        listed.remove(known)

@@ -9,7 +9,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from keymark.core.library.library_file import library_from_json, library_to_json
-from keymark.core.library.merging import Choice, compare, join_libraries, merge_versions
+from keymark.core.library.merging import differing_names, join_libraries, merge_versions
 
 MINE = small_library()
 NEW = LibraryPosture("Jump", random_posture(9))
@@ -33,39 +33,29 @@ def names(library: Library) -> list[str]:
     return [posture.name for posture in library.postures]
 
 
-def test_the_comparison_says_what_differs() -> None:
-    """Names that only look different are the same; what is in one only is named."""
-    comparison = compare(MINE, THEIRS)
-    assert comparison.newer and comparison.header and not comparison.same
-    assert comparison.added == ("Jump", "Leap")
-    assert comparison.missing == ("Steps", "Once")
-    assert comparison.changed == ("Left foot lands",)
-    assert compare(MINE, small_library()).same
-
-
-def test_no_difference_is_overlooked() -> None:
-    """A newer version differs, and so does an older one, or one with another title alone."""
-    for offered in (THEIRS, newer(), replace(MINE, version=2), replace(MINE, title="Other")):
-        assert not compare(MINE, offered).same
+def test_what_differs_is_named() -> None:
+    """Names that only look different are the same; what is in one only is no conflict."""
+    assert differing_names(MINE, THEIRS) == ("Left foot lands",)
+    assert differing_names(MINE, newer(title="Other")) == ()
 
 
 def test_different_libraries_never_touch() -> None:
     """Only equal identifiers are compared or merged."""
     stranger = replace(MINE, identifier="walking")
-    for act in (compare, merge_versions):
+    for act in (differing_names, merge_versions):
         with pytest.raises(InputError, match="'small_steps' and 'walking' have different identifiers"):
             act(MINE, stranger)
 
 
-@pytest.mark.parametrize("choice", list(Choice))
-def test_merging_adds_what_is_new_and_asks_for_the_rest(choice: Choice) -> None:
+@pytest.mark.parametrize("replaces", [False, True])
+def test_merging_adds_what_is_new_and_asks_for_the_rest(replaces: bool) -> None:
     """Steps name the posture as it is called in the end; the version grows."""
     with pytest.raises(InputError, match="'Left foot lands' differ"):
         merge_versions(MINE, THEIRS)
-    result = merge_versions(MINE, THEIRS, {"Left foot lands": choice})
-    landing = "LEFT foot lands" if choice is Choice.REPLACE else "Left foot lands"
+    result = merge_versions(MINE, THEIRS, replaces)
+    landing = "LEFT foot lands" if replaces else "Left foot lands"
     assert names(result) == [landing, *names(MINE)[1:], "Jump"]
-    kept = (OTHER_LANDING if choice is Choice.REPLACE else MINE.postures[0]).posture
+    kept = (OTHER_LANDING if replaces else MINE.postures[0]).posture
     assert np.abs(result.postures[0].posture.minus(kept)).max() == 0.0
     assert [motion.name for motion in result.motions] == ["Steps", "Once", "Leap"]
     assert {motion.steps[0].posture for motion in result.motions} == {landing}
@@ -83,7 +73,7 @@ def test_merging_with_a_part_of_itself_changes_nothing() -> None:
 def test_postures_of_another_actor_are_fitted() -> None:
     """A taller person's new posture arrives on my proportions."""
     taller = Actor({name: 1.2 * length for name, length in ACTOR.segments_m.items()})
-    result = merge_versions(MINE, newer(actor=taller, postures=(NEW,), motions=()), Choice.KEEP)
+    result = merge_versions(MINE, newer(actor=taller, postures=(NEW,), motions=()), False)
     assert result.actor is MINE.actor
     np.testing.assert_allclose(
         result.by_name["Jump"].posture.translation, NEW.posture.translation / 1.2, atol=1e-9

@@ -1,4 +1,4 @@
-"""A person looks at keyframe libraries: the panel, one that is made in the file, and the asset browser.
+"""A person looks at keyframe libraries: the panel, and one as pose assets in the asset browser.
 
 Usage: as of session.py, without a step.
 """
@@ -14,13 +14,12 @@ import steps_prepare  # noqa: E402
 from driver import Camera, Steps, drive, expect, turns  # noqa: E402
 from person import Person  # noqa: E402
 
-PANELS = ("KEYMARK_PT_libraries", "KEYMARK_PT_library_here")
+PANELS = ("KEYMARK_PT_libraries",)
 TITLE = "Anna Exercising"
-SHELF = "Studio"
 
 
 def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
-    """Learn a library of a motion, look at it and at all others, and install these as assets."""
+    """Learn a library of a motion, look at it, and bring it into the file as pose assets."""
     unfold(PANELS)
     person = Person(take, folder, camera)
     yield from steps_prepare.start_empty(person)
@@ -28,7 +27,8 @@ def session(take: Path, folder: Path, camera: Camera) -> Steps[None]:
     bpy.ops.keymark.learn_library(title=TITLE, author="Anna")
     registry = bpy.context.window_manager.keymark_shelf
     expect(registry.libraries[registry.active].title == TITLE, "the library that was learned is not chosen")
-    yield from person.hands.find_button("keymark.edit_library")
+    yield from person.hands.click_button("keymark.edit_library")
+    expect(any(action.asset_data for action in bpy.data.actions), "there are no pose assets")
     yield from person.hands.scroll("VIEW_3D", "WHEELDOWNMOUSE", 30)
     yield from person.hands.scroll("VIEW_3D", "WHEELUPMOUSE", 2)
     yield from person.look("libraries")
@@ -46,21 +46,12 @@ def unfold(panels: tuple[str, ...]) -> None:
 
 
 def assets(person: Person) -> Steps[None]:
-    """All shipped libraries in an asset library, and the asset browser in place of the viewport."""
-    shelf = person.folder / SHELF
-    shelf.mkdir(exist_ok=True)
-    known = bpy.context.preferences.filepaths.asset_libraries
-    known.new(name=SHELF, directory=str(shelf))
-    while len(known) > 1:
-        known.remove(known[0])
-    yield from person.hands.invoke("keymark.install_shipped_libraries", asset_library=SHELF)
-    yield from person.wait_for_job()
-    expect(list(shelf.glob("**/*.blend")), "nothing was installed")
+    """The asset browser in place of the viewport."""
     area = person.hands.area("VIEW_3D")
     area.ui_type = "ASSETS"
     yield from turns(5)
     browser = person.hands.area("FILE_BROWSER").spaces.active
-    browser.params.asset_library_reference = SHELF
+    browser.params.asset_library_reference = "LOCAL"
     browser.params.display_size = 72
     yield from turns(60)  # pictures are read by and by
     yield from person.look("assets")

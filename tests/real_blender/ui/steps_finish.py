@@ -40,10 +40,6 @@ def review(person: Person) -> Steps[None]:
         yield from person.look("weak_frame")
         yield from person.undoable("adding a keyframe", lambda: _pose_weak_frame(person))
         yield from person.hands.undo()
-    yield from person.undoable("the turntable", lambda: person.hands.invoke("keymark.set_up_turntable"))
-    yield from person.hands.invoke("keymark.show_view", view="SIDE")
-    yield from person.look("side")
-    yield from person.hands.invoke("keymark.show_view", view="FOOTAGE")
     person.hands.area("DOPESHEET_EDITOR").ui_type = "FCURVES"
     yield from turns(3)
     yield from person.hands.move_over("GRAPH_EDITOR")

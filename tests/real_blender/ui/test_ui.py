@@ -154,7 +154,7 @@ def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, t
 
 
 def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> None:
-    """One that is learned in the panel, and those that come with Keymark in the asset browser."""
+    """One that is learned: in the panel, and in the asset browser."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "shelf"
     run_script(blender_on_screen, "shelf_session.py", take, folder)

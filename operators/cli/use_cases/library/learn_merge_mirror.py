@@ -6,7 +6,7 @@ from .....core.errors import InputError
 from .....core.files.fields import listed
 from .....core.library.learning import LibraryMetadata, learn_library
 from .....core.library.library import Library
-from .....core.library.merging import Choice, compare, join_libraries, merge_versions
+from .....core.library.merging import differing_names, join_libraries, merge_versions
 from .....core.library.mirroring import mirrored_library, with_mirrored
 from .....core.library.registry import find_library
 from .....core.library.texts import LONGEST_NAME, checked_identifier, identifier_from
@@ -43,8 +43,7 @@ def merge_command(arguments: argparse.Namespace) -> None:
         folders = library_folders()
         first, second = (find_library(name, folders) for name in (arguments.library, arguments.other))
         if first.identifier == second.identifier:
-            choice = None if arguments.conflicts is None else Choice(arguments.conflicts)
-            library = _merge_versions(first, second, choice)
+            library = _merge_versions(first, second, arguments.conflicts)
         else:
             title = arguments.title or f"{first.title} and {second.title}"[:LONGEST_NAME].strip()
             identifier = arguments.identifier or identifier_from(title, [first.identifier, second.identifier])
@@ -52,17 +51,17 @@ def merge_command(arguments: argparse.Namespace) -> None:
         write_new_library(console, arguments, library)
 
 
-def _merge_versions(first: Library, second: Library, choice: Choice | None) -> Library:
+def _merge_versions(first: Library, second: Library, conflicts: str | None) -> Library:
     """Merge two versions of one library.
 
     Raises:
         UsageError: They differ, and `--conflicts` does not say which counts.
     """
-    changed = compare(first, second).changed
-    if changed and choice is None:
+    changed = differing_names(first, second)
+    if changed and conflicts is None:
         names = listed(map(repr, changed), 5)
         raise UsageError(f"both versions of {first.identifier} have {names}, and differ; add --conflicts")
-    return merge_versions(first, second, choice)
+    return merge_versions(first, second, None if conflicts is None else conflicts == "replace")
 
 
 def mirror_command(arguments: argparse.Namespace) -> None:

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from keymark.operators.review.look_from_side import look_from_side
 from keymark.operators.shell.takes import active_take
-from keymark.operators.turntable.look_from_side import look_from_side
 from mathutils import Matrix, Quaternion, Vector
 
 

@@ -1,0 +1,128 @@
+"""Keyframe libraries of what was posed: of keyframes, and of pose assets."""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import bpy
+import numpy as np
+
+from ....core.arrays import Array
+from ....core.body.heading import headings_rad, turned_and_shifted
+from ....core.body.human import HUMAN
+from ....core.body.kinematics import Body
+from ....core.body.posture import Posture
+from ....core.body.soles import lower_sole_m
+from ....core.errors import InputError
+from ....core.library.learning import LibraryMetadata, numbered_names
+from ....core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from ....core.library.library_file import library_from_json, library_to_json
+from ....core.library.texts import identifier_from, unique_name
+from ....core.library.transfer import transferred
+from ..actor_lengths import read_body
+from ..keyframes import keyed_frames, read_keyframes
+from ..posture_curves import read_posture_curves
+from .pose_assets import is_posture, library_from_assets
+
+DECIMALS_S = 4
+
+
+def library_of_keyframes(
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    about: LibraryMetadata,
+) -> Library:
+    """The keyframes of an Action, a posture each, and a motion through them at their times.
+
+    Raises:
+        InputError: There are fewer than two keyframes, the armature is not an actor's, or title, author or
+            license is invalid.
+    """
+    body = read_body(armature_object, HUMAN)
+    frames = np.array(keyed_frames(armature_object, action, HUMAN))
+    if len(frames) < 2:
+        raise InputError("the take has {frames} keyframes; a library needs two or more", frames=len(frames))
+    posed = read_keyframes(scene, armature_object, action, body, frames).keyframes
+    postures = _leveled(body, Posture.stack([keyframe.posture for keyframe in posed]))
+    names = numbered_names(about.title, len(posed))
+    time_s: Array = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
+    steps = tuple(
+        MotionStep(name, round(float(at), DECIMALS_S)) for name, at in zip(names, time_s, strict=True)
+    )
+    entries = tuple(LibraryPosture(name, postures[row]) for row, name in enumerate(names))
+    motion = LibraryMotion(about.title, steps, steps[-1].time_s)
+    return _checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
+
+
+def library_of_assets(
+    actions: Iterable[bpy.types.Action],
+    armature_object: bpy.types.Object | None,
+    about: LibraryMetadata,
+    identifier: str,
+) -> Library:
+    """The library that pose assets belong to, and the pose assets of an actor that belong to none.
+
+    Args:
+        actions: Linked ones and those that hold no posture are ignored.
+        armature_object: The actor of pose assets that belong to no library; None to leave these out.
+        about: Details of the library where no pose asset belongs to one.
+        identifier: The library to take where there are several.
+
+    Raises:
+        InputError: There are no pose assets, or those of several other libraries, or one is unusable.
+    """
+    local = [action for action in actions if action.library is None]
+    found = {library.identifier: library for library in library_from_assets(local)}
+    if len(found) > 1 and identifier not in found:
+        raise InputError(
+            "this file has the pose assets of {libraries}; choose one of these in the list",
+            libraries=", ".join(found),
+        )
+    library = found.get(identifier) or next(iter(found.values()), None)
+    body = None if armature_object is None else read_body(armature_object, HUMAN)
+    loose = {} if body is None else dict(_loose(local, body))
+    if library is None:
+        if body is None or not loose:
+            raise InputError("this file has no pose assets of a library, and none of the take's actor")
+        library = _empty(body, about)
+    entries = list(library.postures)
+    for name, posture in loose.items():
+        given = transferred(_leveled(body, Posture.stack([posture])), body.actor, Body(library.actor))
+        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), given[0]))
+    return _checked(replace(library, postures=tuple(entries)))
+
+
+def _loose(actions: Iterable[bpy.types.Action], body: Body) -> Iterable[tuple[str, Posture]]:
+    """Names and postures of pose assets of a body that belong to no library."""
+    for action in actions:
+        first, last = action.curve_frame_range
+        if action.asset_data is not None and not is_posture(action) and first == last:
+            posture = read_posture_curves(action, body)
+            if posture is not None:
+                yield action.name, posture
+
+
+def _leveled(body: Body, postures: Posture) -> Posture:
+    """Postures (F,) of one performance, the first above the origin facing -Y, the lowest sole at z = 0."""
+    turned = turned_and_shifted(postures, -headings_rad(postures[:1])[0], np.zeros(3))
+    offset = turned.translation[0] * [-1.0, -1.0, 0.0]
+    offset[2] = -lower_sole_m(body, turned).min()
+    return turned_and_shifted(turned, np.zeros(1), offset)
+
+
+def _empty(body: Body, about: LibraryMetadata) -> Library:
+    return Library(
+        about.identifier or identifier_from(about.title),
+        about.title,
+        1,
+        about.author,
+        about.license,
+        body.actor,
+        (),
+    )
+
+
+def _checked(library: Library) -> Library:
+    """The library, which is what a file may hold: names are typed by people."""
+    library_from_json(library_to_json(library), f"library '{library.title}'")
+    return library
