@@ -10,7 +10,6 @@ from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
-from ..observation.occluders import StaticOccluders
 from ..prior.turns import with_turns
 from .clip_state import ClipState
 from .keyframe_evidence import KeyframeEvidence
@@ -75,11 +74,6 @@ class ClipProblem:
     def frames(self) -> int:
         """Number of frames F."""
         return self.prior.batch[0]
-
-    def before(self, occluders: StaticOccluders) -> "ClipProblem":
-        """This problem with what is known to stand before the performer."""
-        model = replace(self.evidence.model, occluders=occluders)
-        return replace(self, evidence=replace(self.evidence, model=model))
 
     def with_turns(self, turns: IndexArray) -> "ClipProblem":
         """The same with these whole turns (K - 1,) in the gaps between the keyframes."""

@@ -19,7 +19,6 @@ from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
 from ..observation.limb_axes import LimbAxes
-from ..observation.occluders import StaticOccluders
 from ..observation.part_map import part_map
 from .axial_search import find_shifts, learn_along
 from .contour_schedule import BY_MARKERS, Schedule
@@ -100,10 +99,6 @@ class ContourEvidence:
     def with_camera(self, camera: Camera) -> "ContourEvidence":
         """The same before another camera."""
         return replace(self, model=replace(self.model, camera=camera))
-
-    def before(self, occluders: StaticOccluders) -> "ContourEvidence":
-        """The same with what is known to stand before the performer."""
-        return replace(self, model=replace(self.model, occluders=occluders))
 
     def measure_along(
         self, posture: Posture, frame: IndexArray, search: SearchRange, step_s: Array

@@ -14,7 +14,6 @@ from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
 from ..footage.appearance import Appearance
 from ..observation.contours import ContourModel, ContourPrediction
-from ..observation.occluders import StaticOccluders
 from ..observation.occlusion import HIDDEN_DEPTH_M, PartOutlines, outline_depth
 
 INNER, OUTER = 2.0, 2.5
@@ -76,8 +75,6 @@ def find_edges(
     rows, columns = pictures.shape[1:3]
     middle = predicted.pixel / factor
     reach = min(search.reach, NARROW.reach) * np.abs(predicted.normal)
-    if model.occluders is not None:
-        shown &= _free(model.occluders, predicted, factor)
     shown &= ((middle >= reach) & (middle + reach < [columns, rows])).all(axis=-1)
     # From here on only the E visible samples, about half of all.
     picture, sample = np.nonzero(shown)
@@ -132,15 +129,6 @@ def _edge(evidence: Array, offset: Array, prior_std: float) -> tuple[Array, Arra
     variance = np.sum(weight * (between - mean[..., None]) ** 2, axis=-1) + 1.0 / 12.0
     added = np.maximum(1.0 / variance - prior_std**-2, 1e-9)
     return mean / (variance * added), 1.0 / added
-
-
-def _free(occluders: StaticOccluders, predicted: ContourPrediction, factor: int) -> BoolArray:
-    """Whether nothing static stands before a contour sample or right beside it, where its own edge lies."""
-    free = np.ones(predicted.depth.shape, dtype=bool)
-    for away in (-INNER, 0.0, OUTER):
-        pixel = predicted.pixel + away * factor * predicted.normal
-        free &= occluders.visible_share(pixel, predicted.depth) > 0.5
-    return free
 
 
 def _occlusion(

@@ -1,8 +1,8 @@
 """What is learned once the markers are followed, before contours join them.
 
 In this order, since each step stands on those before it: which way round the body turns, how the performer
-and the background look, where markers are that were lost, what stands before the performer, and how large
-the motion is. Each changes the problem, and the states follow it.
+and the background look, where markers are that were lost, and how large the motion is. Each changes the
+problem, and the states follow it.
 """
 
 from dataclasses import dataclass, replace
@@ -18,7 +18,6 @@ from .clip_state import ClipState
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_schedule import contour_schedule
 from .motion_size import adapted
-from .occluder_evidence import learn_occluders
 from .second_look import find_lost
 from .turn_choice import choose_turns
 from .undecided import Undecided
@@ -95,8 +94,6 @@ def refine(
                 problem, states = again.problem, again.states
                 looking = find_lost(problem, spans, states, contours, anew.frames)
                 problem = yield from scaled(looking, 0.75, 0.8)
-    if earlier is None and contours is not None:
-        problem, contours = yield from scaled(_before_occluders(problem, spans, states, contours), 0.8, 0.9)
     problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.9, 1.0)
     return Refinement(problem, states, contours, turns.undecided)
 
@@ -126,23 +123,6 @@ def _learned(
     posture = _kept(spans, states)
     learning = learn_contours(problem.body, camera, album, posture, problem.keyframes, schedule)
     return (yield from scaled(learning, 0.0, 1.0))
-
-
-def _before_occluders(
-    problem: ClipProblem, spans: list[Window], states: list[ClipState], contours: ContourEvidence
-) -> Part[tuple[ClipProblem, ContourEvidence]]:
-    """Problem and contours that know what stands before the performer; the same where nothing does.
-
-    Only posed keyframes, and limbs that markers locate, can tell it from a posture that is wrong.
-    """
-    posed = problem.keyframes[~problem.matched]
-    if not len(posed) or contours.along is not None:
-        return problem, contours
-    learning = learn_occluders(contours, _kept(spans, states), posed, problem.step_s)
-    occluders = yield from scaled(learning, 0.0, 1.0)
-    if occluders is None:
-        return problem, contours
-    return problem.before(occluders), contours.before(occluders)
 
 
 def _kept(spans: list[Window], states: list[ClipState]) -> Posture:

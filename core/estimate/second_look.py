@@ -47,7 +47,7 @@ LEAST_AREA_PX = 6.0
 LEAST_GAIN = 10.0
 """Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance."""
 LEAST_REST_GAIN = 3.0
-"""Of what an occluder cuts off from a find."""
+"""Of what something before it cuts off from a find."""
 LEAST_PEAK = 0.3
 """Least of a find's largest shares; colors that were never learned pass for less."""
 LEAST_CERTAINTY = 0.25

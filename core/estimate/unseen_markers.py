@@ -1,7 +1,7 @@
 """Negative evidence: a marker that should be seen and is not.
 
 Visibility has no useful slope by a posture, so this is a cost by which whole hypotheses are compared, such as
-a limb on either side of another in depth. What static occluders hide is not expected to be seen.
+a limb on either side of another in depth.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def unseen_cost(problem: ClipProblem, state: ClipState, findable: Array) -> Arra
     Nearly zero where every marker predicted to be visible was found. It joins the costs of what is seen.
 
     Args:
-        problem: The clip's problem, whose regions' model knows what stands before the performer.
+        problem: The clip's problem.
         state: Any state of F of its frames.
         findable: (F, M) what `findable_share` says of the clip, once for all states of it that are compared.
     """
@@ -61,7 +61,7 @@ def missed_share(problem: ClipProblem) -> Array:
 
 def found_share(predicted: RegionPrediction, camera: Camera) -> Array:
     """(F, M) share of such regions that are found where colors and light are good."""
-    found = 0.5 + 0.5 * np.tanh(0.5 * FOUND_SLOPE * (predicted.shown - HALF_FOUND))
+    found = 0.5 + 0.5 * np.tanh(0.5 * FOUND_SLOPE * (predicted.visible - HALF_FOUND))
     return np.asarray(np.where(_inside(predicted, camera), found, 0.0))
 
 

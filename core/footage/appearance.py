@@ -8,7 +8,6 @@ always occludes it.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import cv2
 import numpy as np
@@ -35,8 +34,6 @@ FEWEST_FREE = 3
 """Frames that must show a pixel's background for its Gaussian to be known."""
 HIGHEST = 255
 """Replaces occluded levels, so that they are sorted last."""
-FEWEST_COLORS = 100
-"""Pixels of a part that tell its colors."""
 SPARSE = 2
 """Sampling step, in rows and columns, of the background's histogram."""
 SMALLEST_DEVIATION, LARGEST_DEVIATION = 3.0, 12.0
@@ -92,20 +89,6 @@ class Appearance:
             own[[left, right]] = _log_densities(counts[[left]] + counts[[right]])
         return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
 
-    def with_colors(self, seen: tuple[IndexArray, Image], parts: int) -> "Appearance":
-        """This appearance with other colors of its parts.
-
-        Args:
-            seen: (N,) the part and (N, 3) the color of pixels.
-            parts: Number of parts, O; those of which hardly anything is seen keep theirs.
-        """
-        part, color = seen
-        cells = np.bincount(part * CELLS + _cells(color), minlength=parts * CELLS).reshape(parts, CELLS)
-        enough = cells.sum(axis=1) >= FEWEST_COLORS
-        colors = self.parts.copy()
-        colors[:-1][enough] = _log_densities(cells[enough])
-        return replace(self, parts=colors)
-
     def where_steady(self) -> "Appearance":
         """This appearance with only those pixels of the background known that stand still.
 
@@ -149,32 +132,6 @@ class Appearance:
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
         return np.asarray(self.parts[index, _cells(pixels)])
-
-    def body(self, pixels: Image) -> Array:
-        """Log likelihood of pixels (..., 3) under the part of the body that explains each best."""
-        return np.asarray(self._body[_cells(pixels)])
-
-    @cached_property
-    def _body(self) -> Array:
-        """(cells,) log densities of the likeliest part."""
-        return np.asarray(self.parts[:-1].max(axis=0))
-
-    def unmoving(self, row: IndexArray, column: IndexArray, pixels: Image, least_deviation: float) -> Array:
-        """Log likelihood of pixels (..., 3) under what stands still at rows and columns (...), unshadowed.
-
-        Args:
-            row: Their rows.
-            column: Their columns.
-            pixels: Their colors.
-            least_deviation: Least standard deviation of the colors of a background pixel [levels].
-        """
-        deviation = np.maximum(self.deviation[row, column].astype(np.float64), least_deviation)
-        squared = np.zeros(deviation.shape)
-        for channel in range(3):  # sums over an axis of three are slow
-            off = pixels[..., channel] - self.color[..., channel][row, column].astype(np.float64)
-            squared += off * off
-        here = -0.5 * squared / deviation**2 - 3.0 * np.log(deviation) - 1.5 * np.log(2.0 * np.pi)
-        return np.maximum(here, UNSEEN_LOG_DENSITY)
 
     def background(self, row: IndexArray, column: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the background at rows and columns (...).

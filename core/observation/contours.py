@@ -14,7 +14,6 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import PieceStack, body_pieces
 from ..body.kinematics import Body, Pose
 from ..footage.camera import Camera
-from .occluders import StaticOccluders
 from .occlusion import PartOutlines, part_outlines
 from .silhouette import View, view_pieces
 
@@ -52,8 +51,6 @@ class ContourModel:
     body: Body
     camera: Camera
     shape: Array
-    occluders: StaticOccluders | None = None
-    """What stands before the performer; None where nothing is known to."""
 
     @classmethod
     def average(cls, body: Body, camera: Camera) -> "ContourModel":

@@ -17,7 +17,6 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-from .occluders import StaticOccluders
 from .occlusion import part_outlines, visible_share
 from .picture_edge import edge_cut, near_edge
 from .silhouette import TINY, Silhouette, sample_silhouette, view_pieces
@@ -33,8 +32,6 @@ USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 """A shirt covers the shoulders, which rise above their joints, and ends at the hip bones; trousers and
 stockings are thicker than the leg inside. Medians of calibrations at a dozen performers' keyframes."""
-LEAST_SHOWN = 0.15
-"""Least share of a region that static occluders leave, below which none of it is expected to be seen."""
 PIECES_AT_ONCE = 600
 """Pieces, counted over frames, that are evaluated together, so that their samples fit in the cache."""
 
@@ -86,9 +83,7 @@ class RegionPrediction:
     area: Array
     """(F, M) visible area [px²]."""
     visible: Array
-    """(F, M) visible share of the silhouette, of a region that is seen."""
-    shown: Array
-    """(F, M) the same before it is known whether it is seen: less where static occluders hide it all."""
+    """(F, M) visible share of the silhouette."""
     centroid_jacobian: Array | None = None
     """(F, M, 2, D) [px per m or rad]."""
     moment_jacobian: Array | None = None
@@ -98,7 +93,7 @@ class RegionPrediction:
     def unmarked(cls, frames: int, dofs: int | None) -> "RegionPrediction":
         """The prediction of no marker at all, M = 0, with Jacobians by `dofs` unknowns where given."""
         empty = np.zeros((frames, 0))
-        prediction = cls(np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2)), empty, empty, empty)
+        prediction = cls(np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2)), empty, empty)
         if dofs is None:
             return prediction
         by_tangent = {"centroid_jacobian": np.zeros((frames, 0, 2, dofs))}
@@ -119,8 +114,6 @@ class RegionModel:
     body: Body
     camera: Camera
     placements: tuple[MarkerPlacement, ...]
-    occluders: StaticOccluders | None = None
-    """What stands before the performer; None where nothing is known to."""
 
     @cached_property
     def _pieces(self) -> PieceStack:
@@ -193,15 +186,6 @@ class RegionModel:
         seen[edge] *= cut.share
         visible_area = self._per_marker((samples.area * seen).sum(2))
         whole_area = np.maximum(self._per_marker((samples.area * scale).sum(2)), TINY)
-        shown = visible_area / whole_area
-        if self.occluders is not None:
-            before = seen * self.occluders.visible_share(pixels, depth)
-            area = self._per_marker((samples.area * before).sum(2))
-            shown = area / whole_area
-            # What is seen nevertheless is compared as if nothing stood there: its map is rough.
-            trusted = area > LEAST_SHOWN * visible_area
-            visible_area = np.where(trusted, area, visible_area)
-            seen = np.where(trusted[:, self._marker_of, None], before, seen)
         visible = visible_area / whole_area
         # A wholly hidden marker is compared with no measurement, but its moments stay finite.
         hidden = visible < 1e-3
@@ -215,7 +199,7 @@ class RegionModel:
         centered = np.moveaxis(pixels, -1, 2) - centroid[:, self._marker_of, :, None]  # (F, Q, 2, S)
         np.multiply(weighted[:, :, :1], centered, out=weighted[:, :, 1:])
         moment = self._per_marker(weighted[:, :, 1:] @ np.swapaxes(centered, -1, -2))
-        prediction = RegionPrediction(centroid, moment, visible_area, visible, shown)
+        prediction = RegionPrediction(centroid, moment, visible_area, visible)
         if not jacobian:
             return prediction
         cutting = edge, cut.slope

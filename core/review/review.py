@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.regions import RegionNoise, limb_widths
@@ -30,13 +30,11 @@ CHUNK_FRAMES = 100
 """So few that a job can be canceled within some hundredths of a second."""
 WRONG_SHARE = 0.1
 """Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong."""
-NO_OCCLUDERS = np.zeros((0, 0), dtype=np.bool_)
 NAMES = ("marker_names", "point_names")
 KINDS: Mapping[str, type] = MappingProxyType(
     {
         **dict.fromkeys(NAMES, np.str_),
         **dict.fromkeys(("observed", "predicted", "contours"), np.float32),
-        "occluders": np.bool_,
     }
 )
 """Kinds of arrays in a cache that numpy would not choose: large ones are only drawn, in single precision."""
@@ -78,8 +76,6 @@ class Review:
     """(F, L, S, 2) predicted contour lines of the body [px], where no marker shows how the motion fits."""
     keypoints: ComparedKeypoints
     """Of the performer, N of them; none in a review that was kept before there were any."""
-    occluders: BoolArray
-    """(rows, columns) of the whole picture, coarsely: what stands before the performer; (0, 0) for none."""
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`; none needs pickling."""
@@ -106,7 +102,7 @@ class Review:
             KeyError: An array is missing.
             ValueError: A reason is unknown.
         """
-        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints", "contours", "occluders")
+        others = (*NAMES, "size", "keyframe_indices", "weak_frames", "keypoints", "contours")
         plain = {
             field.name: np.asarray(arrays[field.name], dtype=np.float64)
             for field in fields(cls)
@@ -121,7 +117,6 @@ class Review:
             weak_frames=_weak_frames(arrays),
             contours=_contours(arrays, len(plain["frames"])),
             keypoints=ComparedKeypoints.from_arrays(arrays, len(plain["frames"])),
-            occluders=np.asarray(arrays.get("occluders", NO_OCCLUDERS), dtype=np.bool_),
             **plain,
         )
 
@@ -198,7 +193,6 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
         weak_frames=find_weak_frames(evidence, index),
         contours=contours.lines,
         keypoints=keypoints,
-        occluders=NO_OCCLUDERS if model.occluders is None else model.occluders.covered,
     )
 
 

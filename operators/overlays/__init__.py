@@ -4,4 +4,4 @@ Draw functions use only what is in memory and read no file.
 """
 
 PROPERTIES = ("properties", "timeline_properties")
-MODULES = ("panel", "mask", "ignored", "occluders", "registry")
+MODULES = ("panel", "mask", "ignored", "registry")

@@ -138,8 +138,6 @@ def _rows(
             rows.append((Sample.SOLID, label("Marker as seen")))
         if settings.show_predicted:
             rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
-    if view.footage is not None and settings.show_occluders and what.review.occluders.any():
-        rows.append((Sample.NONE, label("Tinted: stands before the performer")))
     if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
         rows.append((Sample.DASHED, label("Contour as the motion predicts it")))
     if settings.show_skeleton:

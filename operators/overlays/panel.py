@@ -24,7 +24,6 @@ def _draw(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None
     column.prop(settings, "show_keypoints")
     column.prop(settings, "show_skeleton")
     column.prop(settings, "show_candidates")
-    column.prop(settings, "show_occluders")
     column.prop(settings, "show_floor_grid")
     column.prop(settings, "show_legend")
     column = layout.column()

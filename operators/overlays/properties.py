@@ -48,13 +48,6 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
-    show_occluders: bpy.props.BoolProperty(
-        name="Occluders",
-        description="Tint what the reconstruction takes to stand before the performer, such as a table: no "
-        "marker is expected to be seen there",
-        default=True,
-        update=_changed,
-    )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
         description="Draw the paths of chosen points: past solid, future dashed, diamonds at keyframes",

@@ -35,8 +35,6 @@ OVERLAYS = (
     Overlay("Masks in the Clip Editor", "mask", "SpaceClipEditor"),
     Overlay("Ignored Regions in the Viewport", "ignored", "SpaceView3D"),
     Overlay("Ignored Regions in the Clip Editor", "ignored", "SpaceClipEditor"),
-    Overlay("Occluders in the Viewport", "occluders", "SpaceView3D"),
-    Overlay("Occluders in the Clip Editor", "occluders", "SpaceClipEditor"),
     Overlay("Keypoints in the Viewport", "keypoints", "SpaceView3D"),
     Overlay("Keypoints in the Clip Editor", "keypoints", "SpaceClipEditor"),
     Overlay("Candidates in the Viewport", "candidates", "SpaceView3D"),

@@ -173,7 +173,7 @@ def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction
     Args:
         area: (F, M) area of the regions seen [px].
         area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, occlusion by the body itself and by known occluders included.
+        predicted: The regions' prediction, occlusion by the body itself included.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)

@@ -57,7 +57,6 @@ def review() -> Review:
         weak_frames=(),
         contours=np.zeros((FRAMES, 0, 4, 2)),
         keypoints=made_up_keypoints(FRAMES),
-        occluders=np.zeros((0, 0), dtype=np.bool_),
     )
 
 

@@ -63,12 +63,11 @@ def test_a_review_without_weak_frames_comes_back() -> None:
 def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
     """The rest is as it was; one that lost a part of its keypoints is no review."""
     arrays = made_up_review().to_arrays()
-    new = ("weak_point", "contours", "occluders")
+    new = ("weak_point", "contours")
     old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name not in new}
     again = Review.from_arrays(old)
     assert again.keypoints.names == () and again.keypoints.seen.shape == (13, 0, 2)
     assert again.contours.shape == (13, 0, 4, 2)
-    assert again.occluders.shape == (0, 0)
     assert again.weak_frames == made_up_review().weak_frames
     with pytest.raises(KeyError):
         Review.from_arrays({name: value for name, value in arrays.items() if name != "keypoint_swapped"})
