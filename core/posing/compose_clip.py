@@ -11,7 +11,6 @@ from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
-from ..library.library import Library
 from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
 from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.library_match import tempering
@@ -21,7 +20,7 @@ from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates
-from .library_belief import PartBelief, part_beliefs
+from .library_motion import PartBelief, part_beliefs
 from .mean_posture import mean_postures
 from .part_features import StanceFeatures
 from .part_pools import PartPools
@@ -65,7 +64,6 @@ def compose_frames(
     stances: StanceFeatures,
     sampled: IndexArray,
     floor_m: float | None,
-    libraries: Sequence[Library],
 ) -> Part[Composition]:
     """Compose the postures of some frames.
 
@@ -75,8 +73,6 @@ def compose_frames(
         stances: Their stances.
         sampled: (T,) which frames.
         floor_m: Height of the floor; None where it is not known.
-        libraries: Those of the pools, whose whole motions are believed in as far as the clip shows them; not
-            asked between posed frames that are near each other.
 
     Yields:
         The fraction done.
@@ -114,10 +110,10 @@ def compose_frames(
         path = yield from scaled(leading, searched, led)
         posture = mean_postures(pools, stances, states, path)
         if not is_last:
-            at = zip(path.hips, sampled[rows], strict=True)
-            depth = np.array([camera.depth(place, int(frame)) for place, frame in at])
-            rough = _smoothed(np.interp(time_s, time_s[rows], depth), time_s)
-            telling = part_beliefs(given, libraries, pools, stances, sampled, posture, floor_m)
+            hips = np.stack([np.interp(time_s, time_s[rows], column) for column in path.hips.T], axis=-1)
+            hips = np.stack([_smoothed(column, time_s) for column in hips.T], axis=-1)
+            rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
+            telling = part_beliefs(given, pools, stances, sampled, posture, hips, floor_m)
             beliefs = yield from scaled(telling, led, ended)
     return Composition(path, states, posture, floor_m)
 

@@ -59,7 +59,7 @@ def composed_candidates(
     for rank in map(int, kept):
         near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
         own = torso if rank == 0 else int(some.stance[rank - 1]) // HEADINGS
-        name, flipped = pools.names[pools.torsos.source[own]]
+        name, flipped = pools.motions.names[pools.torsos.source[own]]
         share = float(weight[near].sum())
         found.append(
             Candidate(everyone[rank], name, flipped, confidence(share, explained, OTHER if rank else CHOSEN))

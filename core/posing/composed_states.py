@@ -19,7 +19,7 @@ from ..matching.emissions import EXCHANGED_COST, lowest
 from ..matching.frame_likelihood import FrameLikelihood, square_root
 from ..matching.noise_scales import student_cost
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
-from .library_belief import PartBelief
+from .library_motion import PartBelief
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 

@@ -12,14 +12,14 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import headings_rad, yawed_at
+from ..body.heading import yawed_at
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.limbs import LIMBS
 from ..body.mirror import mirrored
 from ..body.posture import Posture
 from ..library.library import Library
-from ..matching.posture_sequences import library_sequences
+from .known_motions import KnownMotions, known_motions
 
 ARM, LEG, TORSO = "arm", "leg", "torso"
 JOINTS = {
@@ -82,12 +82,8 @@ class PartPools:
     torsos: PartPool
     arms: PartPool
     legs: PartPool
-    known: Posture
-    """(S,) the libraries' postures and their mirror images, facing -Y, the hips at the origin."""
-    library: IndexArray
-    """(S,) number of the library that each is from, in the order in which they were given."""
-    names: tuple[tuple[str, bool], ...]
-    """(S,) name of each, and whether it is mirrored."""
+    motions: KnownMotions
+    """What the parts are of, see `PartPool.source`."""
     limb_cost: Mapping[str, Array]
     """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
     legs_together: Array
@@ -152,17 +148,8 @@ def content_of(libraries: Sequence[Library], body: Body) -> tuple[object, ...]:
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
-    found, names, numbers = [], [], []
-    for number, library in enumerate(libraries):
-        sequences = library_sequences(library, body)
-        if len(sequences):
-            found.append(sequences.posture)
-            names += [(sequences.name(i), sequences.is_mirrored(i)) for i in range(len(sequences))]
-            numbers += [number] * len(sequences)
-    one_side = Posture.concatenate(found)
-    everyone = Posture.concatenate([one_side, mirrored(one_side)])
-    names += [(name, not flipped) for name, flipped in names]
-    facing = yawed_at(everyone, -headings_rad(everyone), np.zeros((len(names), 3)))
+    motions = known_motions(libraries, body)
+    facing, names = motions.posture, motions.names
     samples = _samples(np.random.default_rng(0))
     torsos, arms, legs = (_pool(body, kind, facing, samples) for kind in (TORSO, ARM, LEG))
     # Sources are postures and then their mirror images: the right limb of one is the left limb of the other.
@@ -183,8 +170,7 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     apart = np.outer(both.sum(axis=1), both.sum(axis=0))
     ratio = both / np.maximum(apart, 1e-12)
     usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, MOST_TOGETHER))
-    of = np.array(2 * numbers, dtype=np.intp)
-    return PartPools(body, torsos, arms, legs, facing, of, tuple(names), limb_cost, usual)
+    return PartPools(body, torsos, arms, legs, motions, limb_cost, usual)
 
 
 def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:

@@ -116,7 +116,7 @@ class _Search:
         sampled = sampled_frames(
             given.evidence.tracks, np.concatenate([given.keyframes, given.constraints.frames])
         )
-        composing = compose_frames(given, self.pools, stances, sampled, floor_m, self.libraries)
+        composing = compose_frames(given, self.pools, stances, sampled, floor_m)
         composed = yield from within("Composing postures", composing, 0.0, COMPOSED_SHARE)
         fitting = _fitted(take, work, sampled, composed)
         postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)
