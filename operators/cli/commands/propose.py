@@ -8,7 +8,7 @@ from .evidence_options import add_evidence, add_keypoint_files
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the take, how many frames of it to propose, and the picture."""
+    """Add the take, and how many frames of it to propose."""
     parser.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
     add_keypoint_files(parser)
     add_evidence(parser)
@@ -16,7 +16,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
     )
     parser.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
-    parser.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
 
 
 def run(arguments: argparse.Namespace) -> None:
