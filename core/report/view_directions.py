@@ -4,6 +4,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..footage.camera import Camera
+from ..numerics.vectors import unit
 from .canvas import GRAY, PALE, Canvas
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -18,7 +19,7 @@ def side_directions(camera: Camera) -> Array:
     level = -matrix[:3, 2] * [1.0, 1.0, 0.0]
     if np.linalg.norm(level) < 0.1:  # looking straight down or up: the picture's upper edge is ahead
         level = matrix[:3, 1] * [1.0, 1.0, 0.0]
-    ahead = level / np.linalg.norm(level)
+    ahead = unit(level)
     return np.stack([ahead, UP, np.cross(UP, ahead)])
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
+from ...core.numerics.vectors import unit
 from .actions import assign_action, channelbag_for
 from .actor_lengths import skeleton_bones
 from .keys import add_generated_keys
@@ -107,7 +108,7 @@ def _bone_ends(armature_object: bpy.types.Object, bones: list[str]) -> Array:
 def _heading(left_to_right: Array, spare: Iterable[float]) -> float:
     """The mean direction faced by someone with the left hip (F, 3) from the right one."""
     facing = np.stack([left_to_right[:, 1], -left_to_right[:, 0]], axis=-1)
-    mean = (facing / np.maximum(np.linalg.norm(facing, axis=-1, keepdims=True), 1e-9)).mean(axis=0)
+    mean = unit(facing).mean(axis=0)
     x, y = mean if hypot(*mean) > FACING else spare
     return atan2(y, x)
 
