@@ -8,7 +8,7 @@ from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
 from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
 
-FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png", "report/strip.jpg")
+FILES = ("motion.json", "motion.blend", "motion.bvh", "report/overlay.png")
 RECORD = ConversionRecord(
     digest="00",
     keymark="0.0.0",

@@ -17,7 +17,7 @@ import numpy as np
 LARGEST_MEAN_ERROR_M = 0.035
 LARGEST_SHARE = {".": 0.6, "without_markers": 0.75}
 """Of the error of straight lines between the keyframes, by the folder of the motion in OUTPUT."""
-PICTURES_AT_LEAST = 5
+PICTURES_AT_LEAST = 2
 LARGEST_MM = {"skate_mm": 0.05, "penetration_mm": 2.0, "ik_fk_mm": 1.0}
 """Of the figures of the character's motion."""
 BLEND_STARTS = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")

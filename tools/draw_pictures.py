@@ -64,8 +64,6 @@ def _makers(results: Results, screenshots: Path) -> dict[str, Callable[[Path], N
         "character.jpg": lambda: read_picture(results.character / "report" / "character.png"),
         "comparison.jpg": draw_comparison,
         "libraries.jpg": draw_libraries,
-        "libraries_learned.jpg": lambda: read_picture(results.learned_sheet),
-        "libraries_matches.jpg": lambda: read_picture(results.matched / "report" / "matches.png"),
     }
     makers: dict[str, Callable[[Path], None]] = {
         MOVING: partial(draw_moving_picture, results),

@@ -76,6 +76,38 @@ class Piece:
             self.half_widths * girth,
         )
 
+    def rings(self, sides: int, cap: int, shaft: int) -> Array:
+        """(2 * cap + shaft + 1, sides, 3) rings around the piece, which half ellipsoids close [m].
+
+        Args:
+            sides: Corners of a ring.
+            cap: Bands of a half ellipsoid, which is as deep as the narrower half-width.
+            shaft: Bands between the two.
+        """
+        along = self.end - self.start
+        axis = along / np.linalg.norm(along)
+        rise = np.linspace(0.0, 0.5 * np.pi, cap + 1)
+        share = np.concatenate([np.zeros(cap), np.linspace(0.0, 1.0, shaft + 1), np.ones(cap)])
+        beyond = np.concatenate([-np.sin(rise[:0:-1]), np.zeros(shaft + 1), np.sin(rise[1:])])
+        widths = self.half_widths[0] + share[:, None] * (self.half_widths[1] - self.half_widths[0])
+        center = self.start + share[:, None] * along + (beyond * widths.min(axis=1))[:, None] * axis
+        # The pole keeps a tiny ring, so that every band is made of quads.
+        around = np.maximum(np.sqrt(1.0 - beyond**2), 1e-3)[:, None] * widths
+        angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)[:, None]
+        spokes = [
+            wide * np.cos(angle) * self.lateral + deep * np.sin(angle) * self.sagittal
+            for wide, deep in around
+        ]
+        return np.asarray(center[:, None] + np.stack(spokes))
+
+
+def ring_quads(rings: int, sides: int) -> IndexArray:
+    """(rings - 1, sides, 4) corners of the bands between neighboring rings, counterclockwise from outside."""
+    ring = np.arange(rings - 1)[:, None] * sides
+    side = np.arange(sides)[None, :]
+    following = (side + 1) % sides
+    return np.stack([ring + side, ring + following, ring + sides + following, ring + sides + side], axis=-1)
+
 
 @dataclass(frozen=True, eq=False)
 class PieceStack:

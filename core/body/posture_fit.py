@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray
+from ..numerics.least_squares import levenberg_marquardt
 from .kinematics import Body
 from .posture import Posture
 from .posture_guess import guess_posture
@@ -87,24 +88,14 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start
     weights = _neutral_weights(body)
-    cost, normal, gradient = _residuals(body, posture, targets, weights)
-    damping = np.full(len(targets), 1e-3)
-    diagonal = np.arange(body.skeleton.dof_count)
-    for _ in range(ITERATIONS):
-        damped = normal.copy()
-        damped[:, diagonal, diagonal] *= 1.0 + damping[:, None]
-        damped[:, diagonal, diagonal] += 1e-9
-        trial = posture.plus(-np.linalg.solve(damped, gradient[..., None])[..., 0])
-        trial_cost, trial_normal, trial_gradient = _residuals(body, trial, targets, weights)
-        better = trial_cost < cost
-        gain = np.where(better, (cost - trial_cost) / np.maximum(cost, 1e-12), 0.0)
-        posture = _choose(better, trial, posture)
-        cost = np.where(better, trial_cost, cost)
-        normal = np.where(better[:, None, None], trial_normal, normal)
-        gradient = np.where(better[:, None], trial_gradient, gradient)
-        damping = np.clip(np.where(better, damping * 0.2, damping * 8.0), 1e-9, 1e9)
-        if np.all(np.where(better, gain < CONVERGED, damping > 1e6)):
-            break
+    posture = levenberg_marquardt(
+        lambda batch: _residuals(body, batch, targets, weights),
+        posture,
+        Posture.plus,
+        _choose,
+        ITERATIONS,
+        CONVERGED,
+    )
     residual = np.linalg.norm(body.points(body.pose(posture)) - targets, axis=-1)
     return PostureFit(posture, residual)
 

@@ -3,6 +3,8 @@
 import numpy as np
 
 from ..arrays import Array
+from ..numerics.vectors import across as any_across
+from ..numerics.vectors import unit
 from . import rotations
 from .kinematics import Body
 from .posture import Posture
@@ -10,10 +12,6 @@ from .skeleton import SIDES
 
 STRAIGHT = 0.15
 """Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend."""
-
-
-def _unit(vector: Array) -> Array:
-    return np.asarray(vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9))
 
 
 def _frame(x: Array, y: Array, z: Array) -> Array:
@@ -26,8 +24,7 @@ def _least_turn(start: Array, goal: Array) -> Array:
     sine = np.linalg.norm(axis, axis=-1, keepdims=True)
     angle = np.arctan2(sine, np.sum(start * goal, axis=-1, keepdims=True))
     # Opposite vectors leave the axis free; any axis perpendicular to `start` will do.
-    across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
-    axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), _unit(across))
+    axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), any_across(start))
     return rotations.exponential(axis * angle)
 
 
@@ -40,7 +37,7 @@ def _limb(start: Array, upper: Array, lower: Array, bend: float) -> tuple[Array,
     default = _least_turn(start, upper)
     across = lower - np.sum(lower * upper, axis=-1, keepdims=True) * upper
     y = bend * across + STRAIGHT * default[..., :, 1]
-    y = _unit(y - np.sum(y * upper, axis=-1, keepdims=True) * upper)
+    y = unit(y - np.sum(y * upper, axis=-1, keepdims=True) * upper)
     flexion = np.arccos(np.clip(np.sum(upper * lower, axis=-1), -1.0, 1.0))
     if abs(start[0]) > 0.5:
         x = np.sign(start[0]) * upper
@@ -63,23 +60,23 @@ def guess_posture(body: Body, points: Array) -> Posture:
     point = {name: points[:, i] for i, name in enumerate(skeleton.point_names)}
     hips = 0.5 * (point["hip.L"] + point["hip.R"])
     shoulders = 0.5 * (point["shoulder.L"] + point["shoulder.R"])
-    trunk = _unit(shoulders - hips)
-    across = _unit(point["hip.L"] - point["hip.R"])
-    back = _unit(np.cross(trunk, across))
+    trunk = unit(shoulders - hips)
+    across = unit(point["hip.L"] - point["hip.R"])
+    back = unit(np.cross(trunk, across))
     pelvis = _frame(across, back, np.cross(across, back))
     level = point["shoulder.L"] - point["shoulder.R"]
-    level = _unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
+    level = unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
     chest = _frame(level, np.cross(trunk, level), trunk)
     turns = {"pelvis": pelvis, "waist": np.swapaxes(pelvis, -1, -2) @ chest}
-    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, _unit(point["head"] - shoulders)))
+    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, unit(point["head"] - shoulders)))
     angles: dict[str, Array] = {}
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
         for ball, middle, end, above, start, bend in (
             ("shoulder", "elbow", "wrist", chest, np.array([out, 0.0, 0.0]), -1.0),
             ("hip", "knee", "ankle", pelvis, np.array([0.0, 0.0, -1.0]), 1.0),
         ):
-            upper = _unit(point[f"{middle}.{side}"] - point[f"{ball}.{side}"])
-            lower = _unit(point[f"{end}.{side}"] - point[f"{middle}.{side}"])
+            upper = unit(point[f"{middle}.{side}"] - point[f"{ball}.{side}"])
+            lower = unit(point[f"{end}.{side}"] - point[f"{middle}.{side}"])
             turn, flexion = _limb(start, _in_frame(above, upper), _in_frame(above, lower), bend)
             turns[f"{ball}.{side}"], angles[f"{middle}.{side}"] = turn, flexion
     return _assemble(body, hips, turns, angles)

@@ -24,6 +24,7 @@ from ..body.standing_posture import ARMS_LOWERED_RAD, standing_height_m, standin
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
+from ..numerics.robust import student_cost, student_weight
 from ..observation.keypoints import USUAL_PLACES, KeypointModel
 from ..observation.regions import MarkerPlacement, RegionModel
 from .calibration import (
@@ -39,7 +40,6 @@ from .frame_residuals import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .performer_placement import ground_place
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
-from .terms.term import student_cost, student_weight
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""

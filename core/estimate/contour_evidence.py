@@ -17,6 +17,7 @@ from ..footage.appearance import Appearance, learn_appearance
 from ..footage.band_colors import BandColors
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
+from ..numerics.robust import student_weight
 from ..observation.contours import SHAPE, ContourModel, ContourPrediction
 from ..observation.limb_axes import LimbAxes
 from ..observation.part_map import part_map
@@ -26,7 +27,6 @@ from .contour_search import NARROW, Edges, SearchRange, find_edges
 from .keyframe_evidence import evenly_spread
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
 from .terms.limb_axes import AxialTerm
-from .terms.term import student_weight
 
 APPEARANCE_FRAMES = 32
 CHUNK_FRAMES = 50

@@ -15,6 +15,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.posture import Posture
+from ..numerics.robust import student_weight
 from ..observation.regions import RegionModel
 from .calibration import (
     LARGEST,
@@ -31,7 +32,6 @@ from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, 
 from .posing_error import POINT_STD_M, posing_covariance, velocities
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
-from .terms.term import student_weight
 
 LEAST_TRUSTED = 0.3
 """Least visibility and quality of a region that judges a keyframe."""

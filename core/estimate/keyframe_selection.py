@@ -17,6 +17,7 @@ from ..footage.keypoints.body_points import mirrored_point
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.keypoints.principal_keypoints import principal_keypoints
 from ..footage.region_tracks import RegionTracks
+from ..numerics.smoothing import columns_at
 from ..observation.regions import RegionModel
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
@@ -136,7 +137,7 @@ def _keypoint_error_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, k
     for pixel in (seen, mirrored):
         offset = (predicted - pixel) * meters[:, None, None]
         usual = np.nan_to_num(offset[index]).reshape(len(index), -1)
-        placement = np.stack([np.interp(every, index, column) for column in usual.T], axis=-1)
+        placement = columns_at(every, index, usual)
         squared = 0.5 * ((offset - placement.reshape(offset.shape)) ** 2).sum(axis=-1)  # (F, P)
         some = np.isfinite(squared).any(axis=1)
         median = np.full(frames, np.nan)

@@ -14,6 +14,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..footage.keypoints.body_points import mirror_images
 from ..footage.keypoints.keypoints import Keypoints
+from ..numerics.robust import multivariate_cost
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
@@ -154,7 +155,7 @@ def _extrapolated(seen: Array, step_s: Array) -> Array:
 def _cost(error: Array, std: Array) -> Array:
     """(F,) negative logarithm of Student's t of errors (F, P, 2, 2) [m]; what is not seen costs nothing."""
     squared = (error**2).sum(axis=-1) / std**2
-    cost = 0.5 * (DEGREES + 2.0) * np.log1p(squared / DEGREES)
+    cost = multivariate_cost(squared, DEGREES, 2)
     return np.asarray(ALIKE * np.nan_to_num(cost).sum(axis=(1, 2)))
 
 

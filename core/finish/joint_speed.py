@@ -1,9 +1,9 @@
 """Angles of joints over time, without leaps that no joint makes and without a tremor from frame to frame."""
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array
+from ..numerics.smoothing import gaussian, usual_step
 
 FASTEST_RAD_S = np.radians(700.0)
 """Angular speed of an ankle in a sprinter's push-off."""
@@ -19,9 +19,8 @@ def steadied(angles: Array, time_s: Array) -> Array:
     """
     if len(time_s) < 2:
         return angles
-    frame_s = max(float(np.median(np.diff(time_s))), 1e-6)
     slow = _slowed(angles, FASTEST_RAD_S * np.diff(time_s))
-    return np.asarray(gaussian_filter1d(slow, SMOOTHING_S / frame_s, axis=0, mode="nearest", truncate=3.0))
+    return gaussian(slow, SMOOTHING_S / usual_step(time_s), truncate=3.0)
 
 
 def _slowed(angles: Array, steps: Array) -> Array:

@@ -20,6 +20,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..arrays import Array, IndexArray
+from ..numerics.robust import multivariate_cost
+from ..numerics.vectors import unit
 from .camera import Camera
 from .camera_evidence import CLICK_STD_PX, CameraEvidence
 from .camera_placement import CameraPlacement
@@ -245,7 +247,7 @@ class _Problem:
         """Residuals whose squares are twice the negative logarithm of Student's t, where any are doubtful."""
         if not self.evidence.uprights.doubtful:
             return scaled
-        return np.asarray(np.sign(scaled) * np.sqrt((DEGREES + 1.0) * np.log1p(scaled**2 / DEGREES)))
+        return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, DEGREES, 1)))
 
     def _rows(self, x: Array) -> Array:
         """Residuals of picture and beliefs."""
@@ -281,7 +283,7 @@ def _line_residuals(camera: Camera, lines: Array, direction: Array) -> Array:
         return np.zeros(0)
     location, sight = camera.rays(lines.mean(axis=1))
     shown = camera.project_jacobian(location + sight) @ direction
-    shown /= np.maximum(np.linalg.norm(shown, axis=-1, keepdims=True), 1e-9)
+    shown = unit(shown)
     half = 0.5 * (lines[:, 1] - lines[:, 0])
     return np.asarray(np.sqrt(2.0) * (half[:, 0] * shown[:, 1] - half[:, 1] * shown[:, 0]))
 

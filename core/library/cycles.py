@@ -9,6 +9,7 @@ from ..body.heading import headings_rad, turned_and_shifted, yaw_rotation
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_spline import linear_spline
+from ..numerics.smoothing import columns_at
 from .library import Travel
 from .posture_shape import shape_vectors
 
@@ -48,7 +49,7 @@ def find_period_s(shape: Array, time_s: Array) -> float | None:
         return None
     step_s = (time_s[-1] - time_s[0]) / (count - 1)
     even = time_s[0] + step_s * np.arange(count)
-    rows = np.stack([np.interp(even, time_s, column) for column in shape.T], axis=1)
+    rows = columns_at(even, time_s, shape)
     rows -= rows.mean(axis=0)
     if np.sqrt(np.sum(rows**2, axis=1).mean()) < STILL_M:
         return None
@@ -111,7 +112,7 @@ def _whole_cycles(shape: Array, time_s: Array, period_s: float) -> tuple[float, 
     cycles = max(int(lasted / period_s), 1)
     starts = time_s[time_s <= time_s[-1] - cycles * period_s + 1e-9]
     ends = starts + cycles * period_s
-    there = np.stack([np.interp(ends, time_s, column) for column in shape.T], axis=1)
+    there = columns_at(ends, time_s, shape)
     apart = np.linalg.norm(there - shape[: len(starts)], axis=1)
     return float(starts[apart.argmin()]), cycles
 

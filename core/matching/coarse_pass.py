@@ -4,6 +4,7 @@ import numpy as np
 
 from ..arrays import IndexArray
 from ..footage.camera import Camera
+from ..numerics.smoothing import weighted_median
 from .emissions import FrameEmissions, StateFeatures, evaluate_emissions
 from .frame_likelihood import FrameLikelihood, frame_likelihoods
 from .match_evidence import MatchEvidence
@@ -75,6 +76,4 @@ def _median_height_m(
             share * (emission.hips[2] - states.vectors[-2, emission.states])
         ).sum() / share.sum()
         weights[frame] = likelihood.visible.sum()
-    order = np.argsort(heights)
-    half = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
-    return float(heights[order[min(half, len(order) - 1)]])
+    return weighted_median(heights, weights)

@@ -9,6 +9,7 @@ from ..arrays import Array, IndexArray, SingleArray
 from ..body.posture import Posture
 from ..footage.region_tracks import RegionTracks
 from ..library.library import Library
+from ..numerics.robust import student_weight
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Part, scaled
@@ -206,5 +207,5 @@ def _explained_share(refinement: Refinement, path: ContinuousPath, noise_scales:
     residual, *_ = refinement.residuals(path.sequence, path.values, np.ones(len(noise_scales.size)))
     squared = ((residual * noise_scales.centroid[:, None]) ** 2).sum(axis=-1)
     visible = np.array([likelihood.visible for likelihood in refinement.likelihoods])
-    weight = visible / (1.0 + squared / DEGREES_OF_FREEDOM)
+    weight = visible * student_weight(squared, DEGREES_OF_FREEDOM, 1)
     return np.asarray(weight.sum(axis=1) / np.maximum(visible.sum(axis=1), 1))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, BoolArray, SingleArray
+from ..numerics.robust import multivariate_cost, multivariate_weight
 from .match_evidence import MatchEvidence
 
 DEGREES_OF_FREEDOM = 4.0
@@ -38,8 +39,7 @@ class NoiseScales:
 
 def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
     """Negative log likelihood under Student's t of squared distances, up to a constant."""
-    factor = np.float32(0.5 * (DEGREES_OF_FREEDOM + dimensions))
-    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
+    return multivariate_cost(squared, DEGREES_OF_FREEDOM, dimensions)
 
 
 def student_scales(residual: Array, visible: BoolArray, tempering: float) -> Array:
@@ -55,7 +55,7 @@ def student_scales(residual: Array, visible: BoolArray, tempering: float) -> Arr
     scales = np.ones(residual.shape[1])
     frames = tempering * visible.sum(axis=0)
     for _ in range(ITERATIONS):
-        weight = (DEGREES_OF_FREEDOM + dimensions) / (DEGREES_OF_FREEDOM + squared / scales**2)
+        weight = multivariate_weight(squared / scales**2, DEGREES_OF_FREEDOM, dimensions)
         total = tempering * np.where(visible, weight * squared, 0.0).sum(axis=0) / dimensions
         scales = np.sqrt((total + PRIOR_FRAMES) / (frames + PRIOR_FRAMES))
     return np.clip(scales, SMALLEST_SCALE, LARGEST_SCALE)

@@ -13,6 +13,7 @@ from scipy.linalg import solveh_banded
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.heading import yaw_rotation
+from ..numerics.robust import multivariate_weight
 from .frame_likelihood import FrameLikelihood, square_root, unstretched
 from .match_evidence import INDEPENDENT_POINTS
 from .noise_scales import DEGREES_OF_FREEDOM, NoiseScales, student_scales
@@ -211,9 +212,7 @@ class Refinement:
         trust = np.ones((len(rows), now[0].shape[1] + now[1].shape[1]))
         # A posture missing in the library tells little of the time; its place counts in full.
         squared = (now[1] ** 2).sum(axis=1, keepdims=True)
-        trust[:, 3:] = np.sqrt(
-            (DEGREES_OF_FREEDOM + INDEPENDENT_POINTS * 3.0) / (DEGREES_OF_FREEDOM + squared)
-        )
+        trust[:, 3:] = np.sqrt(multivariate_weight(squared, DEGREES_OF_FREEDOM, INDEPENDENT_POINTS * 3.0))
         residual = np.concatenate(now, axis=1) * trust
         jacobian = np.empty((*residual.shape, UNKNOWNS))
         for unknown in range(UNKNOWNS):
@@ -229,7 +228,7 @@ class Refinement:
         share = self.likelihoods[0].share
         for value, now, weight in zip(values, at, (share, 1.0, share, 1.0), strict=True):
             squared = (now**2).sum(axis=-1)
-            trust = np.sqrt(weight * (DEGREES_OF_FREEDOM + now.shape[-1]) / (DEGREES_OF_FREEDOM + squared))
+            trust = np.sqrt(weight * multivariate_weight(squared, DEGREES_OF_FREEDOM, now.shape[-1]))
             rows.append((value * trust[..., None]).reshape(len(value), -1))
         return np.asarray(np.sqrt(self.tempering) * np.concatenate(rows, axis=1))
 

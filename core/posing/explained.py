@@ -8,6 +8,7 @@ from ..matching.frame_likelihood import frame_likelihoods
 from ..matching.marker_moments import marker_moments
 from ..matching.match_input import MatchInput
 from ..matching.noise_scales import DEGREES_OF_FREEDOM
+from ..numerics.robust import student_weight
 
 CONTRADICTING = 3.0
 """A marker or keypoint farther off than this many deviations between performers has not been explained."""
@@ -34,7 +35,7 @@ def explained_shares(given: MatchInput, frames: IndexArray, posture: Posture) ->
         residual = np.einsum("aki,ai->ak", likelihood.image_axes, places[row] - likelihood.location)
         distance = np.linalg.norm(residual * likelihood.weight[:, None], axis=-1)
         off[row, likelihood.visible] = distance[likelihood.visible]
-        shares[row] = float((1.0 / (1.0 + off[row, likelihood.visible] ** 2 / DEGREES_OF_FREEDOM)).mean())
+        shares[row] = float(student_weight(off[row, likelihood.visible] ** 2, DEGREES_OF_FREEDOM, 1).mean())
     return shares, off
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..arrays import IndexArray, SingleArray
 from ..estimate.terms.balance import STEP_M
 from ..matching.noise_scales import student_cost
+from ..numerics.robust import multivariate_cost
 
 MOST_PAIRED = 12
 """Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""
@@ -65,8 +66,7 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
     along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
     off = center - first - along[..., None].astype(np.float32) * way
     squared = (off * off).sum(axis=-1) / np.float32(BALANCE_STD_M**2)
-    size = np.float32(BALANCE_DEGREES)
-    falling = np.float32(0.5) * (size + 2.0) * np.log1p(squared / size)
+    falling = multivariate_cost(squared, BALANCE_DEGREES, 2)
     stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
     return np.asarray(np.minimum(stands, NO_CONTACT_COST))
 

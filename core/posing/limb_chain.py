@@ -14,6 +14,8 @@ from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
+from ..numerics.vectors import across as any_across
+from ..numerics.vectors import unit
 
 STEMS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 """Principal points of each kind of limb: root, middle and end. The first two are joints as well."""
@@ -92,7 +94,7 @@ def aimed(body: Body, posture: Posture, limb: LimbChain, middle: Array, end: Arr
     """
     pose = body.pose(posture)
     root = body.points(pose)[limb.columns[0]]
-    upper, lower = _unit(middle - root), _unit(end - middle)
+    upper, lower = unit(middle - root), unit(end - middle)
     before = pose.rotation[limb.above] @ posture.rotations[limb.ball]
     turn, bend = _turn_and_bend(limb, upper, lower, before, float(body.skeleton.limits[limb.dofs[3], 0]))
     return with_limb(posture, limb, pose.rotation[limb.above].T @ turn, bend)
@@ -114,14 +116,14 @@ def limb_excess_rad(posture: Posture, limb: LimbChain) -> Array:
 
 def swing(start: Array, goal: Array) -> Array:
     """(3, 3) the shortest turn from one direction (3,) of the world to another."""
-    before, after = _unit(start), _unit(goal)
+    before, after = unit(start), unit(goal)
     axis = np.cross(before, after)
     sine = float(np.linalg.norm(axis))
     if sine < NO_BEND:
         if before @ after > 0.0:
             return np.eye(3)
-        axis = np.cross(before, np.eye(3)[np.argmin(np.abs(before))])  # half a turn, about any axis across
-    return np.asarray(rotations.hinge(_unit(axis), np.arctan2(sine, before @ after)))
+        axis = any_across(before)  # half a turn, about any axis across
+    return np.asarray(rotations.hinge(unit(axis), np.arctan2(sine, before @ after)))
 
 
 def _turn_and_bend(
@@ -136,16 +138,12 @@ def _turn_and_bend(
         across = kept - (kept @ upper) * upper
         if np.linalg.norm(across) < NO_BEND:  # turned exactly to where it bent to
             across = np.cross(before @ limb.rest[:, 2], upper)
-    turns = [(_frame(upper, _unit(across)) @ limb.rest.T, bend)]
+    turns = [(_frame(upper, unit(across)) @ limb.rest.T, bend)]
     if -bend >= least_bend:
         # An elbow or knee may be stretched a little too far instead of twisted half round.
-        turns.append((_frame(upper, -_unit(across)) @ limb.rest.T, -bend))
+        turns.append((_frame(upper, -unit(across)) @ limb.rest.T, -bend))
     return max(turns, key=lambda each: float(np.trace(before.T @ each[0])))
 
 
 def _frame(first: Array, second: Array) -> Array:
     return np.column_stack([first, second, np.cross(first, second)])
-
-
-def _unit(vector: Array) -> Array:
-    return np.asarray(vector / max(float(np.linalg.norm(vector)), 1e-12))

@@ -17,6 +17,7 @@ from ..body.kinematics import Body, Pose
 from ..body.limbs import TRUNK
 from ..body.skeleton import Skeleton
 from ..library.library import Library
+from ..numerics.robust import multivariate_cost
 from .known_postures import PARTS, KnownPostures, known_postures, part_shapes
 from .part_pools import JOINTS, TORSO
 
@@ -100,7 +101,7 @@ def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
     """
     # |a - b|² = |a|² + |b|² - 2 a·b: one product instead of all differences.
     squared = (shape**2).sum(-1)[:, None] + (known**2).sum(-1) - 2.0 * shape @ known.T
-    kernel = -0.5 * (DEGREES + DIMENSIONS) * np.log1p(np.maximum(squared, 0.0) / (DEGREES * KERNEL_M**2))
+    kernel = -multivariate_cost(np.maximum(squared, 0.0) / KERNEL_M**2, DEGREES, DIMENSIONS)
     if other is None:
         return np.asarray(np.log(len(known)) - logsumexp(kernel, axis=-1))
     kernel = np.where(other, kernel, -np.inf)

@@ -14,6 +14,7 @@ from ..arrays import Array
 from ..body import rotations
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..numerics.least_squares import Equations, levenberg_marquardt
 
 LIMIT_STD_RAD = 0.02
 """Standard deviation of what is beyond a joint's limits, as in `body/posture_fit`."""
@@ -64,23 +65,14 @@ def pulled(
         allowed: A posture that is allowed whatever the joint limits; by default the one to start from.
     """
     problem = _Problem(body, posture, pulls, free, posture if allowed is None else allowed)
-    step = np.zeros(len(problem.dofs))
-    cost, normal, gradient = problem.equations(step)
-    damping = 1e-3
-    for _ in range(STEPS):
-        damped = normal + damping * np.diag(np.diag(normal))
-        trial = step - np.linalg.solve(damped, gradient)
-        trial_cost, trial_normal, trial_gradient = problem.equations(trial)
-        if trial_cost >= cost:
-            damping *= 8.0
-            if damping > 1e6:
-                break
-            continue
-        done = cost - trial_cost < CONVERGED * cost
-        step, cost, normal, gradient = trial, trial_cost, trial_normal, trial_gradient
-        damping = max(0.2 * damping, 1e-9)
-        if done:
-            break
+    (step,) = levenberg_marquardt(
+        problem.equations,
+        np.zeros((1, len(problem.dofs))),
+        np.add,
+        lambda better, trial, last: np.where(better[:, None], trial, last),
+        STEPS,
+        CONVERGED,
+    )
     return problem.moved(step)
 
 
@@ -110,8 +102,9 @@ class _Problem:
     def moved(self, step: Array) -> Posture:
         return self.start.plus(self._full(step))
 
-    def equations(self, step: Array) -> tuple[float, Array, Array]:
-        """Cost, normal matrix (N, N) and gradient (N,) at a step (N,)."""
+    def equations(self, steps: Array) -> Equations:
+        """Cost, normal matrix (1, N, N) and gradient (1, N) at a step (1, N)."""
+        (step,) = steps
         posture = self.moved(step)
         pose = self.body.pose(posture)
         about = self.start.plus_jacobian(self._full(step))
@@ -124,9 +117,9 @@ class _Problem:
         limits = _vector_slopes(posture, values) @ about / LIMIT_STD_RAD
         rows = np.concatenate([jacobian, limits[beyond != 0.0][:, self.dofs]])
         errors = np.concatenate([error, beyond[beyond != 0.0]])
-        cost = float(errors @ errors + self.stiffness @ step**2)
+        cost = errors @ errors + self.stiffness @ step**2
         normal = rows.T @ rows + np.diag(self.stiffness)
-        return cost, normal, rows.T @ errors + self.stiffness * step
+        return np.array([cost]), normal[None], (rows.T @ errors + self.stiffness * step)[None]
 
     def _full(self, step: Array) -> Array:
         full = np.zeros(self.body.skeleton.dof_count)

@@ -8,7 +8,7 @@ shows it, markers included. Without either the change of the pictures stands for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, median_filter
+from scipy.ndimage import median_filter
 
 from ..arrays import Array
 from ..body.limbs import limb_of
@@ -16,6 +16,7 @@ from ..footage.clips.album import Album
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.picture_motion import picture_motion
 from ..footage.region_tracks import RegionTracks
+from ..numerics.smoothing import columns_at, gaussian, usual_step
 from ..progress import Part
 from ..text import Sentence
 from .marker_speed import SMOOTHING_FRAMES, frame_times, marker_speed, point_speed
@@ -59,7 +60,7 @@ def evidence_speed(
     if album is None:
         return EvidenceSpeed(np.zeros(tracks.frame_count), FROM_NOTHING)
     moved = yield from picture_motion(album, tracks.frame_count)
-    return EvidenceSpeed(_smoothed(moved, JITTER_S, tracks.time_s), FROM_PICTURES)
+    return EvidenceSpeed(gaussian(moved, JITTER_S / usual_step(tracks.time_s)), FROM_PICTURES)
 
 
 def _speed_of_parts(tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints) -> Array:
@@ -78,7 +79,7 @@ def _speed_of_parts(tracks: RegionTracks, segments: tuple[str, ...], keypoints: 
         weight = sum(share for share, _ in speeds)
         if weight > 0.0:
             total += sum((share * speed for share, speed in speeds), np.zeros(len(total))) / weight
-    return np.asarray(gaussian_filter1d(total, SMOOTHING_FRAMES, mode="nearest")) if len(total) > 1 else total
+    return gaussian(total, SMOOTHING_FRAMES)
 
 
 def _cleaned(pixel: Array, time_s: Array) -> Array:
@@ -88,23 +89,9 @@ def _cleaned(pixel: Array, time_s: Array) -> Array:
         return pixel
     within = np.arange(seen[0], seen[-1] + 1)
     frames = np.arange(len(pixel))
-    path = np.stack([np.interp(within, seen, pixel[seen, axis]) for axis in (0, 1)], axis=-1)
-    half = max(1, round(0.5 * OUTLIER_S / _frame_s(time_s)))
+    path = columns_at(within, seen, pixel[seen])
+    half = max(1, round(0.5 * OUTLIER_S / usual_step(time_s)))
     calm = median_filter(path, size=(2 * half + 1, 1), mode="nearest")
     cleaned = np.full((len(frames), 2), np.nan)
-    cleaned[within] = _smoothed(calm, JITTER_S, time_s)
+    cleaned[within] = gaussian(calm, JITTER_S / usual_step(time_s))
     return cleaned
-
-
-def _smoothed(values: Array, deviation_s: float, time_s: Array) -> Array:
-    """Values smoothed along the first axis."""
-    if len(values) < 2:
-        return values
-    return np.asarray(gaussian_filter1d(values, deviation_s / _frame_s(time_s), axis=0, mode="nearest"))
-
-
-def _frame_s(time_s: Array) -> float:
-    """The median duration of a frame [s]."""
-    step = np.diff(time_s)
-    advancing = step[np.isfinite(step) & (step > 0.0)]
-    return float(np.median(advancing)) if len(advancing) else 1.0

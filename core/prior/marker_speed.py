@@ -1,10 +1,10 @@
 """V_sum, the summed speed of the markers in the image (paper, eq. 8)."""
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array
 from ..footage.region_tracks import RegionTracks
+from ..numerics.smoothing import columns_at, gaussian
 
 SMOOTHING_FRAMES = 1.0
 
@@ -28,9 +28,7 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     total = np.zeros(tracks.frame_count)
     for marker in range(len(tracks.names)):
         total += point_speed(tracks.centroid[:, marker], time)
-    if smoothing_frames > 0.0 and len(total) > 1:
-        total = np.asarray(gaussian_filter1d(total, smoothing_frames, mode="nearest"))
-    return total
+    return gaussian(total, smoothing_frames)
 
 
 def frame_times(time_s: Array) -> Array:
@@ -47,6 +45,6 @@ def point_speed(centroid: Array, time: Array) -> Array:
     if len(seen) < 2:
         return np.zeros(len(time))
     within = slice(seen[0], seen[-1] + 1)
-    path = np.stack([np.interp(time[within], time[seen], centroid[seen, axis]) for axis in (0, 1)], axis=-1)
+    path = columns_at(time[within], time[seen], centroid[seen])
     speed = np.linalg.norm(np.gradient(path, time[within], axis=0), axis=-1)
     return np.asarray(np.interp(np.arange(len(time)), np.arange(seen[0], seen[-1] + 1), speed))

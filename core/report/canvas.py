@@ -70,13 +70,6 @@ class Canvas:
                     SUBPIXEL_BITS,
                 )
 
-    def dashed(self, start: ArrayLike, end: ArrayLike, color: Color, dash: float = 5.0) -> None:
-        """Draw a thin dashed line."""
-        a, b = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
-        count = max(int(np.linalg.norm(b - a) / (2.0 * dash)), 1)
-        for share in np.arange(count) / count:
-            self.line([a + share * (b - a), a + (share + 0.5 / count) * (b - a)], color)
-
     def disc(self, center: ArrayLike, radius: float, color: Color) -> None:
         """Fill a circle."""
         self._circle(center, radius, color, cv2.FILLED)
@@ -114,15 +107,6 @@ class Canvas:
         (width, _), _ = cv2.getTextSize(words, FONT, size * SCALE / LETTER_PX, 1)
         return float(width) / SCALE
 
-    def vertical_text(self, words: str, x: float, y: float, size: float = 9.0, color: Color = INK) -> None:
-        """Write text upwards, with its middle at `y` and its baseline at `x`."""
-        width, height = round(self.text_width(words, size)) + 4, round(2.0 * size)
-        strip = Canvas(width, height)
-        strip.text(words, 2.0, 1.5 * size, size, color)
-        turned = np.ascontiguousarray(np.rot90(strip._pixels))
-        top, left = round(y - width / 2.0) * SCALE, round(x - 1.5 * size) * SCALE
-        self._pixels[top : top + turned.shape[0], left : left + turned.shape[1]] = turned
-
     def _circle(self, center: ArrayLike, radius: float, color: Color, thickness: int) -> None:
         point = np.asarray(center, dtype=np.float64)
         if np.isfinite(point).all():
@@ -147,17 +131,6 @@ def write_jpg(path: str, image: Image) -> None:
         OSError: The file cannot be written.
     """
     _write(path, image, ".jpg", [cv2.IMWRITE_JPEG_QUALITY, 85])
-
-
-def ticks(low: float, high: float, most: int) -> Sequence[float]:
-    """Round numbers from `low` to `high`, at most `most` of them: steps of 1, 2 or 5 times a power of ten."""
-    span = max(high - low, 1e-9)
-    power = 10.0 ** np.floor(np.log10(span / most))
-    step = next(
-        power * factor for factor in (1.0, 2.0, 5.0, 10.0, 20.0) if span / (power * factor) <= most - 1
-    )
-    first = np.ceil(low / step - 1e-9) + 0.0  # no negative zero
-    return [float(step * n) for n in np.arange(first, np.floor(high / step + 1e-9) + 1)]
 
 
 def _fixed(points: Array) -> NDArray[np.int32]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..numerics.vectors import unit
 from .canvas import Canvas, Color
 from .stick_figure import Projection
 
@@ -39,8 +40,7 @@ def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection)
     shown = np.flatnonzero(facing & np.isfinite(corners).all(axis=(1, 2)) & np.isfinite(away))
     world = figure.points[figure.triangles[shown]]
     normal = np.cross(world[:, 1] - world[:, 0], world[:, 2] - world[:, 0])
-    length = np.linalg.norm(normal, axis=-1, keepdims=True)
-    lit = (normal / np.maximum(length, 1e-12)) @ (LIGHT / np.linalg.norm(LIGHT))
+    lit = unit(normal) @ unit(LIGHT)
     shaded = figure.colors[shown] * (DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit))[:, None]
     for row in np.argsort(-away[shown], kind="stable"):
         blue, green, red = (int(value) for value in np.clip(shaded[row], 0.0, 255.0))

@@ -6,11 +6,12 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..footage.camera import Camera
-from .canvas import GRAY, INK, PALE, Canvas
+from .canvas import GRAY, INK, Canvas
+from .captions import ascii_text
 from .character_figure import CharacterFigure, draw_character
 from .contact_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
 from .square_crop import square_of, squares_around
-from .view_directions import view_directions
+from .view_directions import draw_grid, side_directions
 
 PICTURE = "character.png"
 """Name of the picture."""
@@ -48,7 +49,7 @@ def character_sheet(
     frames = list(figures)
     width = 2 * MARGIN + len(frames) * SIDE + (len(frames) - 1) * GAP
     canvas = Canvas(width, 2 * MARGIN + TITLE + len(rows) * SIDE + (len(rows) - 1) * GAP + FOOT)
-    canvas.text(_ascii(f"{name}: through the camera, and from the side"), MARGIN, MARGIN + 15, 12.0, INK)
+    canvas.text(ascii_text(f"{name}: through the camera, and from the side"), MARGIN, MARGIN + 15, 12.0, INK)
     words = (
         f"From the side in parallel projection about the hips; grid of {GRID_M:g} m. Numbers: scene frames."
     )
@@ -95,15 +96,12 @@ def _through_camera(figure: CharacterFigure, camera: Camera, frame: int, corner:
 
 def _from_side(figure: CharacterFigure, camera: Camera, side_m: float, floor_m: float) -> Image:
     """The character from its left side as the camera sees it, over a grid that begins at the floor."""
-    axes = view_directions("side", camera)
+    axes = side_directions(camera)
     middle = 0.5 * (figure.points.min(axis=0) + figure.points.max(axis=0))
     scale = SIDE / side_m
     low_m = min(float(figure.points[:, 2].min()), floor_m) - 0.5 * (1.0 - 1.0 / ROOM) * side_m
     tile = Canvas(SIDE, SIDE, PAPER)
-    for step in np.arange(-int(side_m / GRID_M), int(side_m / GRID_M) + 1) * GRID_M:
-        x, y = 0.5 * SIDE + scale * step, SIDE - scale * (floor_m + step - low_m)
-        tile.line([[x, 0.0], [x, SIDE]], PALE)
-        tile.line([[0.0, y], [SIDE, y]], GRAY if step == 0.0 else PALE, 1.6 if step == 0.0 else 1.0)
+    draw_grid(tile, scale * GRID_M, SIDE - scale * (floor_m - low_m))
 
     def project(points: Array) -> tuple[Array, Array]:
         right, _, away = axes @ (points - middle).T
@@ -112,8 +110,3 @@ def _from_side(figure: CharacterFigure, camera: Camera, side_m: float, floor_m: 
 
     draw_character(tile, figure, project)
     return tile.image()
-
-
-def _ascii(words: str) -> str:
-    """OpenCV writes ASCII alone."""
-    return words.encode("ascii", "replace").decode()

@@ -7,7 +7,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...core.arrays import Array, IndexArray
-from ...core.body.body_volume import Piece, body_pieces, marker_parts
+from ...core.body.body_volume import body_pieces, marker_parts, ring_quads
 from ...core.body.kinematics import Body
 from ...core.footage.marker_style import MarkerStyle
 from .actor_lengths import skeleton_bones
@@ -58,11 +58,11 @@ def build_body_mesh(
     for piece in body_pieces(body):
         model = axes[piece.segment]
         rest = np.array(armature_object.data.bones[piece.segment].matrix_local, dtype=np.float64)
-        rings = _limb(piece)
+        rings = piece.rings(SIDES_OF_RING, RINGS_OF_CAP, 1)
         # The joint's frame at the bone's rest, whatever the armature's rest pose is.
         start = body.local(next(s.start for s in body.skeleton.segments if s.name == piece.segment))
         placed = rest[:3, 3] + (rings.reshape(-1, 3) - start) @ model.axes @ rest[:3, :3].T
-        quads = _quads(len(rings))
+        quads = ring_quads(len(rings), SIDES_OF_RING)
         vertices.append(placed)
         faces.append(quads.reshape(-1, 4) + count)
         bands = _colored_bands(colored_caps.get(piece.segment, set()))
@@ -82,34 +82,6 @@ def _colored_bands(caps: set[int]) -> range:
     """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
     first = 0 if 0 in caps else RINGS_OF_CAP
     return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
-
-
-def _limb(piece: Piece) -> Array:
-    """Rings (R, sides, 3) along a piece in its joint's frame."""
-    along = piece.end - piece.start
-    axis = along / np.linalg.norm(along)
-    angle = np.linspace(0.0, 2.0 * np.pi, SIDES_OF_RING, endpoint=False)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)  # (sides, 2)
-    rings = []
-    # Half ellipsoids close both ends, as deep as the narrower half-width.
-    rise = np.linspace(0.0, 0.5 * np.pi, RINGS_OF_CAP + 1)
-    for end, direction, widths in ((0, -1.0, piece.half_widths[0]), (1, 1.0, piece.half_widths[1])):
-        center = piece.start if end == 0 else piece.end
-        for share in rise[::-1] if end == 0 else rise:
-            # The pole keeps a tiny ring, so that every band is made of quads.
-            around = circle * widths * max(float(np.cos(share)), 1e-3)
-            middle = center + direction * np.sin(share) * widths.min() * axis
-            rings.append(middle + around[:, :1] * piece.lateral + around[:, 1:] * piece.sagittal)
-    return np.stack(rings)
-
-
-def _quads(rings: int) -> IndexArray:
-    """(rings - 1, sides, 4) vertex indices of the bands between neighboring rings."""
-    ring = np.arange(rings - 1)[:, None] * SIDES_OF_RING
-    side = np.arange(SIDES_OF_RING)[None, :]
-    following = (side + 1) % SIDES_OF_RING
-    corners = [ring + side, ring + following, ring + SIDES_OF_RING + following, ring + SIDES_OF_RING + side]
-    return np.stack(corners, axis=-1)
 
 
 def _mesh(name: str, vertices: Array, faces: IndexArray, colors: list[int]) -> bpy.types.Mesh:

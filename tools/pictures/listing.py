@@ -12,7 +12,7 @@ from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_jpg, write_png
-from keymark.core.report.mannequin import View, draw_mannequin, view_axes
+from keymark.core.report.mannequin import View, draw_mannequin, mannequin, view_axes
 from keymark.core.report.posture_picture import TILT_RAD, backdrop
 from keymark.core.report.stick_figure import draw_figure, stick_figure
 from keymark.core.take.motion import Motion
@@ -108,7 +108,7 @@ def draw_figures(motion: Motion) -> Image:
         posture = motion.posture[frame]
         aside = FIGURE_SCALE * float(view_axes(TURN_RAD, TILT_RAD)[0] @ posture.translation)
         view = View(TURN_RAD, TILT_RAD, FIGURE_SCALE, (left + 0.5 * CARD[0] - aside, FLOOR_Y))
-        picture = draw_mannequin(picture, motion.body, posture, view)
+        picture = draw_mannequin(picture, mannequin(motion.body, posture), view)
     return picture
 
 

@@ -37,27 +37,12 @@ class Results:
         return self._made("demonstration", "convert", DEMO, *words)
 
     @cached_property
-    def matched(self) -> Path:
-        """Folder of its motion without any posing."""
-        evidence = "markers,keypoints,depth_hints,contours"
-        return self._made("matched", "convert", DEMO, "--keyframes", "auto", "--evidence", evidence)
-
-    @cached_property
     def character(self) -> Path:
         """Folder of the character that has the motion."""
         figure = self.folder / "human.blend"
         write_figure(figure)
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         return self._made("character", "retarget", self.converted, "--character", figure)
-
-    @cached_property
-    def learned_sheet(self) -> Path:
-        """A picture of the library that is learned from the motion."""
-        library, sheet = self.folder / "anna.json", self.folder / "anna.png"
-        names = ["--title", "Anna exercising", "--author", "Anna", "--count", "12"]
-        _keymark("library", "learn", self.converted / "motion.json", "--output", library, *names)
-        _keymark("library", "show", library, "--sheet", sheet)
-        return sheet
 
     def _made(self, name: str, *words: str | Path) -> Path:
         """Let the command line make a folder of results; returns it."""

@@ -17,8 +17,6 @@ DRAWN = (
     "character.jpg",
     "comparison.jpg",
     "libraries.jpg",
-    "libraries_learned.jpg",
-    "libraries_matches.jpg",
     "listing_featured.jpg",
     "listing_icon.png",
     *(f"{FILMING}{point}.jpg" for point in POINTS),

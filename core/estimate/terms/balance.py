@@ -14,8 +14,9 @@ from ...body.center_of_mass import mass_weights
 from ...body.kinematics import Body
 from ...body.skeleton import SIDES
 from ...body.soles import sole_places
+from ...numerics.robust import student_cost, student_weight
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost, student_weight
+from .term import NormalEquations
 
 DEGREES = 3.0
 """Of Student's t: whoever runs, leaps, kicks or leans on something is forgiven."""

@@ -6,9 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, BoolArray
+from ...numerics.robust import student_cost, student_weight
 from ...observation.contours import SHARES, SIDES, ContourModel, ContourPrediction
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost, student_weight
+from .term import NormalEquations
 
 SURFACE_SHARE = 0.2
 """Standard deviation of a part's contour as a whole, of its half-width: clothes, muscles."""

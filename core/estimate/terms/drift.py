@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from .term import NormalEquations, student_cost, student_weight
+from ...numerics.robust import student_cost, student_weight
+from .term import NormalEquations
 
 DEGREES = 4.0
 

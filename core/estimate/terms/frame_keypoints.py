@@ -9,11 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, BoolArray
+from ...numerics.robust import student_cost, student_weight
 from ...observation.depth_links import DepthLinks
 from ...observation.keypoints import KeypointModel
 from ..clip_state import ClipState
 from .keypoints import KeypointTerm
-from .term import NormalEquations, student_cost, student_weight
+from .term import NormalEquations
 
 DEGREES = 4.0
 

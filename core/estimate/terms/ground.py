@@ -10,8 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, IndexArray
+from ...numerics.robust import student_cost, student_weight
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost, student_weight
+from .term import NormalEquations
 
 DEGREES = 3.0
 """Of Student's t: leaps and stairs are forgiven."""

@@ -12,9 +12,10 @@ import numpy as np
 
 from ...arrays import Array, IndexArray
 from ...footage.region_tracks import RegionTracks
+from ...numerics.robust import student_cost, student_weight
 from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost, student_weight
+from .term import NormalEquations
 
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""

@@ -10,8 +10,9 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array
+from ...numerics.robust import student_cost, student_weight
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost
+from .term import NormalEquations
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 
@@ -34,7 +35,7 @@ class SmoothnessTerm:
         information = np.empty_like(second)
         for limb in state.prior.skeleton.limbs:
             squared = (second[:, limb] ** 2).sum(axis=1, keepdims=True)
-            information[:, limb] = self.degrees / (self.degrees + squared)
+            information[:, limb] = student_weight(squared, self.degrees, 1)
         information /= self.std**2
         columns = slice(0, second.shape[1])
         equations.matrix.add_combination(columns, SECOND_DIFFERENCE, information)

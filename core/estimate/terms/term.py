@@ -5,7 +5,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from ...arrays import Array, IndexArray
+from ...arrays import Array
 from ..block_banded import BlockBanded
 from ..clip_state import ClipState
 
@@ -77,20 +77,3 @@ def total_cost(terms: Iterable[Term], state: ClipState) -> Array:
     for term in sorted(terms, key=lambda term: term.robust):
         total = total + term.cost(state)
     return total
-
-
-def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:
-    """Weight of rows under Student's t noise (Lange, Little & Taylor 1989), 1 at zero residual.
-
-    Args:
-        squared: Sum of squared whitened residuals of each group of rows.
-        degrees: Degrees of freedom; fewer forgive more.
-        count: Rows in each group.
-    """
-    return np.asarray(degrees / (degrees + squared / np.maximum(count, 1)))
-
-
-def student_cost(squared: Array, degrees: float, count: int) -> Array:
-    """Negative logarithm of Student's t of groups of rows, up to a constant; see `student_weight`."""
-    size = degrees * count
-    return np.asarray(0.5 * size * np.log1p(squared / size))

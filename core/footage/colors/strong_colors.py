@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, Image
+from ...numerics.smoothing import weighted_median
 from ..segmentation.working_image import learning_image, smooth
 from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
 
@@ -89,9 +90,4 @@ def _densest(chroma: Array, weight: Array) -> Array:
 
 def _median(colors: Array, weight: Array) -> list[int]:
     """The weighted median of each channel, three whole numbers."""
-    middle = []
-    for channel in colors.T:
-        order = np.argsort(channel)
-        reached = np.searchsorted(np.cumsum(weight[order]), 0.5 * weight.sum())
-        middle.append(round(float(channel[order[reached]])))
-    return middle
+    return [round(weighted_median(channel, weight)) for channel in colors.T]

@@ -122,7 +122,7 @@ def _legend() -> str:
         f"<b>Good</b> is a mean of at least {good} and a weakest twentieth of at least {weakest}, "
         f"<b>fair</b> a mean of at least {fair}, <b>poor</b> anything below. Frames worth a keyframe are "
         "scene frames, the one that helps most first. On the pictures the performer\u2019s left limbs are "
-        "solid and blue, the right ones hollow and red; a click shows more of them, larger.</p></section>"
+        "solid and blue, the right ones hollow and red; a click shows all of them, larger.</p></section>"
     )
 
 

@@ -8,9 +8,6 @@ from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
 from ...take.used_evidence import UsedEvidence
 from ...text import pluralize
-from ..strip_layout import PICTURES as STRIP_FRAMES
-from ..strip_layout import SIZE as STRIP_SIZE
-from ..strip_layout import STRIP
 from .html_text import address, duration, escaped, isolated, percent, relative_path
 from .verdict import Verdict, current_record, verdict
 
@@ -29,7 +26,8 @@ SIGNS = {
 }
 """Signs of the verdicts, beside their words and colors."""
 REPORT = "report/"
-LARGE_PICTURE = f"{REPORT}overlay.png"
+PICTURE = f"{REPORT}overlay.png"
+"""The picture that stands for a take; the page shows a part, a click all of it."""
 FILE_ORDER = (".blend", ".bvh", ".json")
 """Suffixes of the files that people open, the most common first."""
 
@@ -74,17 +72,13 @@ def _name(outcome: Outcome, path: str) -> str:
 def _footage(path: str, record: ConversionRecord) -> str:
     length = f"{pluralize(record.frames, 'frame')}, {duration(record.frames / record.fps)}"
     words = f"<small>{length} at {record.fps:g} frames a second; {_made_from(record)}</small>"
-    name = f"{REPORT}{STRIP}"
-    if name not in record.files:
+    if PICTURE not in record.files:
         return words
-    shown = pluralize(min(STRIP_FRAMES, record.frames), "frame")
-    width, height = (pixels // 2 for pixels in STRIP_SIZE)
+    file = address(path, PICTURE)
     picture = (
-        f'<img src="{address(path, name)}" width="{width}" height="{height}" loading="lazy" decoding="async" '
-        f'alt="{shown} of the footage with the skeleton over them">'
+        f'<a class="frames" href="{file}"><img src="{file}" loading="lazy" '
+        'decoding="async" alt="frames of the footage with the skeleton over them"></a>'
     )
-    if LARGE_PICTURE in record.files:
-        picture = f'<a class="strip" href="{address(path, LARGE_PICTURE)}">{picture}</a>'
     return picture + words
 
 
@@ -151,7 +145,7 @@ def _frames(weak: Sequence[int]) -> str:
 
 def _files(path: str, record: ConversionRecord) -> str:
     results = [name for name in record.files if not name.startswith(REPORT)]
-    pictures = [name for name in record.files if name.startswith(REPORT) and name != f"{REPORT}{STRIP}"]
+    pictures = [name for name in record.files if name.startswith(REPORT)]
     lines = [", ".join(_link(path, name, name) for name in sorted(results, key=_file_order))]
     lines.append(", ".join(_link(path, name, PurePosixPath(name).stem) for name in pictures))
     return "<br>".join(line for line in lines if line)

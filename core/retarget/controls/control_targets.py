@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body import rotations
+from ...numerics.vectors import unit
 from ..character_motion import CharacterMotion
 from .control_plan import ControlKind, PlannedControl
 
@@ -67,8 +68,7 @@ def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Ar
         setting: The pole.
     """
     root, middle, end = joints
-    axis = end - root
-    axis = axis / np.maximum(np.linalg.norm(axis, axis=-1, keepdims=True), 1e-12)
+    axis = unit(end - root)
     foot = root + np.sum((middle - root) * axis, axis=-1, keepdims=True) * axis
     out = np.linalg.norm(middle - foot, axis=-1, keepdims=True)
     turn = rotations.exponential(-setting.offset_rad * axis)
@@ -86,6 +86,6 @@ def pole_offset(root: Array, middle: Array, end: Array, pole: Array) -> float:
         end: (3,) the limb's end.
         pole: (3,).
     """
-    axis = (end - root) / np.linalg.norm(end - root)
+    axis = unit(end - root)
     toward = [point - root - ((point - root) @ axis) * axis for point in (pole, middle)]
     return float(np.arctan2(np.cross(toward[0], toward[1]) @ axis, toward[0] @ toward[1]))

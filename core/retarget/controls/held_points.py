@@ -7,6 +7,7 @@ from enum import Enum
 import numpy as np
 
 from ...arrays import Array
+from ...numerics.vectors import across
 from ..character import Character
 from ..maps.character_map import CharacterMap
 from ..roles import LIMBS, MIDDLE
@@ -83,16 +84,10 @@ def _limb_points(
             end = bone.head + along
             kind = PointKind.END if role.split(".")[0] in ("hand", "foot") else PointKind.BODY
             places = [(bone.head, kind), (end, PointKind.BODY)]
-            places.append((end + LEVER * length * _across(along), PointKind.BODY))
+            places.append((end + LEVER * length * across(along), PointKind.BODY))
             places += [(point, PointKind.SOLE) for point in soles.get(role, ())]
             found += [HeldPoint(bone.name, _local(bone.rest, place), kind, limb) for place, kind in places]
     return found
-
-
-def _across(along: Array) -> Array:
-    """(3,) a unit vector at right angles."""
-    across = np.cross(along, np.eye(3)[np.abs(along).argmin()])
-    return np.asarray(across / max(float(np.linalg.norm(across)), LEAST_LENGTH))
 
 
 def _local(rest: Array, place: Array) -> Array:

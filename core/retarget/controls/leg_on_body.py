@@ -2,7 +2,8 @@
 
 from ...arrays import Array
 from ...body import rotations
-from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for, unit
+from ...numerics.vectors import unit
+from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for
 from .control_channels import ControlChannels
 from .control_motion import ControlMotion
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, BoolArray
+from ...numerics.vectors import unit
 from ..character_motion import CharacterMotion
 from .held_points import HeldPoint, PointKind
 
@@ -99,8 +100,7 @@ def pole_tolerance_m(joints: tuple[Array, Array, Array], distance_m: float, gene
         general_m: The tolerance [m].
     """
     root, middle, end = joints
-    line = end - root
-    line = line / np.maximum(np.linalg.norm(line, axis=-1, keepdims=True), LEAST_M)
+    line = unit(end - root)
     out = np.linalg.norm(np.cross(middle - root, line), axis=-1)
     reach = out + distance_m
     return np.asarray(np.minimum(general_m * reach / np.maximum(out, LEAST_M), POLE_RAD * reach))

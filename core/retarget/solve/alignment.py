@@ -14,9 +14,10 @@ from scipy.spatial.transform import Rotation
 from ...arrays import Array
 from ...body import rotations
 from ...body.skeleton import SIDES
+from ...numerics.vectors import unit
 from .rest_body import RestBody
 from .smoothing import ease
-from .two_bone import smallest_rotation, unit
+from .two_bone import smallest_rotation
 
 CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 """Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""

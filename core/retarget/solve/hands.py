@@ -15,13 +15,14 @@ from ...body import rotations
 from ...body.heading import UP
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
+from ...numerics.vectors import unit
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .ground import Ground
 from .rest_body import RestBody
 from .smoothing import ease, smoothed, speeds
 from .stage import Stage
-from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
+from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m
 
 NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;

@@ -1,10 +1,11 @@
 """Signals over time: speeds, values eased between two bounds, smoothed, or smoothly kept above others."""
 
 import numpy as np
-from scipy.ndimage import convolve1d, gaussian_filter1d, maximum_filter1d
+from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ...arrays import Array
 from ...finish.foot_ground import smooth_step
+from ...numerics.smoothing import columns_at, gaussian
 
 
 def ease(value: Array, start: float, end: float) -> Array:
@@ -33,16 +34,15 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
         return np.array(values)
     even, step = _evenly(time_s)
     columns = values.reshape(len(values), -1)
-    sampled = np.stack([np.interp(even, time_s, column) for column in columns.T], axis=1)
+    sampled = columns_at(even, time_s, columns)
     reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
     before, after = sampled[reach:0:-1], sampled[-2 : -reach - 2 : -1]
     if ends_kept:
         # Mirrored in value, too, about either end, so that the ends do not lag behind.
         before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
     extended = np.concatenate([before, sampled, after])
-    filtered = gaussian_filter1d(extended, deviation_s / step, axis=0, mode="nearest")
-    filtered = filtered[reach : reach + len(even)]
-    back = np.stack([np.interp(time_s, even, column) for column in filtered.T], axis=1)
+    filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
+    back = columns_at(time_s, even, filtered)
     return back.reshape(values.shape)
 
 

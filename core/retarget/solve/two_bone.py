@@ -10,6 +10,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...body import rotations
+from ...numerics.vectors import unit
 
 SOFT = 0.97
 """Share of its length from which a limb resists being stretched further by a goal."""
@@ -61,11 +62,6 @@ class LimbPose:
         line = unit(self.end - self.start)
         across = self.hinge - np.sum(self.hinge * line, axis=-1, keepdims=True) * line
         return unit(rotations.cross(line, across))
-
-
-def unit(vectors: Array) -> Array:
-    """Vectors (..., 3) made one long."""
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
 
 
 def stretched_m(wanted_m: Array, own_m: Array, length_m: float, soft: float = SOFT) -> Array:

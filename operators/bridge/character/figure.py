@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.numerics.vectors import across
 from ....core.report.canvas import LEFT, RIGHT, Color
 from ....core.report.character_figure import SKIN, CharacterFigure
 from ....core.retarget.figure_lines import FigureLine
@@ -111,7 +112,6 @@ def _ring(start: Array, end: Array) -> list[Array] | None:
     size = float(np.linalg.norm(along))
     if size < LEAST_M:
         return None
-    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
-    across /= np.linalg.norm(across)
-    other = np.cross(along / size, across)
-    return [start + WAIST * along + THICKNESS * size * (a * across + b * other) for a, b in CORNERS]
+    aside = across(along)
+    other = np.cross(along / size, aside)
+    return [start + WAIST * along + THICKNESS * size * (a * aside + b * other) for a, b in CORNERS]

@@ -4,13 +4,9 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from ....core.arrays import Array, IndexArray
-from ....core.files.json_file import write_atomically
 from ....core.prior.evidence_speed import EvidenceSpeed, evidence_speed
 from ....core.prior.keyframe_proposals import propose_keyframes
 from ....core.progress import Job, run, stretch, within
-from ....core.report.canvas import write_png
-from ....core.report.speed_plot import speed_plot
 from ....core.shoot.discovery import take_path
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
@@ -38,8 +34,6 @@ def propose_command(arguments: argparse.Namespace) -> None:
         speed = moved.values
         indices = propose_keyframes(speed, arguments.count, arguments.largest_gap)
         frames = [int(index) + take.frame_start for index in indices]
-        if arguments.picture is not None:
-            _write_picture(arguments.picture, speed, indices, take.frame_start)
         notes = [moved.note] if moved.note else []
         if not take.keyframes and (take.markers or take.keypoints):
             notes.append(UNPOSED)
@@ -70,11 +64,6 @@ def _speed_job(take: Take) -> Job[EvidenceSpeed]:
     return (yield from within("Measuring the speed", moved, READING_SHARE, 1.0))
 
 
-def _write_picture(path: Path, speed: Array, indices: IndexArray, start: int) -> None:
-    picture = speed_plot(speed, [int(index) for index in indices], start)
-    write_atomically(path, lambda staged: write_png(str(staged), picture))
-
-
 def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("take", metavar="TAKE", type=Path, help="take to pose, as in convert")
     add_keypoint_files(parser)
@@ -83,7 +72,6 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
         "--count", metavar="N", type=int, help="number of keyframes; by default 10 per 100 frames"
     )
     parser.add_argument("--largest-gap", metavar="N", type=int, help="most frames between two keyframes")
-    parser.add_argument("--picture", metavar="FILE", type=Path, help="write the speed plot there, a PNG")
 
 
 PROPOSE = Command(

@@ -16,7 +16,7 @@ from ....core.pipeline.found_keyframes import find_and_reconstruct, take_to_conv
 from ....core.pipeline.result import Conversion, conversion_record
 from ....core.progress import run
 from ....core.report.body_outlines import performer_contours
-from ....core.report.pictures import MATCHES, PICTURES, write_pictures
+from ....core.report.pictures import EARLIER_PICTURES, PICTURES, write_pictures
 from ....core.retarget.maps.choose_map import map_digests
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import RetargetRecord
@@ -49,8 +49,7 @@ RESULT_FILES = (
     CHARACTER_BLEND,
     RETARGET,
     CHARACTER_PICTURE,
-    *(f"{REPORT}/{name}" for name in PICTURES),
-    f"{REPORT}/{MATCHES}",
+    *(f"{REPORT}/{name}" for name in (*PICTURES, *EARLIER_PICTURES)),
 )
 """Every file that a conversion may make, but for the keyframes: a person may have corrected these meanwhile,
 so that only a conversion that makes them anew may replace them."""
@@ -169,7 +168,6 @@ def _convert(prepared: _Prepared, console: Console, debug: bool) -> Conversion:
             take,
             result.motion,
             result.tracks,
-            result.speed,
             compare_keypoints(result),
             performer_contours(result),
         )

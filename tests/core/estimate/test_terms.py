@@ -23,7 +23,8 @@ from keymark.core.estimate.terms.regions import (
 )
 from keymark.core.estimate.terms.smoothness import SmoothnessTerm
 from keymark.core.estimate.terms.stillness import StillnessTerm
-from keymark.core.estimate.terms.term import NormalEquations, Term, student_weight, total_cost
+from keymark.core.estimate.terms.term import NormalEquations, Term, total_cost
+from keymark.core.numerics.robust import student_weight
 from keymark.core.observation import depths
 from keymark.core.prior.process_noise import process_noise_factor
 

@@ -12,13 +12,12 @@ from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.observation.contours import ContourModel
 from keymark.core.report.body_outlines import OUTLINE
-from keymark.core.report.canvas import ACCENT, INK, LEFT, RIGHT, Canvas, ticks, write_png
+from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
 from keymark.core.report.contact_sheet import evenly_spaced_frames
 from keymark.core.report.keypoint_marks import SOURCE_COLORS, THROWN_OUT
 from keymark.core.report.overlay_sheet import CELL_WIDTH, overlay_sheet
 from keymark.core.report.pictures import PICTURES, write_pictures
-from keymark.core.report.speed_plot import speed_plot
-from keymark.core.report.view_sheet import view_sheet
+from keymark.core.report.side_sheet import side_sheet
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
@@ -61,7 +60,7 @@ def count(image: np.ndarray, color: tuple[int, int, int], tolerance: int = 12) -
 
 def test_all_pictures_are_written(take: Take, motion: Motion, tracks: RegionTracks, tmp_path: Path) -> None:
     """Every named file is a readable picture that is not blank."""
-    files = write_pictures(tmp_path / "report", take, motion, tracks, np.linspace(0.0, 9.0, FRAMES))
+    files = write_pictures(tmp_path / "report", take, motion, tracks)
     assert [file.name for file in files] == list(PICTURES)
     for file in files:
         image = cv2.imread(str(file))
@@ -83,8 +82,7 @@ def test_large_frames_are_kept_no_larger_than_drawn(
         return np.zeros((8, 8, 3), dtype=np.uint8)
 
     monkeypatch.setattr("keymark.core.report.pictures.overlay_sheet", sheet)
-    speed = np.linspace(0.0, 9.0, FRAMES)
-    write_pictures(tmp_path / "report", replace(take, clip=images), motion, tracks, speed)
+    write_pictures(tmp_path / "report", replace(take, clip=images), motion, tracks)
     assert sizes and set(sizes) == {(450, 800)}
 
 
@@ -155,52 +153,31 @@ def test_contours_are_drawn_only_where_there_are_no_markers(
     assert count(marked, OUTLINE, 40) < 20
 
 
-def test_keyframes_are_circled_at_their_value() -> None:
-    """The curve's keyframes carry rings; other frames do not."""
-    speed = np.zeros(101)
-    speed[50] = 10.0
-    without, with_key = speed_plot(speed, [], 1), speed_plot(speed, [50], 1)
-    changed = np.argwhere((without != with_key).any(axis=-1))
-    rows, columns = changed.min(axis=0), changed.max(axis=0)
-    assert abs((rows[1] + columns[1]) / 2 - (72 + 0.5 * (1200 - 24 - 72))) < 2.0
-    assert count(with_key, ACCENT) > count(without, ACCENT) + 30
-
-
-@pytest.mark.parametrize(
-    "speed",
-    [np.zeros(5), np.full(5, np.nan), np.array([1e-9, 1e9, 3.0]), np.zeros(1), np.array([np.nan, 2.0, 5.0])],
-)
-def test_any_speed_can_be_plotted(speed: np.ndarray) -> None:
-    """Still, hidden, immense and single frames give a picture with axes."""
-    image = speed_plot(speed, [0], -3)
-    assert image.shape == (420, 1200, 3) and count(image, INK, 60) > 100
-
-
-def test_side_view_shows_depth_and_front_view_does_not(motion: Motion) -> None:
-    """An arm stretched away from the camera is wide from the side and narrow from the front."""
+def test_the_side_shows_depth(motion: Motion) -> None:
+    """An arm stretched away from the camera is wide, one stretched across the picture is not."""
     names = BODY.skeleton.dof_names
-    vector = np.zeros((FRAMES, len(names)))
-    vector[:, names.index("shoulder.L.rotation_z")] = -np.pi / 2
-    vector[:, names.index("shoulder.R.rotation_y")] = -np.pi / 2
-    posture = type(motion.posture).from_vector(BODY.skeleton, vector)
-    reaching = replace(motion, posture=posture, points=BODY.points(BODY.pose(posture)))
     spans = {}
-    for view in ("front", "side"):
-        image = view_sheet(view, reaching, CAMERA_AHEAD, [5])
+    for turn in (-np.pi / 2, 0.0):
+        vector = np.zeros((FRAMES, len(names)))
+        vector[:, names.index("shoulder.L.rotation_z")] = turn
+        vector[:, names.index("shoulder.R.rotation_y")] = -np.pi / 2
+        posture = type(motion.posture).from_vector(BODY.skeleton, vector)
+        reaching = replace(motion, posture=posture, points=BODY.points(BODY.pose(posture)))
+        image = side_sheet(reaching, CAMERA_AHEAD, [5])
         drawn = np.argwhere(np.abs(image[52:260].astype(int) - LEFT).max(axis=-1) <= 12)
         upper = drawn[drawn[:, 0] < 105]
-        spans[view] = float(np.ptp(upper[:, 1])) if len(upper) else 0.0
-    assert spans["side"] > 1.5 * spans["front"]
+        spans[turn] = float(np.ptp(upper[:, 1])) if len(upper) else 0.0
+    assert spans[-np.pi / 2] > 1.5 * spans[0.0]
 
 
 @pytest.mark.parametrize("pitch", [-90.0, 90.0])
-def test_a_camera_that_looks_straight_down_or_up_has_views(motion: Motion, pitch: float) -> None:
+def test_a_camera_that_looks_straight_down_or_up_is_seen_from_the_side(motion: Motion, pitch: float) -> None:
     """Where the camera has no level direction, the picture's upper edge is ahead."""
     turn = np.radians(90.0 + pitch)
     matrix = np.eye(4)
     matrix[1:3, 1:3] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
     camera = Camera.from_dict({**CAMERA, "matrix_world": matrix.tolist()})
-    assert count(view_sheet("top", motion, camera, [0, 5]), LEFT) > 50
+    assert count(side_sheet(motion, camera, [0, 5]), LEFT) > 50
 
 
 @pytest.mark.parametrize(("frame_count", "shown"), [(1, 1), (2, 2), (12, 12), (118, 12)])
@@ -209,18 +186,6 @@ def test_frames_shown_are_spread_from_first_to_last(frame_count: int, shown: int
     frames = evenly_spaced_frames(frame_count)
     assert len(frames) == shown and frames[0] == 0 and frames[-1] == frame_count - 1
     assert len(set(np.diff(frames))) <= 2
-
-
-@pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (1.0, 118.0), (0.0, 0.003), (-7.0, 3.0), (5.0, 5.0)])
-def test_ticks_are_round_and_inside(low: float, high: float) -> None:
-    """Ticks are within the axis, evenly spaced, and at most as many as requested."""
-    marks = ticks(low, high, 7)
-    assert 1 <= len(marks) <= 7
-    assert min(marks) >= low - 1e-9 and max(marks) <= high + 1e-9 * max(1.0, abs(high))
-    if len(marks) > 1:
-        step = marks[1] - marks[0]
-        assert np.allclose(np.diff(marks), step)
-        assert round(step / 10.0 ** np.floor(np.log10(step * 1.0001)), 6) in (1.0, 2.0, 5.0)
 
 
 def test_a_line_breaks_at_what_is_not_finite_and_stays_on_the_canvas() -> None:

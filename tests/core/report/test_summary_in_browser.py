@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 import pytest
 from _outcomes import converted, failed, waiting
-from keymark.core.report.canvas import write_jpg
-from keymark.core.report.strip_layout import SIZE
+from keymark.core.report.canvas import write_png
 from keymark.core.report.summary.page import summary_page
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome")
 BROWSER = next((found for found in map(shutil.which, BROWSERS) if found), None)
 TAKES = 40
+WIDTH = 400
 NAME = "day 1/50% #2? <b>\"ż\" & 'co'"
 PROBE = """
 for (const image of document.images) image.loading = "eager";
@@ -53,7 +53,7 @@ addEventListener("load", () => {
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A page with a probe in it, and a strip for every take that converted."""
+    """A page with a probe in it, and a picture for every take that converted."""
     output = tmp_path_factory.mktemp("browser") / "results #1"
     good = [converted(output, f"day 2/clip {n:02d}", confidence=0.55 + 0.01 * n) for n in range(TAKES)]
     other = [
@@ -62,10 +62,10 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         failed(output, "day 3/<script>throw 1</script>", "clip.mp4: <img src=x onerror=alert(1)>"),
         waiting(output, "day 4/\u202egpj.exe"),
     ]
-    picture = np.full((SIZE[1], SIZE[0], 3), 128, dtype=np.uint8)
+    picture = np.full((90, WIDTH, 3), 128, dtype=np.uint8)
     for outcome in (*good, other[0]):
         (outcome.folder / "report").mkdir(parents=True)
-        write_jpg(str(outcome.folder / "report" / "strip.jpg"), picture)
+        write_png(str(outcome.folder / "report" / "overlay.png"), picture)
     text = summary_page("autumn", [*good, *other], output)
     digest = base64.b64encode(hashlib.sha256(PROBE.encode()).digest()).decode()
     text = text.replace("script-src ", f"script-src 'sha256-{digest}' ", 1)
@@ -96,7 +96,7 @@ def test_a_browser_shows_everything_and_searches_and_sorts(page: Path, tmp_path:
     """In a wide window: every row and picture, no warning; search and order change the rows."""
     seen = look(page, tmp_path, 1400)
     assert len(seen["all"]) == TAKES + 4 and seen["shown"] and seen["styled"] == "3px" and seen["wide"] <= 0
-    assert seen["images"] == [SIZE[0]] * (TAKES + 1)
+    assert seen["images"] == [WIDTH] * (TAKES + 1)
     assert seen["all"][2] == NAME and seen["all"][-1] == "day 4/\\u202egpj.exe"
     assert seen["found"] == ["day 3/" + "long" * 40] and seen["count"] == f"1 of {TAKES + 4}"
     assert seen["name"] == sorted(seen["name"]) and set(seen["name"]) == set(seen["all"])

@@ -38,7 +38,7 @@ def page(*outcomes: Outcome) -> Page:
 
 def hostile(name: str, text: str) -> tuple[Outcome, Outcome]:
     """A converted and a failed take with a text in every field."""
-    files = {f"{name}.json": "", f"report/{name}.png": "", "report/strip.jpg": "", "report/overlay.png": ""}
+    files = {f"{name}.json": "", f"report/{name}.png": "", "report/overlay.png": ""}
     evidence = UsedEvidence((text,), (UsedKeypoints(text, ("nose",), 1.0),))
     record = ConversionRecord(
         **{

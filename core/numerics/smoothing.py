@@ -1,0 +1,32 @@
+"""Signals over time: their step, interpolated, and smoothed."""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from ..arrays import Array
+
+
+def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
+    """Median step of times (F,) that advances [s]; `otherwise` where none does."""
+    step = np.diff(time_s)
+    advancing = step[np.isfinite(step) & (step > 0.0)]
+    return float(np.median(advancing)) if len(advancing) else otherwise
+
+
+def columns_at(at: Array, known: Array, values: Array) -> Array:
+    """Columns (K, N) known at rising places (K,), interpolated linearly at (F,), as (F, N); flat beyond."""
+    return np.stack([np.interp(at, known, column) for column in np.asarray(values).T], axis=-1)
+
+
+def gaussian(values: Array, deviation: float, truncate: float = 4.0) -> Array:
+    """Values (F, ...) under a Gaussian of a `deviation` in rows, which ends after `truncate` deviations."""
+    if len(values) < 2 or not deviation > 0.0:
+        return values
+    return np.asarray(gaussian_filter1d(values, deviation, axis=0, mode="nearest", truncate=truncate))
+
+
+def weighted_median(values: Array, weights: Array) -> float:
+    """The value up to which, in order, half of the weights (N,) lie."""
+    order = np.argsort(values)
+    half = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
+    return float(values[order[min(half, len(order) - 1)]])

@@ -1,0 +1,120 @@
+"""Numerical methods against SciPy, closed forms and brute force."""
+
+import numpy as np
+import pytest
+from keymark.core.arrays import Array
+from keymark.core.numerics.least_squares import Equations, levenberg_marquardt
+from keymark.core.numerics.robust import multivariate_cost, multivariate_weight, student_cost, student_weight
+from keymark.core.numerics.smoothing import columns_at, gaussian, usual_step, weighted_median
+from keymark.core.numerics.vectors import across, unit
+from scipy.optimize import least_squares
+from scipy.stats import multivariate_t, t
+
+
+@pytest.mark.parametrize(("degrees", "dimensions"), [(3.0, 1), (4.0, 2), (4.0, 3)])
+def test_costs_are_those_of_students_t(degrees: float, dimensions: int) -> None:
+    """Up to a constant, for one row and several."""
+    rows = np.random.default_rng(1).normal(0.0, 4.0, (20, dimensions))
+    density = multivariate_t(np.zeros(dimensions), np.eye(dimensions), degrees)
+    expected = density.logpdf(np.zeros(dimensions)) - density.logpdf(rows)
+    np.testing.assert_allclose(multivariate_cost((rows**2).sum(-1), degrees, dimensions), expected)
+    one = t(degrees).logpdf(0.0) - t(degrees).logpdf(rows[:, 0])
+    np.testing.assert_allclose(multivariate_cost(rows[:, 0] ** 2, degrees, 1), one)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_weights_are_slopes_of_costs(count: int) -> None:
+    """The weight is twice the slope of the cost over the squared residual; that of a group is 1 at zero."""
+    squared, step = np.linspace(0.1, 30.0, 12), 1e-5
+    for cost, weight in (
+        (lambda s: student_cost(s, 4.0, count), student_weight(squared, 4.0, count)),
+        (lambda s: multivariate_cost(s, 4.0, count), multivariate_weight(squared, 4.0, count)),
+    ):
+        slope = (cost(squared + step) - cost(squared - step)) / (2.0 * step)
+        np.testing.assert_allclose(2.0 * slope, weight, rtol=1e-6)
+    assert student_weight(np.zeros(1), 4.0, count)[0] == 1.0
+
+
+def test_costs_keep_single_precision() -> None:
+    """A search over a million states must not become twice as large."""
+    assert multivariate_cost(np.ones(3, dtype=np.float32), 4.0, 2).dtype == np.float32
+
+
+def test_directions_are_one_long_and_across() -> None:
+    """Random vectors, axes and one without a direction."""
+    vectors = np.vstack([np.random.default_rng(2).normal(size=(20, 3)), np.eye(3), -np.eye(3)])
+    np.testing.assert_allclose(np.linalg.norm(unit(vectors), axis=-1), 1.0)
+    np.testing.assert_allclose(np.cross(unit(vectors), vectors), 0.0, atol=1e-12)
+    assert (np.sum(unit(vectors) * vectors, axis=-1) > 0.0).all()
+    assert np.isfinite(unit(np.zeros((2, 3)))).all()
+    for vector in vectors:
+        assert across(vector) @ vector == pytest.approx(0.0, abs=1e-12)
+        assert np.linalg.norm(across(vector)) == pytest.approx(1.0)
+
+
+def test_columns_are_interpolated_one_by_one() -> None:
+    """Between two known rows, and flat beyond them."""
+    values = np.array([[0.0, 10.0], [2.0, 30.0]])
+    found = columns_at(np.array([-1.0, 1.0, 2.0, 9.0]), np.array([1.0, 3.0]), values)
+    np.testing.assert_allclose(found, [[0.0, 10.0], [0.0, 10.0], [1.0, 20.0], [2.0, 30.0]])
+
+
+def test_a_gaussian_is_the_sum_by_brute_force() -> None:
+    """Ends are repeated; a deviation of zero and a single row change nothing."""
+    values = np.random.default_rng(3).normal(size=(30, 2))
+    offsets = np.arange(-8, 9)
+    kernel = np.exp(-0.5 * (offsets / 2.0) ** 2)
+    rows = np.clip(np.arange(30)[:, None] + offsets, 0, 29)
+    expected = np.einsum("k,fkc->fc", kernel / kernel.sum(), values[rows])
+    np.testing.assert_allclose(gaussian(values, 2.0), expected, atol=1e-12)
+    assert gaussian(values, 0.0) is values and gaussian(values[:1], 2.0).shape == (1, 2)
+
+
+def test_the_usual_step_leaves_out_what_does_not_advance() -> None:
+    """Repeated, unknown and returning stamps have no say."""
+    assert usual_step(np.array([0.0, 0.1, 0.1, 0.2, np.nan, 0.3, 0.2, 0.3])) == pytest.approx(0.1)
+    assert usual_step(np.array([4.0])) == 1.0 and usual_step(np.array([4.0, 4.0]), 0.5) == 0.5
+
+
+def test_a_weighted_median_counts_each_value_as_often_as_it_weighs() -> None:
+    """Whole weights: the median of the repeated values, the lower of two in the middle."""
+    rng = np.random.default_rng(4)
+    for _ in range(30):
+        values, weights = rng.normal(size=7), rng.integers(0, 5, 7)
+        weights[0] += 1
+        repeated = np.sort(np.repeat(values, weights))
+        assert weighted_median(values, weights) == repeated[(len(repeated) - 1) // 2]
+
+
+def test_levenberg_marquardt_finds_what_scipy_finds() -> None:
+    """Exponential curves with random starts, all at once; a problem at its minimum stays."""
+    rng = np.random.default_rng(5)
+    at = np.linspace(0.0, 2.0, 15)
+    true = rng.uniform(0.5, 2.0, (6, 2))
+    seen = true[:, :1] * np.exp(-true[:, 1:] * at) + rng.normal(0.0, 0.02, (6, 15))
+
+    def rows(x: Array, of: slice | int = slice(None)) -> Array:
+        return x[..., :1] * np.exp(-x[..., 1:] * at) - seen[of]
+
+    def equations(x: Array) -> Equations:
+        fall = np.exp(-x[:, 1:] * at)
+        jacobian = np.stack([fall, -x[:, :1] * at * fall], axis=-1)  # (N, R, 2)
+        error = rows(x)
+        normal = np.swapaxes(jacobian, 1, 2) @ jacobian
+        return (error**2).sum(-1), normal, np.einsum("nrd,nr->nd", jacobian, error)
+
+    def choose(mask: np.ndarray, first: Array, second: Array) -> Array:
+        return np.where(mask[:, None], first, second)
+
+    start = np.array([[3.0, 0.2]] * 6)
+    found = levenberg_marquardt(equations, start, np.add, choose, 100, 1e-12)
+    for index in range(6):
+        best = least_squares(
+            lambda x, of=index: rows(x, of), start[index], xtol=1e-14, ftol=1e-14, gtol=1e-14
+        )
+        np.testing.assert_allclose(found[index], best.x, rtol=1e-5)
+    again = levenberg_marquardt(equations, found, np.add, choose, 100, 1e-12)
+    np.testing.assert_allclose(again, found, rtol=1e-6)
+    assert (
+        equations(levenberg_marquardt(equations, start, np.add, choose, 3, 1e-12))[0] <= equations(start)[0]
+    ).all()
