@@ -39,12 +39,7 @@ def run_worker() -> None:
 
 
 def run_job(job: Job, send: Callable[[Message], None]) -> Done:
-    """Convert one take; an error becomes part of the message.
-
-    Args:
-        job: The take and its settings.
-        send: Sends messages on the progress.
-    """
+    """Convert one take; an error becomes part of the message."""
     started = time.perf_counter()
     try:
         description = job.take.describe()
