@@ -1,1 +1,1 @@
-"""What each command does: `use_cases/convert.py` is run by `commands/convert.py`, and so on."""
+"""What the commands on libraries, characters and detectors do: `use_cases/detect.py` for `commands/detect.py`, and so on."""
