@@ -1,1 +1,1 @@
-"""What the commands on libraries, characters and detectors do: `detect` for `commands/detect.py`, and so on."""
+"""What the commands on libraries, characters and detectors do: `detect` for `commands/detect`, and so on."""
