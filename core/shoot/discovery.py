@@ -159,11 +159,7 @@ DEEPEST = 64
 
 
 def open_shoot(path: Path, excluded: Path | None = None) -> Shoot:
-    """Find the takes of a shoot as the command line names it; their files are not read yet.
-
-    Args:
-        path: A folder of takes or one take, a list of takes (.jsonl), or one video.
-        excluded: A folder that is not searched, as that of the results.
+    """Find the takes of a folder, a list (.jsonl) or one video; their files are not read yet.
 
     Raises:
         InputError: There is no such shoot, it cannot be read, it has no take, or two takes of one name.

@@ -38,10 +38,6 @@ class Failure:
 def write_failure(output: Path, failure: Failure) -> None:
     """Write a failure.
 
-    Args:
-        output: The folder of all results.
-        failure: The failure of one take.
-
     Raises:
         ConversionError: The file cannot be written.
     """
@@ -72,10 +68,6 @@ def remove_failures_of_deleted_takes(output: Path, shoot: Shoot) -> None:
     """Remove failures of takes that no longer exist: else every library merged later would seem incomplete.
 
     A list or one clip does not tell whether other takes exist.
-
-    Args:
-        output: The folder of all results.
-        shoot: All takes.
     """
     known = {take.name for take in shoot.takes}
     for failure in read_failures(output):

@@ -147,12 +147,7 @@ NO_MARKERS = [
 
 
 def shoot_template(survey: ClipSurvey, below_another: bool) -> dict[str, Any]:
-    """The fields of a new `shoot.json`, in the order they are read in.
-
-    Args:
-        survey: The survey of the clips; at least one can be opened.
-        below_another: Whether a parent folder has a `shoot.json`, from which this one then inherits.
-    """
+    """The fields of a new `shoot.json` in order; `below_another`: it inherits from a parent folder's."""
     fields: dict[str, Any] = {
         "//": [
             "Describes all clips in this folder and below. Fill in every null, look at what is called a",

@@ -17,6 +17,10 @@ from .usage import print_error
 
 FEWEST_COLUMNS = 60
 """Narrower terminals are wrapped as if they had this many."""
+JOB_SHARE = 0.9
+"""Share of a command's progress that the job has; the rest is writing files."""
+VARIABLE, OPENJD = "KEYMARK_PROGRESS", "openjd"
+"""Environment variable that asks for progress as render farms read it, and the value that does."""
 
 
 def terminal_columns() -> int | None:
@@ -47,12 +51,8 @@ def wrapped(sentence: str, indent: int, columns: int | None) -> list[str]:
     )
 
 
-VARIABLE, OPENJD = "KEYMARK_PROGRESS", "openjd"
-"""Environment variable that asks for these lines, and the value that does."""
-
-
-class OpenjdProgress:
-    """A line for each percent and one for each stage, with the interface of a tqdm bar."""
+class _OpenjdBar:
+    """Lines of Open Job Description, which render farms read, by the interface of a tqdm bar."""
 
     def __init__(self, write: Callable[[str], object]) -> None:
         self.n = 0.0
@@ -61,13 +61,11 @@ class OpenjdProgress:
         self._text, self._percent = "", -1
 
     def set_description(self, text: str, refresh: bool = True) -> None:
-        """Write the status line of a new stage."""
         if text != self._text:
             self._text = text
             self._write(f"openjd_status: {text}")
 
     def update(self, more: float) -> None:
-        """Add to the percentage and write a line for each whole percent."""
         self.n += more
         percent = min(int(self.n), 100)
         if percent > self._percent:
@@ -75,22 +73,13 @@ class OpenjdProgress:
             self._write(f"openjd_progress: {percent}")
 
     def clear(self) -> None:
-        """Do nothing: lines need not make room for others."""
+        pass
 
     def refresh(self) -> None:
-        """Do nothing: lines stay."""
+        pass
 
     def close(self) -> None:
-        """Do nothing: there is nothing to take away."""
-
-
-def is_wanted() -> bool:
-    """Whether the environment asks for such lines."""
-    return os.environ.get(VARIABLE) == OPENJD
-
-
-JOB_SHARE = 0.9
-"""Share of a command's progress that the job has; the rest is writing files."""
+        pass
 
 
 class Console:
@@ -109,8 +98,8 @@ class Console:
         self._overall = ""
         self._since = time.perf_counter() if started is None else started
         self._bar: Any = None if quiet else _bar()
-        if is_wanted() and not quiet and not as_json:
-            self._bar = OpenjdProgress(self._write)
+        if os.environ.get(VARIABLE) == OPENJD and not quiet and not as_json:
+            self._bar = _OpenjdBar(self._write)
 
     def __enter__(self) -> "Console":
         """Start the command."""
@@ -133,7 +122,7 @@ class Console:
             self._bar.update(max(0.0, 100.0 * JOB_SHARE * progress.fraction - self._bar.n))
 
     def stage(self, name: str) -> None:
-        """Begin a stage; the time until the next one is pluralize as its time."""
+        """Begin a stage; the time until the next one counts as its time."""
         if name == self._stage:
             return
         self._stop()

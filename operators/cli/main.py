@@ -55,12 +55,11 @@ def _run(words: list[str]) -> int:
         for variable in ONE_THREAD:
             os.environ.setdefault(variable, "1")
     started = time.perf_counter()
+    chosen = next((word for word in words if not word.startswith("-")), None)
     try:
-        arguments = build_parser(next((word for word in words if not word.startswith("-")), None)).parse_args(
-            words
-        )
-        arguments.started = started
         with _sigterm_as_interrupt(), codec_silence(debug):
+            arguments = build_parser(chosen).parse_args(words)
+            arguments.started = started
             arguments.run(arguments)
         return DONE
     except SystemExit as stop:  # --help and --version

@@ -5,11 +5,21 @@ from pathlib import Path, PureWindowsPath
 
 from ...core.library.several_libraries import EVERY_LIBRARY
 from ...core.take.character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
+from ...core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
 from ...core.take.evidence_kinds import EVIDENCE, evidence_mistake, in_order
 from ...core.take.methods import METHODS
 from .usage import UsageError
 
 KINDS = ",".join(EVIDENCE)
+SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
+CHARACTER_HELP = (
+    "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "
+    "where it has several"
+)
+MAP_HELP = (
+    "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
+    "recognition; none: recognition"
+)
 
 
 def add_evidence(parser: argparse.ArgumentParser, condition: str = "") -> None:
@@ -32,19 +42,6 @@ def add_keypoint_files(parser: argparse.ArgumentParser) -> None:
         action="append",
         help="file or folder of keypoints that a detector has found in the clip; may be given several times; "
         "by default TAKE/keypoints.json where it is there",
-    )
-
-
-def add_keypoint_names(parser: argparse.ArgumentParser) -> None:
-    """Add keypoint files by the name that they have in every take."""
-    parser.add_argument(
-        "--keypoints",
-        metavar="NAME",
-        type=_name_in_take,
-        action="append",
-        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
-        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
-        "it is there",
     )
 
 
@@ -71,12 +68,17 @@ def _name_in_take(text: str) -> Path | None:
     return Path(text)
 
 
-SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"
-
-
-def add_defaults(parser: argparse.ArgumentParser) -> None:
+def add_shoot_options(parser: argparse.ArgumentParser) -> None:
     """Add keypoints, evidence, keyframes, library, floor and method for takes whose shoot names none."""
-    add_keypoint_names(parser)
+    parser.add_argument(
+        "--keypoints",
+        metavar="NAME",
+        type=_name_in_take,
+        action="append",
+        help="name of the keypoint file or folder of every take where nothing in SHOOT names one: "
+        "TAKE/NAME, or CLIP.NAME beside a clip; may be given several times; by default keypoints.json where "
+        "it is there",
+    )
     add_evidence(parser, " where nothing in SHOOT says it")
     parser.add_argument(
         "--keyframes",
@@ -118,16 +120,6 @@ def _none_if_empty(text: str) -> str | None:
     return text or None
 
 
-CHARACTER_HELP = (
-    "the character's file (.blend, .fbx, .glb, .gltf or .vrm), and after a colon the name of its armature "
-    "where it has several"
-)
-MAP_HELP = (
-    "character map, by title or file; auto, the default: a saved one that knows the character's bones, else "
-    "recognition; none: recognition"
-)
-
-
 def add_retarget_options(parser: argparse.ArgumentParser) -> None:
     """Add how the motion is put onto the character."""
     parser.add_argument(
@@ -165,22 +157,28 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def wanted_keyframes(keyframes: str | None, library: str | None) -> tuple[Path | None, str | None]:
-    """The keyframe file, and the library to find keyframes with, as settings have them.
-
-    Args:
-        keyframes: A file's path; `EVERY_LIBRARY` to find keyframes with all libraries, as `library` may also
-            say; None or an empty text where nothing is said.
-        library: Name or file of a library, or `EVERY_LIBRARY`.
+def given_settings(arguments: argparse.Namespace) -> ConversionSettings:
+    """What the command line says of a conversion; None for what it leaves out, or is empty.
 
     Raises:
-        UsageError: The options contradict each other.
+        UsageError: A value is out of range, or options contradict each other.
     """
-    if keyframes != EVERY_LIBRARY:
-        return Path(keyframes) if keyframes else None, library
-    if library not in (None, EVERY_LIBRARY):
+    given = vars(arguments)
+    keyframes, library, floor_m = (given.get(name) for name in ("keyframes", "library", "floor"))
+    if keyframes == EVERY_LIBRARY and library not in (None, EVERY_LIBRARY):
         raise UsageError(
             f"--keyframes {keyframes} finds keyframes with all libraries, --library {library} with one; give "
             "one of them"
         )
-    return None, EVERY_LIBRARY
+    if floor_m is not None and not abs(floor_m) <= HIGHEST_FLOOR_M:
+        raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
+    every = keyframes == EVERY_LIBRARY
+    return ConversionSettings(
+        keyframes=Path(keyframes) if keyframes and not every else None,
+        library=EVERY_LIBRARY if every else library,
+        floor_m=floor_m,
+        method=given.get("method"),
+        pictures=False if given.get("no_report") else None,
+        keypoints=tuple(filter(None, given.get("keypoints") or ())) or None,
+        evidence=given.get("evidence"),
+    )

@@ -35,12 +35,7 @@ DARK_SHARE = 0.25
 
 
 def count_frames(clip: Clip, findings: Findings) -> int:
-    """Number of frames of a clip, as far as known without decoding it.
-
-    Args:
-        clip: The clip.
-        findings: Receives sentences on gaps, missing frames and uneven times.
-    """
+    """Number of frames of a clip, as far as known without decoding it."""
     if isinstance(clip.source, ImageSequence):
         findings.warn(*clip.source.notes)
     packets = read_packets(clip.path) if isinstance(clip.source, VideoFile) else None
@@ -64,12 +59,6 @@ def count_frames(clip: Clip, findings: Findings) -> int:
 
 def check_footage(take: Take, clip: Clip, frames: int, findings: Findings) -> tuple[MarkerReadout, ...]:
     """Check a take's clip.
-
-    Args:
-        take: The take, with the keyframes that a person posed.
-        clip: Its clip.
-        frames: Its number of frames.
-        findings: Receives the sentences.
 
     Returns:
         How well each marker is seen; empty where there is none, or no frame can be read.

@@ -17,14 +17,7 @@ MOST_NAMED = 3
 
 
 def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findings) -> None:
-    """Check keyframes that could be read.
-
-    Args:
-        take: A take.
-        frames: Number of frames of its clip.
-        others_found: Whether keyframes are found beside them, which fills gaps.
-        findings: Receives the sentences.
-    """
+    """Check keyframes that could be read."""
     _check_fit(take, findings)
     with findings.catching():
         check_frame_count(take, frames)  # first: a moving camera may lack the poses of keyframes

@@ -51,13 +51,7 @@ class KeypointReadout:
 
 
 def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[KeypointReadout, ...]:
-    """Check every file of a take's keypoints.
-
-    Args:
-        take: The take.
-        frames: Number of frames of its clip.
-        findings: Receives the sentences.
-    """
+    """Check every file of a take's keypoints."""
     readouts = []
     for people in take.keypoints:
         findings.warn(*people.notes)

@@ -43,11 +43,7 @@ _HEIGHT = "the performer's height in meters"
 
 
 def find_unfilled_fields(fields: Fields) -> tuple[str, ...]:
-    """A sentence on each field of a take that is null and must not be.
-
-    Args:
-        fields: The fields of its description.
-    """
+    """A sentence on each field of a take that is null and must not be."""
     sentences = []
     camera = _child(fields, "camera")
     posed = any(camera.has(name) for name in _POSES)

@@ -2,5 +2,5 @@
 
 `worker_pool` hands the jobs out and retries them, `worker_process` is a worker as the batch sees it, `worker`
 the same process from within, `protocol` what the two exchange; `batch_outcomes` stores the outcomes.
-Takes that are converted already are skipped by `conversion/skip_unchanged`, in the worker.
+Takes that are converted already are skipped in the worker, by `conversion/convert_take`.
 """

@@ -71,7 +71,7 @@ class Done:
     error: str | None = None
     """Why the job failed, in a sentence."""
     kind: str | None = None
-    """Kind of failure, see `core/shoot/outcomes/failures`."""
+    """Kind of failure, see `core/shoot/outcomes`."""
     memory_bytes: int | None = None
     """Resident memory of the worker after the job; None where the system does not tell."""
 

@@ -20,11 +20,6 @@ LINES, PAGE = "summary.jsonl", "summary.html"
 def write_summary(output: Path, shoot: Shoot, outcomes: Sequence[Outcome]) -> tuple[Path, ...]:
     """Write `summary.jsonl` and `summary.html`, each atomically; of several writers, the last one counts.
 
-    Args:
-        output: Folder of all results.
-        shoot: The shoot that is converted.
-        outcomes: The outcome of each of its takes.
-
     Returns:
         Paths of both files.
 

@@ -15,7 +15,7 @@ from ....core.progress import Progress
 from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
-from ..conversion.convert_take import convert_if_changed, convert_take
+from ..conversion.convert_take import convert_if_changed
 from ..usage import UsageError
 from .machine_resources import resident_bytes
 from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
@@ -39,18 +39,13 @@ def run_worker() -> None:
 
 
 def run_job(job: Job, send: Callable[[Message], None]) -> Done:
-    """Convert one take; an error becomes part of the message.
-
-    Args:
-        job: The take and its settings.
-        send: Sends messages on the progress.
-    """
+    """Convert one take; an error becomes part of the message."""
     started = time.perf_counter()
     try:
         description = job.take.describe()
         settings = job.take.settings(description, job.defaults)
-        convert = convert_take if job.again else convert_if_changed
-        made = convert(description, job.folder, _JobConsole(send), settings, job.debug)
+        console = _JobConsole(send)
+        made = convert_if_changed(description, job.folder, console, settings, job.debug, job.again)
         result, error, kind = UNCHANGED if made is None else CONVERTED, None, None
     except BusyError as busy:
         result, error, kind = BUSY, str(busy), None

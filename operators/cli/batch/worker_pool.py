@@ -105,7 +105,8 @@ class WorkerPool:
         """Give idle workers the next jobs; those that other processes hold come last, and wait."""
         for worker, current in self._workers.items():
             if current is None and worker.ready and self._queue:
-                queued = min(self._queue, key=lambda each: each.not_before)
+                free = (each for each in self._queue if not each.busy_answers)
+                queued = next(free, None) or min(self._queue, key=lambda each: each.not_before)
                 if queued.not_before > time.monotonic():
                     return
                 self._queue.remove(queued)

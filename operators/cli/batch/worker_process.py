@@ -45,15 +45,10 @@ class WorkerProcess:
     def __init__(self, words: Sequence[str], debug: bool, events: Events) -> None:
         """Start a worker.
 
-        Args:
-            words: The command.
-            debug: Whether its standard error is shown.
-            events: Receives its messages.
-
         Raises:
             OSError: There is no such program.
         """
-        self.ready = False
+        self.ready = self._asked_to_end = False
         self.deadline = time.monotonic() + START_TIMEOUT_S
         """When it is lost unless it sends a message before."""
         self._stderr = tempfile.TemporaryFile()
@@ -99,6 +94,7 @@ class WorkerProcess:
 
     def terminate(self) -> None:
         """Ask the worker to clean up and end."""
+        self._asked_to_end = True
         self.close()
         self._process.terminate()
 
@@ -108,7 +104,7 @@ class WorkerProcess:
 
     def wait(self) -> None:
         """Wait until it has ended; after a grace period it is asked to, after another one killed."""
-        for end in (self.terminate, self.kill):
+        for end in [self.kill] if self._asked_to_end else [self.terminate, self.kill]:
             if self._has_ended_within(TERMINATION_GRACE_S):
                 break
             end()

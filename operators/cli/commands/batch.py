@@ -1,6 +1,6 @@
 """`keymark batch`: convert every take of a shoot, several at a time.
 
-Takes that are converted already are skipped by `conversion/skip_unchanged`, in the worker processes.
+Takes that are converted already are skipped by the worker processes (`conversion/convert_take`).
 """
 
 import argparse
@@ -16,7 +16,7 @@ from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
 from ....core.shoot.discovery import check_output, open_shoot
 from ....core.shoot.shoot import Shoot, ShootTake, part_of
-from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ....core.take.conversion_settings import ConversionSettings
 from ..batch.batch_outcomes import BatchOutcomes
 from ..batch.machine_resources import available_memory_bytes, processor_count
 from ..batch.protocol import Job
@@ -24,7 +24,7 @@ from ..batch.worker_pool import WorkerPool
 from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, worker_command_line
 from ..command import Command
 from ..console import Console, arguments_console
-from ..options import SHOOT_HELP, add_defaults, wanted_keyframes
+from ..options import SHOOT_HELP, add_shoot_options, given_settings
 from ..usage import UsageError, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
@@ -96,24 +96,14 @@ def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], Conver
     part, parts = _parsed_part(arguments.part)
     if arguments.jobs is not None and not 1 <= arguments.jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {arguments.jobs}; a number from 1 to {MOST_JOBS} is valid")
-    if arguments.floor is not None and not abs(arguments.floor) <= HIGHEST_FLOOR_M:
-        raise UsageError(f"--floor is {arguments.floor:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
-    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
-    if library is not None:
+    defaults = given_settings(arguments)
+    if defaults.library is not None:
         from ..library_search_path import requested_libraries  # a batch that asks for none needs no SciPy
 
-        requested_libraries(library)
+        requested_libraries(defaults.library)
     shoot = open_shoot(arguments.shoot, excluded=arguments.output)
     check_output(shoot, arguments.output)
     takes = _named_takes(shoot, arguments.take) if arguments.take else shoot.takes
-    defaults = ConversionSettings(
-        library=library,
-        floor_m=arguments.floor,
-        method=arguments.method,
-        pictures=False if arguments.no_report else None,
-        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
-        evidence=arguments.evidence,
-    )
     return shoot, part_of(takes, part, parts), defaults
 
 
@@ -171,7 +161,7 @@ def _add_arguments(parser: argparse.ArgumentParser) -> None:
         help="convert this take only, named by its way from SHOOT; may be given several times",
     )
     parser.add_argument("--again", action="store_true", help="convert takes anew that are converted already")
-    add_defaults(parser)
+    add_shoot_options(parser)
     parser.add_argument("--no-report", action="store_true", help="draw no pictures of takes")
     parser.add_argument(
         "--failed-takes",

@@ -22,11 +22,22 @@ from ..command import Command
 from ..console import arguments_console, terminal_columns, wrapped
 from ..conversion.character_checks import CharacterChecks
 from ..library_search_path import requested_libraries
-from ..options import SHOOT_HELP, add_defaults, wanted_keyframes
+from ..options import SHOOT_HELP, add_shoot_options, given_settings
 from ..usage import UsageError
 
 MOST_JOBS = 64
 STAGE = "Looking at the takes"
+READY, LOOK, FAILS = "ready", "look", "fails"
+"""The take would convert; it would, but something is likely to go wrong; it would not."""
+STOPS, LIKELY = "!", "-"
+"""Before a problem that stops the conversion, and before a warning."""
+FEWEST_IN_COMMON = 3
+"""Number of takes from which on a sentence that they share is printed once."""
+MOST_NAMED = 3
+SEPARATOR = "  "
+"""Between two columns of the table."""
+NARROWEST_NAME = 12
+"""Smallest width of the column of names."""
 
 
 def check_command(arguments: argparse.Namespace) -> None:
@@ -40,13 +51,7 @@ def check_command(arguments: argparse.Namespace) -> None:
     jobs = 1 if arguments.jobs is None else arguments.jobs
     if not 1 <= jobs <= MOST_JOBS:
         raise UsageError(f"--jobs is {jobs}; a number from 1 to {MOST_JOBS} is valid")
-    _, library = wanted_keyframes(arguments.keyframes, arguments.library)
-    defaults = ConversionSettings(
-        library=library,
-        method=arguments.method,
-        keypoints=tuple(filter(None, arguments.keypoints or ())) or None,
-        evidence=arguments.evidence,
-    )
+    defaults = given_settings(arguments)
     with arguments_console(arguments) as console:
         shoot = open_shoot(arguments.shoot)
         characters = CharacterChecks(shoot, arguments.debug)
@@ -101,19 +106,6 @@ def _in_threads(tasks: Sequence[Callable[[], TakeCheck]], jobs: int) -> Iterator
             yield running[done], done.result()
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-READY, LOOK, FAILS = "ready", "look", "fails"
-"""The take would convert; it would, but something is likely to go wrong; it would not."""
-STOPS, LIKELY = "!", "-"
-"""Before a problem that stops the conversion, and before a warning."""
-FEWEST_IN_COMMON = 3
-"""Number of takes from which on a sentence that they share is printed once."""
-MOST_NAMED = 3
-SEPARATOR = "  "
-"""Between two columns of the table."""
-NARROWEST_NAME = 12
-"""Smallest width of the column of names."""
 
 
 def check_summary(checks: Sequence[TakeCheck]) -> dict[str, Any]:
@@ -253,7 +245,7 @@ def _last_line(checks: Sequence[TakeCheck]) -> str:
         f"{counts[FAILS]} that would not convert{f' ({STOPS} says why)' if counts[FAILS] else ''}",
     ]
     costs = [check.cost for check in checks if check.cost is not None]
-    line = f"{len(checks)} take{'s' if len(checks) != 1 else ''}: {', '.join(words)}."
+    line = f"{pluralize(len(checks), 'take')}: {', '.join(words)}."
     if not costs:
         return line
     seconds, size = sum(one.seconds for one in costs), sum(one.size_bytes for one in costs)
@@ -294,13 +286,9 @@ def _take(check: TakeCheck) -> dict[str, Any]:
         "evidence": list(check.evidence),
         "keypoints": [
             {
-                "file": readout.file,
-                "source": readout.source,
-                "points": readout.points,
+                **vars(readout),
                 "seen_frames": round(readout.seen_frames, 4),
                 "seen_points": round(readout.seen_points, 4),
-                "people": readout.people,
-                "depth_hints": readout.depth_hints,
                 "error_px": None if readout.error_px is None else round(readout.error_px, 2),
             }
             for readout in check.keypoints
@@ -322,7 +310,7 @@ def _take(check: TakeCheck) -> dict[str, Any]:
 def _add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("shoot", metavar="SHOOT", type=Path, help=f"{SHOOT_HELP}, or one take")
     parser.add_argument("--jobs", "-j", metavar="N", type=int, help="look at N takes at a time")
-    add_defaults(parser)
+    add_shoot_options(parser)
 
 
 CHECK = Command(

@@ -1,7 +1,6 @@
 """`keymark convert`: convert one take and report the result."""
 
 import argparse
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,14 +8,14 @@ from typing import Any
 from ....core.pipeline.found_keyframes import found_summary
 from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery import take_path
-from ....core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS
 from ....core.take.methods import METHODS
 from ..command import Command
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
-from ..options import add_evidence, add_keypoint_files, wanted_keyframes
+from ..options import add_evidence, add_keypoint_files, given_settings
 from ..usage import UsageError
 
 
@@ -53,40 +52,19 @@ def _settings(arguments: argparse.Namespace, description: Description) -> Conver
     Raises:
         UsageError: The options contradict each other.
     """
-    keyframes, library = wanted_keyframes(arguments.keyframes, arguments.library)
-    given = ConversionSettings(
-        keyframes=keyframes,
-        library=library,
-        floor_m=arguments.floor,
-        method=arguments.method,
-        pictures=False if arguments.no_report else None,
-        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
-        evidence=arguments.evidence,
-    )
+    given = given_settings(arguments)
     settings = given.with_defaults(effective_settings(description))
-    _check_floor(arguments.floor, settings)
-    _check_keypoints(arguments.keypoints, settings)
-    return settings if library is None else replace(settings, keyframes=keyframes)
-
-
-def _check_floor(floor_m: float | None, settings: ConversionSettings) -> None:
-    if floor_m is None:
-        return
-    if settings.library is None:
+    if given.floor_m is not None and settings.library is None:
         raise UsageError(
             "--floor is given without --keyframes auto or --library; the floor is asked for only where "
             "keyframes are found"
         )
-    if not abs(floor_m) <= HIGHEST_FLOOR_M:
-        raise UsageError(f"--floor is {floor_m:g}; a height within {HIGHEST_FLOOR_M:g} m is valid")
-
-
-def _check_keypoints(files: Sequence[Path] | None, settings: ConversionSettings) -> None:
-    if files and settings.evidence is not None and KEYPOINTS not in settings.evidence:
+    if given.keypoints and settings.evidence is not None and KEYPOINTS not in settings.evidence:
         raise UsageError(
             f"--keypoints is given, but the evidence is {', '.join(settings.evidence)} alone; name "
             f"{KEYPOINTS} in --evidence"
         )
+    return settings if given.library is None else replace(settings, keyframes=given.keyframes)
 
 
 def _text(conversion: Conversion) -> str:

@@ -8,7 +8,6 @@ from ....core.prior.evidence_speed import EvidenceSpeed, evidence_speed
 from ....core.prior.keyframe_proposals import propose_keyframes
 from ....core.progress import Job, run, stretch, within
 from ....core.shoot.discovery import take_path
-from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import describe
 from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
@@ -17,7 +16,7 @@ from ....core.take.take_file import read_described
 from ....core.text import Sentence
 from ..command import Command
 from ..console import arguments_console
-from ..options import add_evidence, add_keypoint_files
+from ..options import add_evidence, add_keypoint_files, given_settings
 
 UNPOSED = Sentence(
     "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
@@ -45,11 +44,7 @@ def propose_command(arguments: argparse.Namespace) -> None:
 
 def _read(arguments: argparse.Namespace) -> Take:
     description = describe(take_path(arguments.take))
-    given = ConversionSettings(
-        keypoints=None if arguments.keypoints is None else tuple(arguments.keypoints),
-        evidence=arguments.evidence,
-    )
-    settings = given.with_defaults(description.settings)
+    settings = given_settings(arguments).with_defaults(description.settings)
     return read_described(description, keyframes_required=False, settings=settings)
 
 

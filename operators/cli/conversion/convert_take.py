@@ -1,8 +1,7 @@
 """Conversion of one take into one complete folder of results; running it again gives the same result."""
 
 import os
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -95,8 +94,9 @@ def convert_take(
         InputError: The take or the output folder is unusable.
         ConversionError: No motion could be computed or written, or there is no Blender to write with.
     """
-    with _prepared(description, output, console, settings) as prepared:
-        return _convert(prepared, console, debug)
+    made = convert_if_changed(description, output, console, settings, debug, again=True)
+    assert made is not None
+    return made
 
 
 def convert_if_changed(
@@ -105,26 +105,13 @@ def convert_if_changed(
     console: Console,
     settings: ConversionSettings,
     debug: bool = False,
+    again: bool = False,
 ) -> Conversion | None:
-    """Convert a take as `convert_take` does, unless `output` holds the whole result of the same input.
+    """Convert a take as `convert_take` does, but return None where `output` holds the result already.
 
-    The input is the same where its digest (`core/take/conversion_digest`) is the one in the result's record;
-    the result is whole where every file of the record is there. Times of files do not count.
-
-    Returns:
-        What was made; None where the take was skipped.
+    That is so where the digest of the input (`core/take/conversion_digest`) is that in the result's record,
+    and every file of the record is there; times of files do not count. `again`: convert it nevertheless.
     """
-    with _prepared(description, output, console, settings) as prepared:
-        if is_up_to_date(output, prepared.digest):
-            return None
-        return _convert(prepared, console, debug)
-
-
-@contextmanager
-def _prepared(
-    description: Description, output: Path, console: Console, settings: ConversionSettings
-) -> Iterator[_Prepared]:
-    """Lock the output folder and gather the input; what is staged is committed when the block ends well."""
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
     refuse_unsupported_paths(description, output)
@@ -134,7 +121,10 @@ def _prepared(
         digests = [library_digest(library) for library in libraries]
         maps = () if settings.character is None else map_digests(settings.character.map, library_folders())
         digest = conversion_digest(description, settings, digests, output, version(), maps)
-        yield _Prepared(description, settings, libraries, digest, output, staging_folder, kept_names)
+        if not again and is_up_to_date(output, digest):
+            return None
+        prepared = _Prepared(description, settings, libraries, digest, output, staging_folder, kept_names)
+        return _convert(prepared, console, debug)
 
 
 def _convert(prepared: _Prepared, console: Console, debug: bool) -> Conversion:

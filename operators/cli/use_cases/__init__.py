@@ -1,1 +1,1 @@
-"""What each command does: `use_cases/convert.py` is run by `commands/convert.py`, and so on."""
+"""What the commands on libraries, characters and detectors do: `detect` for `commands/detect`, and so on."""

@@ -6,6 +6,7 @@ import re
 import shutil
 import tomllib
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +101,9 @@ def test_every_file_of_a_command_is_on_the_list(repository: Path, capsys: pytest
     files = {path.stem for path in (repository / "operators" / "cli" / "commands").glob("*.py")}
     assert files - {"__init__"} == {*SUMMARIES, "worker"}
     shown = list(SUMMARIES)
+    for name in shown:
+        module = import_module(f"keymark.operators.cli.commands.{name}")
+        assert getattr(module, name.upper()).name == name
     assert main(["--help"]) == 0
     helped = capsys.readouterr().out
     assert all(re.search(rf"\n    {name}\s", helped) for name in shown) and "\n    worker" not in helped
