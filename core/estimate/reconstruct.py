@@ -42,10 +42,8 @@ from .notes import (
     found_notes,
     left_out_notes,
     marker_notes,
-    turn_notes,
 )
 from .seen_tracks import seen_tracks
-from .undecided import undecided_covariance
 from .unobserved_variance import unobserved_variance
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
@@ -174,7 +172,7 @@ def _reconstruct(
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None) + turn_notes(take, solution.undecided)
+        notes += contour_notes(take, solution.contours is not None)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -264,8 +262,6 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         tracks.time_s,
     )
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
-    other_turns = undecided_covariance(result.undecided, *motion.points.shape[:2])
-    motion = replace(motion, point_covariance=motion.point_covariance + other_turns)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0

@@ -39,7 +39,6 @@ from .refinement import Anew, refine
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .undecided import Undecided
 from .warm_start import (
     blend_weight,
     changed_frames,
@@ -83,8 +82,6 @@ class WholeClipResult:
     """The look of performer and background; None where no background can be trusted."""
     outlined: BoolArray | None = None
     """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
-    undecided: tuple[Undecided, ...] = ()
-    """Stretches in which the body may have turned another way."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -243,8 +240,7 @@ def _solve(
             result = yield from _solve_windows(same, spans, Anew(changed, gaps), album, earlier)
             share = blend_weight(changed, margin // 2)[:, None]
             step = share * result.posture.minus(earlier.posture)
-            still = tuple(one for one in earlier.undecided if not changed[one.frame].any())
-            return replace(result, posture=earlier.posture.plus(step), undecided=(*still, *result.undecided))
+            return replace(result, posture=earlier.posture.plus(step))
     every = list(windows(problem.frames, length, margin))
     everything = Anew.everything(problem)
     return (yield from _solve_windows(problem, every, everything, album, None, contours))
@@ -302,7 +298,7 @@ def _solve_windows(
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, refined.undecided)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
