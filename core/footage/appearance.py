@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
@@ -44,8 +44,6 @@ STEADY_SHARE = 0.9
 """Share of static pixels in a static background."""
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
-FARTHEST_GUESS_PX = 16
-"""Farthest pixel whose color is a guess for a background that was never seen."""
 LEAST_KNOWN_SHARE = 0.5
 """Least share of static pixels among all, where each is judged by itself."""
 ALIKE = 0.5
@@ -96,38 +94,6 @@ class Appearance:
         """
         known = self.known & (self.deviation < STEADY)
         return replace(self, known=known, steady=bool(np.mean(known) >= LEAST_KNOWN_SHARE))
-
-    def completed(self, hidden: BoolArray) -> "Appearance":
-        """This appearance with a guess of what a performer who stays in place always hides.
-
-        The color is that of the nearest pixel known, doubted by as much as known pixels differ that are as
-        far apart: much before shelves, little before a wall.
-
-        Args:
-            hidden: (rows, columns) pixels whose background was never seen free.
-        """
-        if not self.known.any():
-            return self
-        away, (row, column) = distance_transform_edt(~self.known, return_indices=True)
-        guessed = hidden & ~self.known & (away <= FARTHEST_GUESS_PX)
-        doubt = self._differences()[np.minimum(np.ceil(away).astype(np.intp), FARTHEST_GUESS_PX)]
-        deviation = np.where(guessed, np.hypot(self.deviation[row, column], doubt), self.deviation)
-        return replace(
-            self,
-            color=np.where(guessed[..., None], self.color[row, column], self.color),
-            deviation=deviation.astype(np.float32),
-            known=self.known | guessed,
-        )
-
-    def _differences(self) -> Array:
-        """(FARTHEST_GUESS_PX + 1,) usual difference of known pixels so far apart, in levels a channel."""
-        usual = np.zeros(FARTHEST_GUESS_PX + 1)
-        for apart in range(1, FARTHEST_GUESS_PX + 1):
-            both = self.known[:, apart:] & self.known[:, :-apart]
-            if both.any():
-                change = self.color[:, apart:][both] - self.color[:, :-apart][both]
-                usual[apart] = np.sqrt(np.mean(change.astype(np.float64) ** 2))
-        return np.asarray(np.maximum.accumulate(usual))
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
