@@ -1,8 +1,8 @@
 """What is learned once the markers are followed, before contours join them.
 
-In this order, since each step stands on those before it: which way round the body turns, how the performer
-and the background look, where markers are that were lost, and how large the motion is. Each changes the
-problem, and the states follow it.
+In this order, since each step stands on those before it: which way round the body turns, how large the motion
+is, how the performer and the background look, and where markers are that were lost. Each changes the problem,
+and the states follow it.
 """
 
 from dataclasses import dataclass
@@ -79,8 +79,7 @@ def refine(
         contours = yield from scaled(_learned(problem, spans, states, album), 0.4, 0.5)
     if contours is not None and len(problem.evidence.model.placements):
         looking = find_lost(problem, spans, states, contours, anew.frames)
-        problem = yield from scaled(looking, 0.5, 0.9)
-    problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.9, 1.0)
+        problem = yield from scaled(looking, 0.5, 1.0)
     return Refinement(problem, states, contours)
 
 
