@@ -7,8 +7,6 @@ and the states follow it.
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..arrays import BoolArray
 from ..body.posture import Posture
 from ..footage.clips.album import Album
@@ -20,6 +18,7 @@ from .contour_schedule import contour_schedule
 from .motion_size import adapted
 from .second_look import find_lost
 from .turn_choice import choose_turns
+from .warm_start import changed_gaps
 from .windows import Window
 
 
@@ -33,27 +32,12 @@ class Refinement:
     """The look of performer and background; None where no background can be trusted."""
 
 
-@dataclass(frozen=True, eq=False)
-class Anew:
-    """What is decided anew; an earlier estimate is right about the rest."""
-
-    frames: BoolArray
-    """(F,)."""
-    gaps: BoolArray
-    """(K - 1,) gaps between keyframes."""
-
-    @classmethod
-    def everything(cls, problem: ClipProblem) -> "Anew":
-        """All of a clip."""
-        return cls(np.ones(problem.frames, dtype=bool), np.ones(len(problem.turns), dtype=bool))
-
-
 def refine(
     problem: ClipProblem,
     spans: list[Window],
     states: list[ClipState],
     album: Album | None,
-    anew: Anew,
+    anew: BoolArray,
     contours: ContourEvidence | None,
     earlier: ClipProblem | None = None,
 ) -> Part[Refinement]:
@@ -64,21 +48,21 @@ def refine(
         spans: The windows.
         states: The state of each by its markers.
         album: Pictures of all frames; None where contours are left out.
-        anew: What is decided anew.
+        anew: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in.
         contours: What is known of contours already; None to learn it.
         earlier: The problem of an earlier estimate, which knows the rest; None without one.
 
     Yields:
         The fraction done, from 0 to 1.
     """
-    problem, states = yield from scaled(choose_turns(problem, states, anew.gaps), 0.0, 0.3)
-    problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.3, 0.4)
+    problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
+    problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)
     if earlier is None and contours is not None:
         contours = contours.with_camera(problem.evidence.model.camera)
     elif earlier is None and album is not None:
         contours = yield from scaled(_learned(problem, spans, states, album), 0.4, 0.5)
     if contours is not None and len(problem.evidence.model.placements):
-        looking = find_lost(problem, spans, states, contours, anew.frames)
+        looking = find_lost(problem, spans, states, contours, anew)
         problem = yield from scaled(looking, 0.5, 1.0)
     return Refinement(problem, states, contours)
 

@@ -35,19 +35,11 @@ from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
-from .refinement import Anew, refine
+from .refinement import refine
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .warm_start import (
-    blend_weight,
-    changed_frames,
-    revised_windows,
-    same_setup,
-    with_earlier_evidence,
-    with_earlier_finds,
-    with_earlier_turns,
-)
+from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 from .windows import Window, windows
 
@@ -230,26 +222,23 @@ def _solve(
     """Estimate in windows all frames, or those that changed since an earlier estimate."""
     pace = float(np.median(problem.step_s)) if len(problem.step_s) else REFERENCE_STEP_S
     length, margin = round(options.window_s / pace), round(options.margin_s / pace)
-    if earlier is not None and same_setup(earlier.problem, problem):
-        same = with_earlier_evidence(earlier.problem, problem)
-        if same is not None:
-            same, gaps = with_earlier_turns(earlier.problem, same)
-            changed = changed_frames(earlier.problem, same)
-            same = with_earlier_finds(earlier.problem, same, changed)
-            spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, Anew(changed, gaps), album, earlier)
-            share = blend_weight(changed, margin // 2)[:, None]
-            step = share * result.posture.minus(earlier.posture)
-            return replace(result, posture=earlier.posture.plus(step))
+    kept = None if earlier is None else continued(earlier.problem, problem)
+    if earlier is not None and kept is not None:
+        problem, changed = kept
+        spans = revised_windows(changed, length, margin // 2)
+        result = yield from _solve_windows(problem, spans, changed, album, earlier)
+        share = blend_weight(changed, margin // 2)[:, None]
+        step = share * result.posture.minus(earlier.posture)
+        return replace(result, posture=earlier.posture.plus(step))
     every = list(windows(problem.frames, length, margin))
-    everything = Anew.everything(problem)
+    everything = np.ones(problem.frames, dtype=bool)
     return (yield from _solve_windows(problem, every, everything, album, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
-    anew: Anew,
+    anew: BoolArray,
     album: Album | None,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
@@ -259,7 +248,7 @@ def _solve_windows(
     Args:
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
-        anew: What is decided anew.
+        anew: (F,) the frames that are decided anew.
         album: Pictures of all frames.
         earlier: An estimate of all other frames.
         contours: What was learned of them already; None to learn it once the markers are followed.
