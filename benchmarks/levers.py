@@ -69,12 +69,22 @@ def trusting(model: Any, sources: tuple[str, ...], *_: Any) -> KeypointTrust:
     return KeypointTrust(np.ones(len(sources)), np.full(len(sources), np.nan), {})
 
 
+def without_album(body: Any, camera: Any, seen: Any, *more: Any, **named: Any) -> Any:
+    """The estimate without contours."""
+    return estimate(body, camera, replace(seen, album=None), *more, **named)
+
+
+def unjudged(model: Any, noise: Any, at: Any, scale: Any) -> Any:
+    """What keyframes say without contours."""
+    return read_keyframes(model, noise, replace(at, contours=None), scale)
+
+
 find_shifts, read_keyframes = contour_evidence.find_shifts, whole_clip.read_mixed_keyframes
 estimate = reconstruct.estimate_whole_clip
 no_variance: Callable[..., Any] = lambda area, *_: np.zeros((*area.shape, regions.FEATURES))  # noqa: E731
 OFF: Mapping[str, tuple[Switch, ...]] = {
     ALL: (),
-    "contours": ((reconstruct, "estimate_whole_clip", lambda *a, **b: estimate(*a, **{**b, "album": None})),),
+    "contours": ((reconstruct, "estimate_whole_clip", without_album),),
     "nine looks: five": ((contour_schedule, "LOOKS", 5),),
     "shifts along limbs": (
         (
@@ -84,9 +94,7 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
         ),
     ),
     "shapes of parts": ((contour_evidence, "_fit_shapes", job(lambda model, *_: model)),),
-    "contours judge keyframes": (
-        (whole_clip, "read_mixed_keyframes", lambda *of: read_keyframes(*of[:-1], None)),
-    ),
+    "contours judge keyframes": ((whole_clip, "read_mixed_keyframes", unjudged),),
     "size of posing errors": ((keyframe_evidence, "SCALES", np.ones(1)),),
     "timing of keyframes": ((keyframe_evidence, "TIMINGS", np.zeros(1)),),
     "distrust of markers": ((keyframe_evidence, "_distrust", lambda of, _: np.ones(of.shape[1])),),

@@ -45,7 +45,7 @@ from .notes import (
 )
 from .seen_tracks import seen_tracks
 from .unobserved_variance import unobserved_variance
-from .whole_clip import WholeClipResult, estimate_whole_clip
+from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6
@@ -212,16 +212,15 @@ def _whole_clip(
     estimate = estimate_whole_clip(
         take.body,
         take.camera,
-        reading.tracks,
-        take.marker_segments,
-        prior,
-        take.keyframe_indices,
-        album=reading.album,
+        Seen(
+            reading.tracks,
+            take.marker_segments,
+            keypoints,
+            reading.album,
+            IgnoredPixels(take.ignored_regions, take.camera.resolution),
+        ),
+        Believed(prior, take.keyframe_indices, match_scale, _found_ankle(take, prior)),
         earlier=earlier,
-        match_scale=match_scale,
-        keypoints=keypoints,
-        lower_ankle=_found_ankle(take, prior),
-        ignored=IgnoredPixels(take.ignored_regions, take.camera.resolution),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 

@@ -29,7 +29,7 @@ from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_keyframes import contour_rows
 from .contour_schedule import all_located, contour_schedule
-from .keyframe_evidence import KeyframeEvidence
+from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
@@ -56,6 +56,37 @@ class WholeClipOptions:
     """Longer clips are solved in windows of about this length [s] ..."""
     margin_s: float = 3.0
     """... that reach this far into their neighbors: several times as far as any term remembers [s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What was seen in the F frames of a clip."""
+
+    tracks: RegionTracks
+    """Regions of M markers."""
+    segments: tuple[str, ...]
+    """The segment each marker is bound to."""
+    keypoints: Keypoints | None = None
+    """The performer's; None for none."""
+    album: Album | None = None
+    """Pictures of all frames, in which contours are measured; None leaves them out."""
+    ignored: IgnoredPixels | None = None
+    """What of the pictures is never a marker; None for nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Believed:
+    """What is believed of the motion before the footage is asked."""
+
+    prior: Posture
+    """F postures that pass through the keyframes."""
+    keyframes: tuple[int, ...]
+    """Frames of the K keyframes, at least one."""
+    match_scale: Array | None = None
+    """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
+    posed ones, which all are by default."""
+    lower_ankle: Array | None = None
+    """(F,) height of the lower ankle where all keyframes are matched [m]; by their soles where None."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,52 +122,34 @@ class WholeClipResult:
 def estimate_whole_clip(
     body: Body,
     camera: Camera,
-    tracks: RegionTracks,
-    segments: tuple[str, ...],
-    prior: Posture,
-    keyframe_indices: tuple[int, ...],
+    seen: Seen,
+    believed: Believed,
     options: WholeClipOptions | None = None,
-    album: Album | None = None,
     earlier: WholeClipResult | None = None,
-    match_scale: Array | None = None,
-    keypoints: Keypoints | None = None,
-    lower_ankle: Array | None = None,
-    ignored: IgnoredPixels | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
     Args:
         body: The actor's body.
         camera: The camera.
-        tracks: Observed regions of F frames and M markers.
-        segments: The segment each marker is bound to.
-        prior: F postures that pass through the keyframes.
-        keyframe_indices: Frames of the keyframes, at least one.
-        options: Noise, smoothness and windows.
-        album: Pictures of all frames, in which contours are measured; None leaves them out.
+        seen: The evidence.
+        believed: The keyframes, and the motion through them.
+        options: Noise and windows.
         earlier: An estimate of the same pictures, reused for frames that have not changed since, within the
             tolerances of `warm_start`.
-        match_scale: (K,) size of each matched keyframe's error, relative to a usual difference between
-            performers; 0 for posed ones, which all are by default.
-        keypoints: The performer's keypoints in the F frames; None for none.
-        lower_ankle: (F,) height of the lower ankle where all keyframes are matched [m]; by their soles where
-            None.
-        ignored: What of the pictures is never a marker; None for nothing.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
-
-    Returns:
-        Postures, their covariance and the calibration.
     """
     options = options or WholeClipOptions()
+    tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, believed.prior
     observed = ObservedRegions.from_tracks(tracks)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
-    index = np.array(keyframe_indices, dtype=np.intp)
-    match_scale = np.zeros(len(index)) if match_scale is None else match_scale
+    index = np.array(believed.keyframes, dtype=np.intp)
+    match_scale = np.zeros(len(index)) if believed.match_scale is None else believed.match_scale
     matched = match_scale > 0.0
-    keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
+    keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
@@ -153,49 +166,49 @@ def estimate_whole_clip(
     reading = read_mixed_keyframes(
         model,
         options.regions,
-        observed[index],
-        width_px[index],
-        prior[index],
-        index,
+        SeenAtKeyframes(
+            index,
+            prior[index],
+            observed[index],
+            width_px[index],
+            usual,
+            points[index],
+            None if contours is None else partial(contour_rows, contours),
+        ),
         match_scale,
-        usual,
-        points[index],
-        None if contours is None else partial(contour_rows, contours),
     )
-    evidence = yield from scaled(reading, 0.0, 0.0)
-    factor = process_noise_factor(prior[index], tracks.time_s[index])
-    step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     problem = ClipProblem(
-        body,
-        camera,
-        evidence,
-        factor,
-        prior,
-        index,
-        observed,
-        observed,
-        ignored,
-        width_px,
-        step_s,
-        options.regions,
-        matched,
-        depth_std_m(index, matched, tracks.frame_count),
+        body=body,
+        camera=camera,
+        noise=options.regions,
+        keyframes=index,
+        matched=matched,
+        evidence=(yield from scaled(reading, 0.0, 0.0)),
+        factor=process_noise_factor(prior[index], tracks.time_s[index]),
+        interpolated=prior,
+        prior=prior,
+        turns=np.zeros(max(len(index) - 1, 0), dtype=np.intp),
+        depth_std_m=depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
-        _lower_ankle(body, prior, index, lower_ankle) if matched.all() else None,
-        keypoints,
-        points,
-        swapped,
-        prior,
-        np.zeros(max(len(index) - 1, 0), dtype=np.intp),
-        np.ones(body.skeleton.dof_count),
-        np.ones((tracks.frame_count, len(body.skeleton.points))),
+        ankle_height_m=_lower_ankle(body, believed, index) if matched.all() else None,
+        limb_size=np.ones(body.skeleton.dof_count),
+        depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
+        observed=observed,
+        tracked=observed,
+        width_px=width_px,
+        ignored=seen.ignored,
+        keypoints=keypoints,
+        points=points,
+        swapped=swapped,
+        step_s=np.maximum(np.diff(tracks.time_s), 1e-3),
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
     return (yield from _solve(problem, options, album, earlier, kept))
 
 
-def _lower_ankle(body: Body, prior: Posture, index: IndexArray, known: Array | None) -> Array:
+def _lower_ankle(body: Body, believed: Believed, index: IndexArray) -> Array:
+    prior, known = believed.prior, believed.lower_ankle
     return lower_ankle_m(body, prior[index], index, prior.batch[0]) if known is None else known
 
 

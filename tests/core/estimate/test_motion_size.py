@@ -17,7 +17,7 @@ from keymark.core.estimate.motion_size import (
     adapted,
     limb_sizes,
 )
-from keymark.core.estimate.whole_clip import estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
 from keymark.core.estimate.windows import Window, windows
 from keymark.core.prior.interpolation import interpolate
@@ -50,7 +50,9 @@ def problem(segments: tuple[str, ...] = SEGMENTS) -> ClipProblem:
     )
     keys = tuple(Keyframe(index, truth[index]) for index in range(0, FRAMES, EVERY))
     index = tuple(key.index for key in keys)
-    job = estimate_whole_clip(BODY, CAMERA, tracks, segments, interpolate(keys, FRAMES), index)
+    job = estimate_whole_clip(
+        BODY, CAMERA, Seen(tracks, segments), Believed(interpolate(keys, FRAMES), index)
+    )
     found = run(job).problem
     return replace(
         found, limb_size=np.ones_like(found.limb_size), depth_factor=np.ones_like(found.depth_factor)

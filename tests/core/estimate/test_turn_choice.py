@@ -9,7 +9,7 @@ from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.heading import yawed_at
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.turn_choice import doubted_turns
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
@@ -42,7 +42,7 @@ def estimate(
     step[BODY.skeleton.dof_names.index("neck.rotation_x")] = off_rad
     keys[-2] = replace(keys[-2], posture=keys[-2].posture.plus(step))
     prior, index = interpolate(tuple(keys), FRAMES), tuple(key.index for key in keys)
-    job = estimate_whole_clip(BODY, CAMERA, tracks, SEGMENTS, prior, index, earlier=earlier)
+    job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Believed(prior, index), earlier=earlier)
     shown: set[int] = set()
     while True:
         try:
