@@ -22,7 +22,7 @@ from takes import chosen_takes, load_project, write_results
 load_project()
 
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.estimate.whole_clip import WholeClipOptions, estimate_whole_clip  # noqa: E402
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipOptions, estimate_whole_clip  # noqa: E402
 from keymark.core.prior.interpolation import interpolate  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
@@ -97,12 +97,9 @@ def measure_seam(folder: Path) -> dict[str, float]:
         job = estimate_whole_clip(
             take.body,
             take.camera,
-            tracks,
-            take.marker_segments,
-            prior,
-            take.keyframe_indices,
+            Seen(tracks, take.marker_segments, album=reading.album),
+            Believed(prior, take.keyframe_indices),
             options,
-            reading.album,
         )
         return take.body.points(take.body.pose(run(job).posture))
 

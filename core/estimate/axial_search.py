@@ -69,7 +69,7 @@ def learn_along(
         share = np.full(label.shape, np.nan)
         share[row, column] = np.where(squared < SHORTEST_PX**2, np.nan, along / np.maximum(squared, 1.0))
         shares.append(share)
-    return learn_band_colors(images, labels, shares, model.parts.segments)
+    return learn_band_colors(images, labels, shares, len(model.parts.segments))
 
 
 def find_shifts(

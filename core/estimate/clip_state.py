@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
@@ -75,12 +74,6 @@ class ClipState:
             variation=self.variation[frames],
             bias=self.bias[frames],
         )
-
-    def about(self, prior: Posture, posture: Posture, bias: Array) -> "ClipState":
-        """Other postures and biases (F, B) of the same frames, as deviations from another prior."""
-        deviation = posture.minus(prior)
-        variation = solve_triangular(self.factor, deviation.T, lower=True).T
-        return replace(self, prior=prior, variation=variation, bias=bias)
 
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and the largest change of its postures.

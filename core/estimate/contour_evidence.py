@@ -169,8 +169,7 @@ def learn_contours(
     appearance = yield from _learn_appearance(model, album, posture[frame], frame)
     if schedule.is_wide:
         labeled = yield from _labeled(model, album, posture[known], known)
-        hidden = ~appearance.known
-        appearance = appearance.with_parts(*labeled, model.parts.segments).where_steady().completed(hidden)
+        appearance = appearance.with_parts(*labeled, len(model.parts.segments)).where_steady()
     if not appearance.steady:
         return None
     fitted = yield from _fit_shapes(model, album, appearance, posture[known], known)

@@ -79,35 +79,53 @@ class KeyframeEvidence:
     """The calibrated model of keypoints, none where there are none."""
 
 
+@dataclass(frozen=True, eq=False)
+class SeenAtKeyframes:
+    """K keyframes, and what was seen there."""
+
+    frame: IndexArray
+    """(K,) their indices in the clip."""
+    posture: Posture
+    """The K postures."""
+    observed: ObservedRegions
+    """The markers' regions."""
+    width_px: Array
+    """(K, M) half-width of each marker's limb [px]."""
+    keypoints: KeypointEvidence | None = None
+    """Usual evidence of the N keypoints; None for none."""
+    points: ObservedKeypoints | None = None
+    """Those seen."""
+    contours: ContourReader | None = None
+    """Reads the rows of contours at some of the keyframes; None where contours do not judge."""
+
+    def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
+        """Some of the keyframes."""
+        return replace(
+            self,
+            frame=self.frame[index],
+            posture=self.posture[index],
+            observed=self.observed[index],
+            width_px=self.width_px[index],
+            points=None if self.points is None else self.points[index],
+        )
+
+
 def read_keyframes(
-    model: RegionModel,
-    noise: RegionNoise,
-    observed: ObservedRegions,
-    width_px: Array,
-    posture: Posture,
-    frame: IndexArray,
-    keypoints: KeypointEvidence | None = None,
-    points: ObservedKeypoints | None = None,
-    contours: ContourReader | None = None,
+    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes
 ) -> Generator[None, None, KeyframeEvidence]:
-    """Calibrate markers and keypoints on the keyframes and judge the keyframes by them.
+    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them.
 
     It yields now and then, so that a job can be canceled.
 
     Args:
         model: The region model with average placements.
         noise: Noise of the regions' features.
-        observed: Regions seen at the K keyframes.
-        width_px: (K, M) half-width of each marker's limb there [px].
-        posture: The K posed postures.
-        frame: (K,) their indices in the clip.
-        keypoints: Usual evidence of the N keypoints; None for none.
-        points: Those seen at the K keyframes.
-        contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
+        at: The keyframes.
     """
+    posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
-    keypoints = keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
+    keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
     if not model.placements and not believed and contours is None:
         information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
@@ -115,9 +133,9 @@ def read_keyframes(
         return replace(found, keypoints=keypoints)
     judged = evenly_spread(frame, MOST_JUDGED)
     pose = model.body.pose(posture[judged])
-    known = KnownFrames(pose, frame[judged], observed[judged])
+    known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
-    variance = noise.pixel_std_px**2 + noise.surface_std(width_px[judged]) ** 2
+    variance = noise.pixel_std_px**2 + noise.surface_std(at.width_px[judged]) ** 2
     calibrated, groups = model, [FEATURES] * len(model.placements)
     seen_points = None
     if points is not None and believed:

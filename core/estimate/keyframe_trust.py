@@ -10,71 +10,39 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import Array, IndexArray
-from ..body.posture import Posture
+from ..arrays import Array
 from ..observation.regions import RegionModel
-from .keyframe_evidence import ContourReader, KeyframeEvidence, read_keyframes, uncalibrated
-from .keypoint_evidence import KeypointEvidence
+from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
 from .match_error import match_covariance
 from .posing_error import posing_covariance
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import ObservedRegions, RegionNoise
+from .terms.regions import RegionNoise
 
 FEWEST_POSED = 2
 """Fewer posed keyframes calibrate nothing."""
 
 
 def read_mixed_keyframes(
-    model: RegionModel,
-    noise: RegionNoise,
-    observed: ObservedRegions,
-    width_px: Array,
-    posture: Posture,
-    frame: IndexArray,
-    match_scale: Array,
-    keypoints: KeypointEvidence | None = None,
-    points: ObservedKeypoints | None = None,
-    contours: ContourReader | None = None,
+    model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes, match_scale: Array
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
     Args:
         model: The region model with average placements.
         noise: Noise of the regions' features.
-        observed: Regions seen at the K keyframes.
-        width_px: (K, M) half-width of each marker's limb there [px].
-        posture: The K postures.
-        frame: (K,) their places in the clip.
+        at: The K keyframes.
         match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
             0 for posed ones.
-        keypoints: Usual evidence of the N keypoints; None for none.
-        points: Those seen at the K keyframes.
-        contours: Reads the rows of contours at some of the keyframes; None where contours do not judge.
     """
     if not match_scale.any():
-        reading = read_keyframes(
-            model, noise, observed, width_px, posture, frame, keypoints, points, contours
-        )
-        return (yield from reading)
+        return (yield from read_keyframes(model, noise, at))
     posed = np.flatnonzero(match_scale == 0.0)
-    information = np.linalg.inv(match_covariance(posture, model.camera, frame))
+    information = np.linalg.inv(match_covariance(at.posture, model.camera, at.frame))
     information /= np.where(match_scale > 0.0, match_scale, 1.0)[:, None, None] ** 2
     if len(posed) >= FEWEST_POSED:
-        reading = read_keyframes(
-            model,
-            noise,
-            observed[posed],
-            width_px[posed],
-            posture[posed],
-            frame[posed],
-            keypoints,
-            None if points is None else points[posed],
-            contours,
-        )
-        evidence = yield from reading
+        evidence = yield from read_keyframes(model, noise, at[posed])
         information[posed] = evidence.information
         return replace(evidence, information=information)
     if len(posed):
-        information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(posture[posed])))
+        information[posed] = np.linalg.inv(posing_covariance(model.body, model.body.pose(at.posture[posed])))
     evidence = replace(uncalibrated(model), information=information)
-    return evidence if keypoints is None else replace(evidence, keypoints=keypoints)
+    return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)

@@ -51,9 +51,9 @@ def adapted(
     It yields now and then, so that a job can be canceled.
 
     Args:
-        problem: The clip's problem.
+        problem: The clip's problem, with sizes as the keyframes tell them.
         spans: The windows.
-        states: The state of each by the markers so far.
+        states: The state of each by the markers.
         among: (F,) frames in whose gaps it is asked how far the prior misses.
         earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
             prior misses in all other gaps; None without one.
@@ -67,11 +67,10 @@ def adapted(
     known = problem if earlier is None else earlier
     factor = _depth_factor(problem, spans, states, among, known.depth_factor)
     size = limb_sizes(problem, spans, states) if earlier is None else earlier.limb_size
-    grown = size / problem.limb_size
     problem = replace(problem, limb_size=size, depth_factor=factor)
     solved = []
     for window, state in zip(spans, states, strict=True):
-        scaled = replace(state, factor=problem.accelerations, variation=state.variation / grown)
+        scaled = replace(state, factor=problem.accelerations, variation=state.variation / size)
         part = WindowProblem(problem, window, scaled)
         for _ in part.settle():
             yield
@@ -90,7 +89,7 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
     kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
     pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
     variation = np.concatenate(kept)
-    size = problem.limb_size.copy()
+    size = np.ones(variation.shape[1])
     if len(variation) < 3 or len(problem.keyframes) < 2:
         return size
     squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
@@ -98,7 +97,7 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
     largest = float(np.clip(LARGEST_PER_GAP_S * gap_s, LARGEST, LARGEST_OF_ALL))
     for limb in problem.body.skeleton.limbs:
         found = (np.sqrt(squared[limb].mean()) / USUAL_SIZE) ** SHRINKAGE
-        size[limb] = np.clip(size[limb] * found, 1.0, largest)
+        size[limb] = np.clip(found, 1.0, largest)
     return size
 
 

@@ -9,7 +9,6 @@ from ..take.clip_notes import VARIABLE_RATE
 from ..take.take import Take
 from ..text import Sentence
 from .keyframe_evidence import KeyframeEvidence
-from .undecided import Undecided
 
 DOUBTED_LENS = 0.03
 """Difference of the calibrated from the stated lens, as a share, that gets a note."""
@@ -18,8 +17,6 @@ DOUBTED_POSING = 2.0
 """Size of the posing error, in usual ones, that gets a note."""
 DOUBTED_MARKER = 3.0
 """Distrust of a marker that gets a note."""
-DOUBTED_TURN = 0.1
-"""Probability of another turn than the one taken that gets a note."""
 MOST_NAMED = 3
 """Largest number of frames that a note names."""
 
@@ -102,26 +99,6 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
             "motion is their interpolation alone; hold the camera still, or add keypoints or markers"
         ),
     )
-
-
-def turn_notes(take: Take, stretches: Sequence[Undecided]) -> tuple[str, ...]:
-    """Notes on stretches in which the footage hardly tells which way round the body turns."""
-    notes = []
-    for one in sorted(stretches, key=lambda one: int(one.frame[0])):
-        if one.share >= DOUBTED_TURN:
-            first, last, telling = (
-                index + take.frame_start for index in (one.frame[0], one.frame[-1], one.telling_frame)
-            )
-            notes.append(
-                Sentence(
-                    "from frame {first} to {last} the body may turn the other way round; a keyframe at "
-                    "frame {telling} decides",
-                    first=first,
-                    last=last,
-                    telling=telling,
-                )
-            )
-    return tuple(notes)
 
 
 def left_out_notes(take: Take, count: int) -> tuple[str, ...]:

@@ -42,12 +42,10 @@ from .notes import (
     found_notes,
     left_out_notes,
     marker_notes,
-    turn_notes,
 )
 from .seen_tracks import seen_tracks
-from .undecided import undecided_covariance
 from .unobserved_variance import unobserved_variance
-from .whole_clip import WholeClipResult, estimate_whole_clip
+from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
 EXTRACTION_SHARE = 0.6
@@ -174,7 +172,7 @@ def _reconstruct(
         seen = seen_tracks(tracks, solution.problem.observed)
         motion, model = _solved(take, seen, solution, match_scale), solution.evidence.model
         notes += evidence_notes(take, solution.evidence) + keypoint_notes(solution.keypoints)
-        notes += contour_notes(take, solution.contours is not None) + turn_notes(take, solution.undecided)
+        notes += contour_notes(take, solution.contours is not None)
     elif method == "ekf":
         motion = yield from _filtered(take, tracks, prior, begun)
         notes += filter_notes(take)
@@ -214,16 +212,15 @@ def _whole_clip(
     estimate = estimate_whole_clip(
         take.body,
         take.camera,
-        reading.tracks,
-        take.marker_segments,
-        prior,
-        take.keyframe_indices,
-        album=reading.album,
+        Seen(
+            reading.tracks,
+            take.marker_segments,
+            keypoints,
+            reading.album,
+            IgnoredPixels(take.ignored_regions, take.camera.resolution),
+        ),
+        Believed(prior, take.keyframe_indices, match_scale, _found_ankle(take, prior)),
         earlier=earlier,
-        match_scale=match_scale,
-        keypoints=keypoints,
-        lower_ankle=_found_ankle(take, prior),
-        ignored=IgnoredPixels(take.ignored_regions, take.camera.resolution),
     )
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
@@ -264,8 +261,6 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         tracks.time_s,
     )
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
-    other_turns = undecided_covariance(result.undecided, *motion.points.shape[:2])
-    motion = replace(motion, point_covariance=motion.point_covariance + other_turns)
     if not match_scale.any():
         return motion
     place_std_m: Array | float = 0.0

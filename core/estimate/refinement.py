@@ -1,13 +1,11 @@
 """What is learned once the markers are followed, before contours join them.
 
-In this order, since each step stands on those before it: which way round the body turns, how the performer
-and the background look, where markers are that were lost, and how large the motion is. Each changes the
-problem, and the states follow it.
+In this order, since each step stands on those before it: which way round the body turns, how large the motion
+is, how the performer and the background look, and where markers are that were lost. Each changes the problem,
+and the states follow it.
 """
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from ..arrays import BoolArray
 from ..body.posture import Posture
@@ -20,7 +18,7 @@ from .contour_schedule import contour_schedule
 from .motion_size import adapted
 from .second_look import find_lost
 from .turn_choice import choose_turns
-from .undecided import Undecided
+from .warm_start import changed_gaps
 from .windows import Window
 
 
@@ -32,23 +30,6 @@ class Refinement:
     states: list[ClipState]
     contours: ContourEvidence | None = None
     """The look of performer and background; None where no background can be trusted."""
-    undecided: tuple[Undecided, ...] = ()
-    """Stretches in which the body may have turned another way."""
-
-
-@dataclass(frozen=True, eq=False)
-class Anew:
-    """What is decided anew; an earlier estimate is right about the rest."""
-
-    frames: BoolArray
-    """(F,)."""
-    gaps: BoolArray
-    """(K - 1,) gaps between keyframes."""
-
-    @classmethod
-    def everything(cls, problem: ClipProblem) -> "Anew":
-        """All of a clip."""
-        return cls(np.ones(problem.frames, dtype=bool), np.ones(len(problem.turns), dtype=bool))
 
 
 def refine(
@@ -56,7 +37,7 @@ def refine(
     spans: list[Window],
     states: list[ClipState],
     album: Album | None,
-    anew: Anew,
+    anew: BoolArray,
     contours: ContourEvidence | None,
     earlier: ClipProblem | None = None,
 ) -> Part[Refinement]:
@@ -67,48 +48,23 @@ def refine(
         spans: The windows.
         states: The state of each by its markers.
         album: Pictures of all frames; None where contours are left out.
-        anew: What is decided anew.
+        anew: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in.
         contours: What is known of contours already; None to learn it.
         earlier: The problem of an earlier estimate, which knows the rest; None without one.
 
     Yields:
         The fraction done, from 0 to 1.
     """
-    turns = yield from scaled(choose_turns(problem, states, anew.gaps), 0.0, 0.3)
-    problem, states = turns.problem, turns.states
-    problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.3, 0.4)
+    problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
+    problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)
     if earlier is None and contours is not None:
         contours = contours.with_camera(problem.evidence.model.camera)
     elif earlier is None and album is not None:
         contours = yield from scaled(_learned(problem, spans, states, album), 0.4, 0.5)
     if contours is not None and len(problem.evidence.model.placements):
-        looking = find_lost(problem, spans, states, contours, anew.frames)
-        problem = yield from scaled(looking, 0.5, 0.7)
-        # What was found may decide a turn that was open, and a turn shows where to look.
-        still_open = _open_gaps(problem, turns.undecided)
-        if still_open.any():
-            again = yield from scaled(choose_turns(problem, states, still_open), 0.7, 0.75)
-            kept = tuple(one for one in turns.undecided if not still_open[_gap(problem, one)])
-            turns = replace(again, undecided=(*kept, *again.undecided))
-            if (again.problem.turns != problem.turns).any():
-                problem, states = again.problem, again.states
-                looking = find_lost(problem, spans, states, contours, anew.frames)
-                problem = yield from scaled(looking, 0.75, 0.8)
-    problem, states = yield from scaled(adapted(problem, spans, states, anew.frames, earlier), 0.9, 1.0)
-    return Refinement(problem, states, contours, turns.undecided)
-
-
-def _gap(problem: ClipProblem, one: Undecided) -> int:
-    """The gap between keyframes that a stretch lies in."""
-    return int(np.searchsorted(problem.keyframes, one.frame[0], side="right")) - 1
-
-
-def _open_gaps(problem: ClipProblem, undecided: tuple[Undecided, ...]) -> BoolArray:
-    """(K - 1,) gaps that turn the short way though another is nearly as probable."""
-    gaps = np.zeros(len(problem.turns), dtype=bool)
-    for one in undecided:
-        gaps[_gap(problem, one)] = problem.turns[_gap(problem, one)] == 0
-    return gaps
+        looking = find_lost(problem, spans, states, contours, anew)
+        problem = yield from scaled(looking, 0.5, 1.0)
+    return Refinement(problem, states, contours)
 
 
 def _learned(

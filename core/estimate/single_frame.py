@@ -22,7 +22,7 @@ from ..progress import run
 from .clip_state import ClipState
 from .frame_descent import descend
 from .frame_residuals import FrameResiduals, frame_residuals
-from .keyframe_evidence import KeyframeEvidence, read_keyframes, uncalibrated
+from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
 from .terms.keypoints import ObservedKeypoints
@@ -116,8 +116,8 @@ def calibrated(
         found = uncalibrated(model)
         return found if keypoints is None else replace(found, keypoints=keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)
-    reading = read_keyframes(model, RegionNoise(), observed, width_px, keyframes, frame, keypoints, points)
-    return run(reading)
+    at = SeenAtKeyframes(frame, keyframes, observed, width_px, keypoints, points)
+    return run(read_keyframes(model, RegionNoise(), at))
 
 
 def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> ExpectedRegions:

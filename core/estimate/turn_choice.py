@@ -15,9 +15,7 @@ from ..prior.turns import FULL_TURN, heading_steps_rad
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState
-from .local_fits import Contest, blended, contest, cut, inside
-from .undecided import Undecided, undecided
-from .unseen_markers import findable_share
+from .local_fits import Alternative, alternative, cut
 from .window_problem import WindowProblem, image_cost
 from .windows import Window
 
@@ -47,17 +45,6 @@ class DoubtedTurn:
     """By which the most doubtful gap comes first."""
 
 
-@dataclass(frozen=True, eq=False)
-class ChosenTurns:
-    """A clip's problem with the turns that were chosen."""
-
-    problem: ClipProblem
-    states: list[ClipState]
-    """Windows of it, about the problem's prior."""
-    undecided: tuple[Undecided, ...]
-    """Where another turn is nearly as probable."""
-
-
 def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
@@ -85,69 +72,55 @@ def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[D
     return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
 
 
-def choose_turns(problem: ClipProblem, states: list[ClipState], among: BoolArray) -> Part[ChosenTurns]:
+def choose_turns(
+    problem: ClipProblem, states: list[ClipState], among: BoolArray
+) -> Part[tuple[ClipProblem, list[ClipState]]]:
     """Turn the other way round where that costs less.
 
     Args:
-        problem: The clip's problem; turns that it has in these gaps are held against the short way.
+        problem: The clip's problem, which turns the short way in these gaps.
         states: Windows of it, solved; they may overlap.
         among: (K - 1,) the gaps that are asked for.
 
     Yields:
         The fraction done, from 0 to 1.
+
+    Returns:
+        The problem with the turns chosen, and its windows, solved.
     """
+    states = list(states)
     margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0
-    before, open_still = problem, []
     seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
-    # Of the whole clip: once for all gaps, not once a gap.
-    findable = findable_share(problem) if doubts else np.zeros(0)
     for number, doubt in enumerate(doubts):
         first, last = (int(frame) for frame in problem.keyframes[doubt.gap : doubt.gap + 2])
         state = cut(states, first, last + 1, margin)
         if state is None:
             continue
-        tries = _tries(problem, state, doubt, findable)
-        best = yield from scaled(tries, number / len(doubts), (number + 1) / len(doubts))
-        if best is None:
-            continue
-        taken = best.gain > CHEAPER
-        if taken:
-            problem = best.other.problem
-            share = inside(best.other.state.frame, first, last)
-            states = [blended(one, best.other, share) for one in states]
-        other = undecided(best, taken, first, last)
-        if other is not None:
-            open_still.append(other)
-    turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
-    settled = []
-    for state in states:
-        window = _whole(state)
-        if turned[window.frames].any():
-            # From the prior, as an estimate that keeps these turns begins (`warm_start`).
-            part = WindowProblem(problem, window, problem.start(window))
-            yield from scaled(part.follow_markers(), 1.0, 1.0)
-            state = part.state.without_cache()
-        settled.append(state)
-    return ChosenTurns(problem, settled, tuple(open_still))
+        trying = _best(problem, state, doubt)
+        best = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
+        if best is not None and best.gain > CHEAPER:
+            before, problem = problem, best.problem
+            turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
+            for index, one in enumerate(states):
+                if turned[one.frame].any():
+                    # From the prior, as an estimate that keeps these turns begins (`warm_start`).
+                    whole = Window(int(one.frame[0]), int(one.frame[-1]) + 1, 0, 0)
+                    part = WindowProblem(problem, whole, problem.start(whole))
+                    yield from scaled(part.follow_markers(), 1.0, 1.0)
+                    states[index] = part.state.without_cache()
+    return problem, states
 
 
-def _tries(
-    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn, findable: Array
-) -> Generator[None, None, Contest | None]:
-    """The contest that another turn wins most clearly, or loses least; None where all are hopeless."""
-    best: Contest | None = None
+def _best(
+    problem: ClipProblem, state: ClipState, doubt: DoubtedTurn
+) -> Generator[None, None, Alternative | None]:
+    """The turn that wins most clearly, or loses least; None where all are hopeless."""
+    best: Alternative | None = None
     for way in doubt.turns:
         turns = problem.turns.copy()
-        turns[doubt.gap] = 0 if turns[doubt.gap] == way else way
-        other = problem.with_turns(turns)
-        tried = yield from contest(problem, state, other, other.start(_whole(state)), findable)
+        turns[doubt.gap] = way
+        tried = yield from alternative(problem, state, problem.with_turns(turns))
         if tried is not None and (best is None or tried.gain > best.gain):
             best = tried
     return best
-
-
-def _whole(state: ClipState) -> Window:
-    """The window of a state's frames, which keeps them all."""
-    first, last = int(state.frame[0]), int(state.frame[-1]) + 1
-    return Window(first, last, first, last)

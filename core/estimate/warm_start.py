@@ -44,7 +44,32 @@ SAME_FACTOR = 0.15
 """Difference of the accelerations' log covariance, in the direction of the largest difference."""
 
 
-def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
+def continued(earlier: ClipProblem, now: ClipProblem) -> tuple[ClipProblem, BoolArray] | None:
+    """The problem with all that an earlier one knows of it, and its frames (F,) that changed since.
+
+    None where so much has changed that all of the clip is to be estimated anew. Gaps between keyframes in
+    which anything changed turn the short way, other gaps as before; lost markers that were found before are
+    kept in frames that have not changed.
+    """
+    same = _with_evidence(earlier, now) if _same_setup(earlier, now) else None
+    if same is None:
+        return None
+    known = dict(zip(_gaps(earlier), earlier.turns.tolist(), strict=True))
+    turns = np.array([known.get(gap, 0) for gap in _gaps(now)], dtype=np.intp)
+    anew = changed_gaps(same, _changed_frames(earlier, same.with_turns(turns)))
+    same = same.with_turns(np.where(anew, 0, turns))
+    changed = _changed_frames(earlier, same)
+    frame, marker = np.nonzero(np.broadcast_to(~changed[:, None], same.observed.quality.shape))
+    found = same.observed.replaced((frame, marker), earlier.observed[frame, marker])
+    return replace(same, observed=found), changed
+
+
+def changed_gaps(problem: ClipProblem, changed: BoolArray) -> BoolArray:
+    """(K - 1,) gaps between keyframes, these included, in which any frame (F,) has changed."""
+    return np.array([bool(changed[first : last + 1].any()) for first, last in _gaps(problem)], dtype=bool)
+
+
+def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
     """Whether body, camera, markers, keypoints, noise and frames' times are the same."""
     cameras = [
         [getattr(problem.camera, field.name) for field in fields(Camera)] for problem in (earlier, now)
@@ -62,7 +87,7 @@ def same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
     )
 
 
-def with_earlier_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
+def _with_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None:
     """The problem with the earlier one's evidence, where they agree within the tolerances; else None."""
     same = _same_evidence(earlier.evidence, now.evidence)
     same = same and _same_keypoints(earlier.evidence.keypoints, now.evidence.keypoints)
@@ -78,19 +103,6 @@ def with_earlier_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem
     information[now.matched] = now.evidence.information[now.matched]
     evidence = replace(earlier.evidence, information=information)
     return replace(now, evidence=evidence, factor=earlier.factor)
-
-
-def with_earlier_turns(earlier: ClipProblem, now: ClipProblem) -> tuple[ClipProblem, BoolArray]:
-    """The problem with the earlier one's turns, and the gaps (K - 1,) whose turns are to be chosen anew.
-
-    These are the gaps between other keyframes, and those in which anything changed; they turn the short way.
-    """
-    known = dict(zip(_gaps(earlier), earlier.turns.tolist(), strict=True))
-    turns = np.array([known.get(gap, 0) for gap in _gaps(now)], dtype=np.intp)
-    changed = changed_frames(earlier, now.with_turns(turns))
-    anew = [gap not in known or bool(changed[gap[0] : gap[1] + 1].any()) for gap in _gaps(now)]
-    chosen = np.array(anew, dtype=bool)
-    return now.with_turns(np.where(chosen, 0, turns)), chosen
 
 
 def _gaps(problem: ClipProblem) -> list[tuple[int, int]]:
@@ -138,7 +150,7 @@ def _same_factor(one: Array, other: Array) -> bool:
     return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME_FACTOR)
 
 
-def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
+def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) whether a frame's prior, keyframe or observations differ."""
     changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
     changed |= _observations_differ(earlier.tracked, now.tracked)
@@ -150,13 +162,6 @@ def changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     scale = np.abs(other).max(axis=(1, 2))
     changed[both[np.abs(information - other).max(axis=(1, 2)) > 1e-6 * scale]] = True
     return changed
-
-
-def with_earlier_finds(earlier: ClipProblem, now: ClipProblem, changed: BoolArray) -> ClipProblem:
-    """The problem with what a second look has found before, in frames that have not changed (F,)."""
-    frame, marker = np.nonzero(np.broadcast_to(~changed[:, None], now.observed.quality.shape))
-    kept = earlier.observed[frame, marker]
-    return replace(now, observed=now.observed.replaced((frame, marker), kept))
 
 
 def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:

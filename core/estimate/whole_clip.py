@@ -29,26 +29,17 @@ from .clip_problem import ClipProblem
 from .contour_evidence import ContourEvidence, learn_contours
 from .contour_keyframes import contour_rows
 from .contour_schedule import all_located, contour_schedule
-from .keyframe_evidence import KeyframeEvidence
+from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import keypoint_trust
 from .match_error import depth_std_m
-from .refinement import Anew, refine
+from .refinement import refine
 from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
-from .undecided import Undecided
-from .warm_start import (
-    blend_weight,
-    changed_frames,
-    revised_windows,
-    same_setup,
-    with_earlier_evidence,
-    with_earlier_finds,
-    with_earlier_turns,
-)
+from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 from .windows import Window, windows
 
@@ -68,6 +59,37 @@ class WholeClipOptions:
 
 
 @dataclass(frozen=True, eq=False)
+class Seen:
+    """What was seen in the F frames of a clip."""
+
+    tracks: RegionTracks
+    """Regions of M markers."""
+    segments: tuple[str, ...]
+    """The segment each marker is bound to."""
+    keypoints: Keypoints | None = None
+    """The performer's; None for none."""
+    album: Album | None = None
+    """Pictures of all frames, in which contours are measured; None leaves them out."""
+    ignored: IgnoredPixels | None = None
+    """What of the pictures is never a marker; None for nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Believed:
+    """What is believed of the motion before the footage is asked."""
+
+    prior: Posture
+    """F postures that pass through the keyframes."""
+    keyframes: tuple[int, ...]
+    """Frames of the K keyframes, at least one."""
+    match_scale: Array | None = None
+    """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
+    posed ones, which all are by default."""
+    lower_ankle: Array | None = None
+    """(F,) height of the lower ankle where all keyframes are matched [m]; by their soles where None."""
+
+
+@dataclass(frozen=True, eq=False)
 class WholeClipResult:
     """The estimate of F frames; another estimate of the same clip may start from it."""
 
@@ -83,8 +105,6 @@ class WholeClipResult:
     """The look of performer and background; None where no background can be trusted."""
     outlined: BoolArray | None = None
     """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
-    undecided: tuple[Undecided, ...] = ()
-    """Stretches in which the body may have turned another way."""
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -102,52 +122,34 @@ class WholeClipResult:
 def estimate_whole_clip(
     body: Body,
     camera: Camera,
-    tracks: RegionTracks,
-    segments: tuple[str, ...],
-    prior: Posture,
-    keyframe_indices: tuple[int, ...],
+    seen: Seen,
+    believed: Believed,
     options: WholeClipOptions | None = None,
-    album: Album | None = None,
     earlier: WholeClipResult | None = None,
-    match_scale: Array | None = None,
-    keypoints: Keypoints | None = None,
-    lower_ankle: Array | None = None,
-    ignored: IgnoredPixels | None = None,
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
     Args:
         body: The actor's body.
         camera: The camera.
-        tracks: Observed regions of F frames and M markers.
-        segments: The segment each marker is bound to.
-        prior: F postures that pass through the keyframes.
-        keyframe_indices: Frames of the keyframes, at least one.
-        options: Noise, smoothness and windows.
-        album: Pictures of all frames, in which contours are measured; None leaves them out.
+        seen: The evidence.
+        believed: The keyframes, and the motion through them.
+        options: Noise and windows.
         earlier: An estimate of the same pictures, reused for frames that have not changed since, within the
             tolerances of `warm_start`.
-        match_scale: (K,) size of each matched keyframe's error, relative to a usual difference between
-            performers; 0 for posed ones, which all are by default.
-        keypoints: The performer's keypoints in the F frames; None for none.
-        lower_ankle: (F,) height of the lower ankle where all keyframes are matched [m]; by their soles where
-            None.
-        ignored: What of the pictures is never a marker; None for nothing.
 
     Yields:
         The fraction done, from 0 to 1, and a preview of a window's postures after every step.
-
-    Returns:
-        Postures, their covariance and the calibration.
     """
     options = options or WholeClipOptions()
+    tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, believed.prior
     observed = ObservedRegions.from_tracks(tracks)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(name) for name in segments))
     width_px = limb_widths(model, prior.translation, np.arange(tracks.frame_count))
-    index = np.array(keyframe_indices, dtype=np.intp)
-    match_scale = np.zeros(len(index)) if match_scale is None else match_scale
+    index = np.array(believed.keyframes, dtype=np.intp)
+    match_scale = np.zeros(len(index)) if believed.match_scale is None else believed.match_scale
     matched = match_scale > 0.0
-    keypoints = Keypoints.none(tracks.frame_count) if keypoints is None else keypoints
+    keypoints = Keypoints.none(tracks.frame_count) if seen.keypoints is None else seen.keypoints
     usual = KeypointEvidence.usual(body, camera, keypoints.names, keypoints.sources)
     swapped = _swaps(usual.model, keypoints, prior, index, tracks.time_s)
     keypoints = doubted_at_changes(exchanged_back(keypoints, swapped), swapped, tracks.time_s)
@@ -164,49 +166,49 @@ def estimate_whole_clip(
     reading = read_mixed_keyframes(
         model,
         options.regions,
-        observed[index],
-        width_px[index],
-        prior[index],
-        index,
+        SeenAtKeyframes(
+            index,
+            prior[index],
+            observed[index],
+            width_px[index],
+            usual,
+            points[index],
+            None if contours is None else partial(contour_rows, contours),
+        ),
         match_scale,
-        usual,
-        points[index],
-        None if contours is None else partial(contour_rows, contours),
     )
-    evidence = yield from scaled(reading, 0.0, 0.0)
-    factor = process_noise_factor(prior[index], tracks.time_s[index])
-    step_s = np.maximum(np.diff(tracks.time_s), 1e-3)
     problem = ClipProblem(
-        body,
-        camera,
-        evidence,
-        factor,
-        prior,
-        index,
-        observed,
-        observed,
-        ignored,
-        width_px,
-        step_s,
-        options.regions,
-        matched,
-        depth_std_m(index, matched, tracks.frame_count),
+        body=body,
+        camera=camera,
+        noise=options.regions,
+        keyframes=index,
+        matched=matched,
+        evidence=(yield from scaled(reading, 0.0, 0.0)),
+        factor=process_noise_factor(prior[index], tracks.time_s[index]),
+        interpolated=prior,
+        prior=prior,
+        turns=np.zeros(max(len(index) - 1, 0), dtype=np.intp),
+        depth_std_m=depth_std_m(index, matched, tracks.frame_count),
         # Posed keyframes say where the floor is, and better.
-        _lower_ankle(body, prior, index, lower_ankle) if matched.all() else None,
-        keypoints,
-        points,
-        swapped,
-        prior,
-        np.zeros(max(len(index) - 1, 0), dtype=np.intp),
-        np.ones(body.skeleton.dof_count),
-        np.ones((tracks.frame_count, len(body.skeleton.points))),
+        ankle_height_m=_lower_ankle(body, believed, index) if matched.all() else None,
+        limb_size=np.ones(body.skeleton.dof_count),
+        depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
+        observed=observed,
+        tracked=observed,
+        width_px=width_px,
+        ignored=seen.ignored,
+        keypoints=keypoints,
+        points=points,
+        swapped=swapped,
+        step_s=np.maximum(np.diff(tracks.time_s), 1e-3),
     )
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
     return (yield from _solve(problem, options, album, earlier, kept))
 
 
-def _lower_ankle(body: Body, prior: Posture, index: IndexArray, known: Array | None) -> Array:
+def _lower_ankle(body: Body, believed: Believed, index: IndexArray) -> Array:
+    prior, known = believed.prior, believed.lower_ankle
     return lower_ankle_m(body, prior[index], index, prior.batch[0]) if known is None else known
 
 
@@ -233,27 +235,23 @@ def _solve(
     """Estimate in windows all frames, or those that changed since an earlier estimate."""
     pace = float(np.median(problem.step_s)) if len(problem.step_s) else REFERENCE_STEP_S
     length, margin = round(options.window_s / pace), round(options.margin_s / pace)
-    if earlier is not None and same_setup(earlier.problem, problem):
-        same = with_earlier_evidence(earlier.problem, problem)
-        if same is not None:
-            same, gaps = with_earlier_turns(earlier.problem, same)
-            changed = changed_frames(earlier.problem, same)
-            same = with_earlier_finds(earlier.problem, same, changed)
-            spans = revised_windows(changed, length, margin // 2)
-            result = yield from _solve_windows(same, spans, Anew(changed, gaps), album, earlier)
-            share = blend_weight(changed, margin // 2)[:, None]
-            step = share * result.posture.minus(earlier.posture)
-            still = tuple(one for one in earlier.undecided if not changed[one.frame].any())
-            return replace(result, posture=earlier.posture.plus(step), undecided=(*still, *result.undecided))
+    kept = None if earlier is None else continued(earlier.problem, problem)
+    if earlier is not None and kept is not None:
+        problem, changed = kept
+        spans = revised_windows(changed, length, margin // 2)
+        result = yield from _solve_windows(problem, spans, changed, album, earlier)
+        share = blend_weight(changed, margin // 2)[:, None]
+        step = share * result.posture.minus(earlier.posture)
+        return replace(result, posture=earlier.posture.plus(step))
     every = list(windows(problem.frames, length, margin))
-    everything = Anew.everything(problem)
+    everything = np.ones(problem.frames, dtype=bool)
     return (yield from _solve_windows(problem, every, everything, album, None, contours))
 
 
 def _solve_windows(
     problem: ClipProblem,
     spans: list[Window],
-    anew: Anew,
+    anew: BoolArray,
     album: Album | None,
     earlier: WholeClipResult | None,
     contours: ContourEvidence | None = None,
@@ -263,7 +261,7 @@ def _solve_windows(
     Args:
         problem: The clip's problem.
         spans: The windows; without an earlier estimate they keep all of the clip's frames.
-        anew: What is decided anew.
+        anew: (F,) the frames that are decided anew.
         album: Pictures of all frames.
         earlier: An estimate of all other frames.
         contours: What was learned of them already; None to learn it once the markers are followed.
@@ -302,7 +300,7 @@ def _solve_windows(
         postures.append(posture)
     posture = _spliced(problem.prior if earlier is None else earlier.posture, spans, postures)
     yield 1.0
-    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined, refined.undecided)
+    return WholeClipResult(posture, covariance, residual_px, problem, contours, outlined)
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:

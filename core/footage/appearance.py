@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
@@ -44,12 +44,8 @@ STEADY_SHARE = 0.9
 """Share of static pixels in a static background."""
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
-FARTHEST_GUESS_PX = 16
-"""Farthest pixel whose color is a guess for a background that was never seen."""
 LEAST_KNOWN_SHARE = 0.5
 """Least share of static pixels among all, where each is judged by itself."""
-ALIKE = 0.5
-"""Least overlap (Bhattacharyya's coefficient) of colors that are taken for one garment's on both sides."""
 CHANGED = 0.1
 """Prior share of pixels that differ from the background's usual color."""
 
@@ -69,24 +65,17 @@ class Appearance:
     steady: bool
     """Whether the background is static, so that pixels that differ from it are foreground."""
 
-    def with_parts(
-        self, images: list[Image], labels: list[NDArray[np.int8]], names: tuple[str, ...]
-    ) -> "Appearance":
-        """This appearance with the parts' colors learned from frames in which the body is known best.
-
-        What is worn left and right is mostly alike: both sides share their colors where those overlap.
+    def with_parts(self, images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> "Appearance":
+        """This appearance with the colors of O parts learned from frames in which the body is known best.
 
         Args:
             images: Frames (rows, columns, 3).
             labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-            names: The parts' segments, O of them.
+            parts: Number of parts, O.
         """
         nothing = np.ones(labels[0].shape, dtype=np.bool_)
-        seen = [_seen(image, label, nothing, len(names)) for image, label in zip(images, labels, strict=True)]
-        counts = _counts(seen, len(names))[:-1]
-        own = _log_densities(counts)
-        for left, right in paired(names, own):
-            own[[left, right]] = _log_densities(counts[[left]] + counts[[right]])
+        seen = [_seen(image, label, nothing, parts) for image, label in zip(images, labels, strict=True)]
+        own = _log_densities(_counts(seen, parts)[:-1])
         return replace(self, parts=np.concatenate([own, self.parts[-1:]]))
 
     def where_steady(self) -> "Appearance":
@@ -96,38 +85,6 @@ class Appearance:
         """
         known = self.known & (self.deviation < STEADY)
         return replace(self, known=known, steady=bool(np.mean(known) >= LEAST_KNOWN_SHARE))
-
-    def completed(self, hidden: BoolArray) -> "Appearance":
-        """This appearance with a guess of what a performer who stays in place always hides.
-
-        The color is that of the nearest pixel known, doubted by as much as known pixels differ that are as
-        far apart: much before shelves, little before a wall.
-
-        Args:
-            hidden: (rows, columns) pixels whose background was never seen free.
-        """
-        if not self.known.any():
-            return self
-        away, (row, column) = distance_transform_edt(~self.known, return_indices=True)
-        guessed = hidden & ~self.known & (away <= FARTHEST_GUESS_PX)
-        doubt = self._differences()[np.minimum(np.ceil(away).astype(np.intp), FARTHEST_GUESS_PX)]
-        deviation = np.where(guessed, np.hypot(self.deviation[row, column], doubt), self.deviation)
-        return replace(
-            self,
-            color=np.where(guessed[..., None], self.color[row, column], self.color),
-            deviation=deviation.astype(np.float32),
-            known=self.known | guessed,
-        )
-
-    def _differences(self) -> Array:
-        """(FARTHEST_GUESS_PX + 1,) usual difference of known pixels so far apart, in levels a channel."""
-        usual = np.zeros(FARTHEST_GUESS_PX + 1)
-        for apart in range(1, FARTHEST_GUESS_PX + 1):
-            both = self.known[:, apart:] & self.known[:, :-apart]
-            if both.any():
-                change = self.color[:, apart:][both] - self.color[:, :-apart][both]
-                usual[apart] = np.sqrt(np.mean(change.astype(np.float64) ** 2))
-        return np.asarray(np.maximum.accumulate(usual))
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
@@ -186,21 +143,6 @@ def _seen(image: Image, label: NDArray[np.int8], near: BoolArray, parts: int) ->
 def _counts(seen: list[IndexArray], parts: int) -> IndexArray:
     """(O + 1, cells) how often each cell was seen on each part and, last, in the background."""
     return np.bincount(np.concatenate(seen), minlength=(parts + 1) * CELLS).reshape(parts + 1, CELLS)
-
-
-def paired(names: tuple[str, ...], logs: Array) -> list[tuple[int, int]]:
-    """Indices of left and right of those segments whose colors, by log densities, are one garment's."""
-    left = [index for index, name in enumerate(names) if name.endswith(".L")]
-    pairs = [(index, names.index(names[index][:-2] + ".R")) for index in left]
-    return [pair for pair in pairs if _overlap(logs[pair[0]], logs[pair[1]]) > ALIKE]
-
-
-def _overlap(one: Array, other: Array) -> float:
-    """Bhattacharyya's coefficient of two log densities (cells,), 0 to 1."""
-    root = 0.5 * (one.astype(np.float64) + other)
-    # Densities per level³ or per cell alike.
-    scale = np.exp(one.astype(np.float64)).sum() * np.exp(other.astype(np.float64)).sum()
-    return float(np.exp(root).sum() / np.sqrt(scale))
 
 
 def histogram_cells(pixels: Image, bits: int) -> IndexArray:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
 from ..arrays import Array, Image, IndexArray
-from .appearance import NO_PART, UNSEEN, histogram_cells, paired
+from .appearance import NO_PART, UNSEEN, histogram_cells
 
 BANDS = 6
 """Bands of a part's length."""
@@ -38,7 +38,7 @@ class BandColors:
 
 
 def learn_band_colors(
-    images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], names: tuple[str, ...]
+    images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], count: int
 ) -> BandColors:
     """Learn the colors along all parts.
 
@@ -47,9 +47,8 @@ def learn_band_colors(
         labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
         shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
             the part is seen end on.
-        names: The parts' segments, O of them.
+        count: Number of parts, O.
     """
-    count = len(names)
     size = count * BANDS * CELLS
     counts, background = np.zeros(size), np.zeros(CELLS)
     for image, label, share in zip(images, labels, shares, strict=True):
@@ -61,9 +60,6 @@ def learn_band_colors(
         background += np.bincount(cell[label == NO_PART], minlength=CELLS)
     own = counts.reshape(count, BANDS, CELLS)
     whole = _densities(own.sum(axis=1))
-    for left, right in paired(names, np.log(whole)):
-        own[[left, right]] = own[left] + own[right]
-        whole[[left, right]] = _densities(own[[left]].sum(axis=1))
     bands = (1.0 - SHARED) * _densities(own) + SHARED * whole[:, None]
     anything = 0.5 * (whole.mean(axis=0) + _densities(background))
     return BandColors(np.log(bands), np.log(whole), np.log(anything))

@@ -14,7 +14,7 @@ from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.ankle_height import found_ankle_m
-from ..estimate.whole_clip import estimate_whole_clip
+from ..estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from ..footage.reading import Reading
 from ..library.library import Library
 from ..matching.candidates import MatchedFrame
@@ -153,14 +153,12 @@ def _fitted(take: Take, work: PosingInput, sampled: IndexArray, composed: Compos
     fitting = estimate_whole_clip(
         given.body,
         given.camera,
-        tracks,
-        take.marker_segments,
-        interpolate(keyframes, tracks.frame_count),
-        tuple(map(int, sampled)),
-        match_scale=scale,
-        keypoints=work.keypoints,
-        lower_ankle=found_ankle_m(
-            given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m
+        Seen(tracks, take.marker_segments, work.keypoints),
+        Believed(
+            interpolate(keyframes, tracks.frame_count),
+            tuple(map(int, sampled)),
+            scale,
+            found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
         ),
     )
     return (yield from within("Fitting the postures", fitting, 0.0, 1.0)).posture

@@ -10,7 +10,7 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.contour_evidence import learn_contours
 from keymark.core.estimate.terms.contours import ContourTerm
-from keymark.core.estimate.whole_clip import estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
@@ -29,7 +29,10 @@ def solve(pictures: Album | None) -> Posture:
     keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
     prior = interpolate(keyframes, FRAMES)
     job = estimate_whole_clip(
-        BODY, CAMERA, film(TRUTH, 0.3), SEGMENTS, prior, tuple(int(i) for i in POSED), album=pictures
+        BODY,
+        CAMERA,
+        Seen(film(TRUTH, 0.3), SEGMENTS, album=pictures),
+        Believed(prior, tuple(int(i) for i in POSED)),
     )
     fractions = []
     while True:

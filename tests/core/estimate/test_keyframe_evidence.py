@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, read_keyframes
+from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes
 from keymark.core.estimate.posing_error import posing_covariance, velocities
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.footage.region_tracks import RegionTracks
@@ -32,7 +32,7 @@ def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> Ke
     """The evidence of keyframes posed at `POSED`."""
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
-    return run(read_keyframes(model, RegionNoise(), observed, width, posed, POSED))
+    return run(read_keyframes(model, RegionNoise(), SeenAtKeyframes(POSED, posed, observed, width)))
 
 
 def posed_by_hand(seed: int) -> Posture:

@@ -15,7 +15,7 @@ from keymark.core.estimate.keypoint_notes import keypoint_notes
 from keymark.core.estimate.side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from keymark.core.estimate.terms.drift import add_drift, drift, drift_cost
 from keymark.core.estimate.terms.term import NormalEquations
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
@@ -43,7 +43,8 @@ def estimate(
 ) -> WholeClipResult:
     """The estimate of the exercise."""
     worn = SEGMENTS if tracks.names else ()
-    job = estimate_whole_clip(BODY, camera, tracks, worn, prior, POSED, keypoints=keypoints, **more)
+    seen = Seen(tracks, worn, keypoints)
+    job = estimate_whole_clip(BODY, camera, seen, Believed(prior, POSED), **more)
     return run(job)
 
 

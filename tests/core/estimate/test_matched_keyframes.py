@@ -10,6 +10,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.soles import sole_heights_m
 from keymark.core.estimate.ankle_height import SHOE_M, lower_ankle_m
 from keymark.core.estimate.calibration import placement_values
+from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes
 from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.match_error import (
     PLACE_DEPTH_STD_M,
@@ -22,7 +23,7 @@ from keymark.core.estimate.match_error import (
     undetermined_covariance,
 )
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.observation.depths import DEPTH_STD_M
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
@@ -49,7 +50,10 @@ def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResu
     prior = interpolate(keyframes, FRAMES)
     return run(
         estimate_whole_clip(
-            BODY, CAMERA, TRACKS, SEGMENTS, prior, tuple(int(i) for i in INDEX), match_scale=match_scale
+            BODY,
+            CAMERA,
+            Seen(TRACKS, SEGMENTS),
+            Believed(prior, tuple(int(i) for i in INDEX), match_scale),
         )
     )
 
@@ -83,19 +87,10 @@ def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None
     match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
-    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), observed, width, postures, INDEX, match_scale))
+    every = SeenAtKeyframes(INDEX, postures, observed, width)
+    mixed = run(read_mixed_keyframes(MODEL, RegionNoise(), every, match_scale))
     posed = np.flatnonzero(match_scale == 0.0)
-    alone = run(
-        read_mixed_keyframes(
-            MODEL,
-            RegionNoise(),
-            observed[posed],
-            width[posed],
-            postures[posed],
-            INDEX[posed],
-            np.zeros(len(posed)),
-        )
-    )
+    alone = run(read_mixed_keyframes(MODEL, RegionNoise(), every[posed], np.zeros(len(posed))))
     np.testing.assert_array_equal(
         placement_values(mixed.model.placements), placement_values(alone.model.placements)
     )
@@ -167,11 +162,8 @@ def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_res
         estimate_whole_clip(
             BODY,
             CAMERA,
-            TRACKS,
-            SEGMENTS,
-            first.problem.prior,
-            tuple(int(i) for i in INDEX),
-            match_scale=np.ones(len(INDEX)),
+            Seen(TRACKS, SEGMENTS),
+            Believed(first.problem.prior, tuple(int(i) for i in INDEX), np.ones(len(INDEX))),
             earlier=replace(first),
         )
     )

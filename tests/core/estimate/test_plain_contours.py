@@ -12,7 +12,7 @@ from keymark.core.estimate.contour_evidence import ContourEvidence, learn_contou
 from keymark.core.estimate.contour_keyframes import ROWS, contour_rows
 from keymark.core.estimate.contour_schedule import BY_MARKERS, all_located, contour_schedule
 from keymark.core.estimate.contour_search import NARROW
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
@@ -27,7 +27,7 @@ def solve(pictures: Album | None, posed: Posture = TRUTH) -> WholeClipResult:
     tracks = RegionTracks.unmarked(FRAME / 30.0, CAMERA.resolution)
     prior = interpolate(keyframes, FRAMES)
     index = tuple(int(i) for i in POSED)
-    return run(estimate_whole_clip(BODY, CAMERA, tracks, (), prior, index, album=pictures))
+    return run(estimate_whole_clip(BODY, CAMERA, Seen(tracks, (), album=pictures), Believed(prior, index)))
 
 
 @cache
@@ -177,7 +177,10 @@ def test_where_markers_locate_every_limb_nothing_but_they_judge() -> None:
     keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
     prior = interpolate(keyframes, FRAMES)
     job = estimate_whole_clip(
-        BODY, CAMERA, film(TRUTH, 0.3), SEGMENTS, prior, tuple(int(i) for i in POSED), album=album()
+        BODY,
+        CAMERA,
+        Seen(film(TRUTH, 0.3), SEGMENTS, album=album()),
+        Believed(prior, tuple(int(i) for i in POSED)),
     )
     found = run(job)
     assert found.contours is not None and found.contours.along is None and found.outlined is None

@@ -8,7 +8,7 @@ from _filmed import FRAMES, POSED, TRUTH, photograph
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.seen_tracks import seen_tracks
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.ignored_regions import IgnoredPixels, IgnoredRegion
 from keymark.core.footage.region_tracks import RegionTracks
@@ -95,13 +95,9 @@ def estimate(
         estimate_whole_clip(
             BODY,
             CAMERA,
-            tracked(),
-            SEGMENTS,
-            prior,
-            index,
-            album=album,
+            Seen(tracked(), SEGMENTS, album=album, ignored=ignored),
+            Believed(prior, index),
             earlier=earlier,
-            ignored=ignored,
         )
     )
 

@@ -1,26 +1,19 @@
-"""Which way round the body turns between keyframes is decided by the footage, and told where it is not."""
+"""Which way round the body turns between keyframes is decided by the footage."""
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
-from _synthetic_take import write_synthetic_take
 from keymark.core.body.heading import yawed_at
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.notes import turn_notes
-from keymark.core.estimate.turn_choice import choose_turns, doubted_turns
-from keymark.core.estimate.undecided import Undecided, undecided_covariance
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
-from keymark.core.estimate.window_problem import WindowProblem
-from keymark.core.estimate.windows import Window
+from keymark.core.estimate.turn_choice import doubted_turns
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
-from keymark.core.progress import Preview, run
-from keymark.core.take.take_file import read_take
+from keymark.core.progress import Preview
 
 FRAMES, EVERY = 76, 15
 GAP = 1
@@ -49,7 +42,7 @@ def estimate(
     step[BODY.skeleton.dof_names.index("neck.rotation_x")] = off_rad
     keys[-2] = replace(keys[-2], posture=keys[-2].posture.plus(step))
     prior, index = interpolate(tuple(keys), FRAMES), tuple(key.index for key in keys)
-    job = estimate_whole_clip(BODY, CAMERA, tracks, SEGMENTS, prior, index, earlier=earlier)
+    job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Believed(prior, index), earlier=earlier)
     shown: set[int] = set()
     while True:
         try:
@@ -83,18 +76,6 @@ def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
     assert 1e3 * point_error_m(result.posture, truth).mean() < 40.0
 
 
-def test_a_turn_taken_wrongly_is_taken_back() -> None:
-    """Turns can be chosen again, as when more has been seen: the one there is held against the short way."""
-    problem = turned(146.0)[2].problem
-    wrong = problem.with_turns(np.array([0, -1, 0, 0, 0]))
-    window = Window(0, FRAMES, 0, FRAMES)
-    part = WindowProblem(wrong, window, wrong.start(window))
-    run(part.follow_markers())
-    chosen = run(choose_turns(wrong, [part.state], np.ones(5, dtype=bool)))
-    assert not chosen.problem.turns.any()
-    np.testing.assert_array_equal(chosen.problem.prior.rotations, problem.prior.rotations)
-
-
 def test_nothing_seen_decides_nothing() -> None:
     """Keyframes alone are interpolated the short way."""
     truth, tracks, _ = long_turn()
@@ -106,7 +87,7 @@ def test_nothing_seen_decides_nothing() -> None:
         area=np.full_like(tracks.area, np.nan),
     )
     result, _ = estimate(truth, blind)
-    assert not result.problem.turns.any() and result.undecided == ()
+    assert not result.problem.turns.any()
 
 
 def test_nobody_turns_faster_than_a_dancer() -> None:
@@ -139,18 +120,3 @@ def test_a_turn_stays_where_nothing_changed_and_is_decided_anew_elsewhere() -> N
     assert frames > 0
     assert anew.problem.turns.tolist() == [0, -1, 0, 0, 0]
     assert 1e3 * point_error_m(anew.posture, estimate(truth, moved)[0].posture).max() < 4.0
-
-
-def test_what_is_undecided_widens_sigma_and_is_told(tmp_path: Path) -> None:
-    """By the other's share of the squared distance, in its frames alone; the frame between them decides."""
-    take = replace(read_take(write_synthetic_take(tmp_path / "take", 8, 4)), frame_start=1)
-    away = np.zeros((3, 2, 3))
-    away[:, 0, 1] = [0.1, 0.4, 0.2]
-    one = Undecided(np.arange(4, 7), away, 0.25)
-    more = undecided_covariance([one, replace(one, share=0.5)], 9, 2)
-    np.testing.assert_allclose(more[4:7, 0, 1, 1], 0.75 * np.array([0.01, 0.16, 0.04]))
-    assert np.count_nonzero(more) == 3
-    assert turn_notes(take, [one]) == (
-        "from frame 5 to 7 the body may turn the other way round; a keyframe at frame 6 decides",
-    )
-    assert turn_notes(take, [replace(one, share=0.05)]) == ()

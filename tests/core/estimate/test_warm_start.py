@@ -7,7 +7,13 @@ import numpy as np
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.warm_start import blend_weight, revised_windows
-from keymark.core.estimate.whole_clip import WholeClipOptions, WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import (
+    Believed,
+    Seen,
+    WholeClipOptions,
+    WholeClipResult,
+    estimate_whole_clip,
+)
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
@@ -51,7 +57,8 @@ def estimate(
     """The estimate and what was shown on the way."""
     prior = interpolate(keyframes, FRAMES)
     index = tuple(keyframe.index for keyframe in keyframes)
-    job = estimate_whole_clip(BODY, camera, tracks, SEGMENTS, prior, index, OPTIONS, earlier=earlier)
+    seen, believed = Seen(tracks, SEGMENTS), Believed(prior, index)
+    job = estimate_whole_clip(BODY, camera, seen, believed, OPTIONS, earlier)
     shown = []
     while True:
         try:

@@ -7,7 +7,7 @@ import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.posing_error import posing_covariance
-from keymark.core.estimate.whole_clip import WholeClipResult, estimate_whole_clip
+from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.interpolation import interpolate
 from keymark.core.prior.keyframes import Keyframe
@@ -20,7 +20,7 @@ TRUTH = exercise(FRAMES)
 
 def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
     """Run the estimate to its end."""
-    job = estimate_whole_clip(BODY, CAMERA, tracks, SEGMENTS, prior, POSED)
+    job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Believed(prior, POSED))
     fractions = []
     while True:
         try:

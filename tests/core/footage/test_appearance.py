@@ -70,19 +70,6 @@ def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> Non
             np.testing.assert_array_equal(learned.color[3, column], expected)
 
 
-def test_a_background_that_was_never_seen_is_guessed_from_its_neighbors() -> None:
-    """Near the performer who stays, with doubt; farther in, and where something moves, nothing is claimed."""
-    learned = walk_by(stays=True)
-    hidden = ~learned.known
-    completed = learned.completed(hidden)
-    assert completed.known[hidden].any()
-    guessed = hidden & completed.known
-    assert np.abs(completed.color - PLACE).max(axis=-1)[guessed].mean() < 80.0
-    assert completed.deviation[guessed].mean() > 2.0 * learned.deviation[learned.known].mean()
-    np.testing.assert_array_equal(completed.color[learned.known], learned.color[learned.known])
-    assert not learned.completed(np.zeros_like(hidden)).known[hidden].any()
-
-
 def test_only_pixels_that_move_are_left_out() -> None:
     """A shaken camera leaves the inside of plain blocks; what stands still stays."""
     assert walk_by().where_steady().known.mean() > 0.95
