@@ -174,7 +174,7 @@ def _limb_before(
     readings: Sequence[NameReading],
     size: float,
 ) -> int:
-    """The last bone of a limb that a bone continues; its parent where there is none, or another continues it."""
+    """The last bone of a limb that a bone continues; its parent where no limb waits for it."""
     above, side = int(parent[bone]), readings[bone].side
     way = np.linalg.norm(head - head[bone], axis=1)
     hangs = parent[np.maximum(parent, 0)] >= 0

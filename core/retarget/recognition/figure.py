@@ -22,7 +22,7 @@ SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
 MANY, FEW = 150, 40
 """Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
 NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
-"""Scores of an arm without a hand, of a limb without toe or shoulder though bones are there, and of no head."""
+"""Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
 SAME_JOINT = 0.02
 """A bone this near to its parent, in heights of the trunk, begins where that does."""
 
@@ -33,7 +33,7 @@ class Figure:
 
     frame: Frame
     limbs: Mapping[str, int]
-    """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; parts that lack are not there."""
+    """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; some may be missing."""
     middle: Mapping[str, tuple[int, ...]]
     """By part of `roles.MIDDLE`, from the hips upward."""
     fit: float

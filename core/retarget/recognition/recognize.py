@@ -201,15 +201,26 @@ def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
     found: list[str] = []
     for role, other in named.items():
         if role not in roles:
-            sentence = "{role} not found, but {other} has the name for it"
-            found.append(Sentence(sentence, role=role, other=shown(other)))
+            found.append(
+                Sentence("{role} not found, but {bone} has the name for it", role=role, bone=shown(other))
+            )
         elif roles[role].source != "names":
-            sentence = "{role} is doubtful: {bone} was chosen by its place, and {other} has the name for it"
-            found.append(Sentence(sentence, role=role, bone=shown(roles[role].bones[0]), other=shown(other)))
+            found.append(
+                Sentence(
+                    "{role} is doubtful: {bone} was chosen by its place, and {other} has the name for it",
+                    role=role,
+                    bone=shown(roles[role].bones[0]),
+                    other=shown(other),
+                )
+            )
     placed = [role for role, bones in roles.items() if bones.source == "shape" and role not in named]
     if placed:
-        sentence = "no name tells which bone plays {roles}: they are chosen by their places alone"
-        found.append(Sentence(sentence, roles=", ".join(placed)))
+        found.append(
+            Sentence(
+                "no name tells which bone plays {roles}: they are chosen by their places alone",
+                roles=", ".join(placed),
+            )
+        )
     return found
 
 

@@ -11,7 +11,7 @@ from ...arrays import Array, BoolArray, IndexArray
 from .bones import Bones
 
 SAME = 0.02
-"""A mirrored head lies this near to its counterpart, and a head beside the plane this far from it, in sizes."""
+"""A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
 LOOSE = 0.12
 """Two branches may mirror each other although they are this far, in sizes, from doing so."""
 MOST_PLANES, MOST_SYMMETRIES = 60, 3

@@ -10,8 +10,6 @@ from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switc
 from ....core.retarget.recognition.root_bone import find_root
 from ....core.retarget.stance import find_stance
 from ....core.text import Sentence
-from .controls.find_controls import find_controls
-from .controls.probe_controls import character_size
 from .mesh_soles import mesh_soles
 
 
@@ -33,15 +31,13 @@ def complete_map(
         character: The same at rest.
         character_map: Its map.
     """
-    checked, missing = _with_properties(armature_object, character_map)
-    found = find_controls(armature_object, checked, character_size(armature_object, checked))
-    completed = found.character_map
+    completed, notes = _with_properties(armature_object, character_map)
     if completed.root is None:
         up = find_stance(character, completed)[2]
         completed = replace(completed, root=find_root(character, completed, up))
     if not completed.soles:
         completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
-    return CompletedMap(completed, (*missing, *found.notes))
+    return CompletedMap(completed, notes)
 
 
 def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:

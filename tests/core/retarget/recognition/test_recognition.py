@@ -13,8 +13,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.heading import yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.recognition.recognize import Recognition
-from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.retarget.recognition.recognize import Recognition, recognize
 from keymark.core.retarget.recognition.root_bone import find_root
 from keymark.core.retarget.roles import ROLES
 from keymark.core.retarget.stance import find_stance
