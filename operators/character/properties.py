@@ -2,7 +2,6 @@
 
 import bpy
 
-from ...core.finish.contacts import STRAY_M
 from ...core.retarget.options import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
 from .map_properties import KEYMARK_PG_character_map
@@ -140,16 +139,6 @@ class KEYMARK_PG_retarget_options(bpy.types.PropertyGroup):
         name="Plant Feet",
         description="Hold resting feet at one place, flat on the floor; the legs follow",
         default=DEFAULTS.plant_feet,
-    )
-    stray_mm: bpy.props.FloatProperty(
-        name="Foot Stray (mm)",
-        description="Distance that the performer's resting foot may stray and still be held",
-        default=MM * STRAY_M,
-        min=1.0,
-        soft_max=100.0,
-        max=500.0,
-        precision=0,
-        step=100,
     )
     reach_hands: bpy.props.BoolProperty(
         name="Reach With Hands",
