@@ -69,7 +69,7 @@ class Frame:
     def coordinates(self, points: Array) -> Array:
         """Points (N, 3) of the bones in the coordinates of `place`."""
         paired = self.partner >= 0
-        images = _mirrored(points[np.where(paired, self.partner, 0)], self.normal, self.offset)
+        images = mirrored(points[np.where(paired, self.partner, 0)], self.normal, self.offset)
         both = np.where(paired[:, None], 0.5 * (points + images), points)
         across = np.abs(both @ self.normal - self.offset)
         ahead = np.cross(self.normal, self.up)
@@ -81,21 +81,7 @@ def find_frames(bones: Bones) -> Iterator[list[Frame]]:
 
     A body in a T pose is nearly flat, so that one in a skirt may have its front and back mirrored as well.
     """
-    named = _named_pairs(bones)
-    tree = cKDTree(bones.head)
-    planes = [_fitted(bones, tree, *plane) for plane in _planes(bones, named)]
-    planes.sort(key=lambda plane: -_score(bones, tree, *plane))
-    taken: list[Array] = []
-    for normal, offset in planes:
-        if len(taken) == MOST_SYMMETRIES:
-            return
-        if any(abs(float(normal @ other)) > ALIKE for other in taken):
-            continue
-        taken.append(normal)
-        for _ in range(2):
-            partner = _partners(bones, normal, offset, named)
-            pairs = np.flatnonzero(partner > np.arange(len(partner)))
-            normal, offset = _between(bones, pairs, partner[pairs], normal, offset)
+    for normal, offset, partner in find_planes(bones):
         found = []
         for axis in np.eye(3)[[2, 1, 0]]:
             if abs(float(axis @ normal)) < LEVEL:
@@ -103,6 +89,26 @@ def find_frames(bones: Bones) -> Iterator[list[Frame]]:
                 up /= np.linalg.norm(up)
                 found += [Frame(bones, normal, offset, partner, sign * up) for sign in (1.0, -1.0)]
         yield found
+
+
+def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
+    """Yield normal, offset and partners (see `Frame`) of planes, the one that mirrors most bones first."""
+    named = _named_pairs(bones)
+    tree = cKDTree(bones.head)
+    planes = [_fitted(bones, tree, *plane) for plane in _planes(bones, named)]
+    planes.sort(key=lambda plane: -_score(bones, tree, *plane))
+    taken: list[Array] = []
+    for normal, offset in planes:
+        if any(abs(float(normal @ other)) > ALIKE for other in taken):
+            continue
+        taken.append(normal)
+        for _ in range(2):
+            partner = _partners(bones, normal, offset, named)
+            pairs = np.flatnonzero(partner > np.arange(len(partner)))
+            normal, offset = _between(bones, pairs, partner[pairs], normal, offset)
+        yield normal, offset, partner
+        if len(taken) == MOST_SYMMETRIES:
+            return
 
 
 def _named_pairs(bones: Bones) -> dict[int, int]:
@@ -155,7 +161,7 @@ def _planes(bones: Bones, named: dict[int, int]) -> list[tuple[Array, float]]:
 def _score(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> float:
     """How many heads beside a plane have a counterpart, and how few have none."""
     beside = np.abs(bones.head @ normal - offset) > SAME * bones.size
-    images = _mirrored(bones.head[beside], normal, offset)
+    images = mirrored(bones.head[beside], normal, offset)
     if not len(images):
         return -np.inf
     apart, _ = tree.query(images, distance_upper_bound=SAME * bones.size)
@@ -164,7 +170,7 @@ def _score(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> float:
 
 def _fitted(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> tuple[Array, float]:
     """The plane between the heads that a plane nearly mirrors onto others."""
-    images = _mirrored(bones.head, normal, offset)
+    images = mirrored(bones.head, normal, offset)
     apart, other = tree.query(images, distance_upper_bound=2 * SAME * bones.size)
     paired = np.flatnonzero(np.isfinite(apart) & (other != np.arange(len(other))))
     return _between(bones, paired, other[paired], normal, offset)
@@ -222,7 +228,7 @@ def _costs(bones: Bones, normal: Array, offset: float, named: dict[int, int]) ->
     middles = np.array([np.median(points, axis=0) for points in bones.points])
     cost = np.zeros((len(bones.names), len(bones.names)))
     for points in (bones.head, middles):
-        images = _mirrored(points, normal, offset)
+        images = mirrored(points, normal, offset)
         cost += 0.5 * np.linalg.norm(points[:, None] - images[None], axis=-1) / bones.size
     count = np.log([len(below) for below in bones.subtree])
     cost += 0.02 * np.abs(count[:, None] - count[None])
@@ -234,5 +240,6 @@ def _costs(bones: Bones, normal: Array, offset: float, named: dict[int, int]) ->
     return cost
 
 
-def _mirrored(points: Array, normal: Array, offset: float) -> Array:
+def mirrored(points: Array, normal: Array, offset: float) -> Array:
+    """Mirror images (..., 3) of points."""
     return np.asarray(points - 2.0 * (points @ normal - offset)[..., None] * normal)
