@@ -180,10 +180,5 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_UL_characters,
-        KEYMARK_PT_character,
-        KEYMARK_PT_character_map,
-        KEYMARK_PT_retarget_options,
-    )
+    (KEYMARK_UL_characters, KEYMARK_PT_character, KEYMARK_PT_character_map, KEYMARK_PT_retarget_options)
 )

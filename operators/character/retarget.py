@@ -87,13 +87,7 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
         for note in result.retargeted.notes:
             warn(self, note)
-        say(
-            self,
-            "INFO",
-            "'{name}' performs '{action}'",
-            name=character.armature.name,
-            action=action.name,
-        )
+        say(self, "INFO", "'{name}' performs '{action}'", name=character.armature.name, action=action.name)
 
 
 def _uid(block: bpy.types.ID | None) -> int:

@@ -38,9 +38,6 @@ def solve_motion(
         options: What a person chose.
         object_space: Where the armature object stands now; it stays there with `Placement.CHARACTER`.
 
-    Yields:
-        Progress.
-
     Returns:
         The poses of the role bones.
 

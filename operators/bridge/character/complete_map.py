@@ -24,13 +24,7 @@ class CompletedMap:
 def complete_map(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
 ) -> CompletedMap:
-    """Add to a map what only Blender knows; what it says stays.
-
-    Args:
-        armature_object: The character.
-        character: The same at rest.
-        character_map: Its map.
-    """
+    """Add to a map what only Blender knows; what it says stays."""
     completed, notes = _with_properties(armature_object, character_map)
     if completed.root is None:
         up = find_stance(character, completed)[2]

@@ -63,12 +63,7 @@ class Retargeted:
         return self.motion.size
 
     def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
-        """Write the motion into an Action, and let it animate the character.
-
-        Args:
-            scene: The scene, which shows the character's new pose.
-            action: The name of a new Action; or an Action, in which what an earlier retargeting made for the
-                character is replaced.
+        """Write the motion into a new Action of a name, or one that an earlier retargeting made.
 
         Raises:
             InputError: The character has been deleted meanwhile.
@@ -171,10 +166,7 @@ def _keyed(
 
 
 def _on_controls(
-    character: Character,
-    character_map: CharacterMap,
-    motion: CharacterMotion,
-    probed: ProbedControls,
+    character: Character, character_map: CharacterMap, motion: CharacterMotion, probed: ProbedControls
 ) -> ControlMotion:
     """The motion on the controls, by channels for every frame."""
     planned = [control.plan for control in probed.controls]
