@@ -1,7 +1,7 @@
 """A character map made ready for its character: soles of the mesh, controls found, properties checked."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 
@@ -13,25 +13,17 @@ from ....core.text import Sentence
 from .mesh_soles import mesh_soles
 
 
-@dataclass(frozen=True, eq=False)
-class CompletedMap:
-    """A completed map."""
-
-    character_map: CharacterMap
-    notes: tuple[str, ...]
-
-
 def complete_map(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
-) -> CompletedMap:
-    """Add to a map what only Blender knows; what it says stays."""
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """Add to a map what only Blender knows; what it says stays. Notes say what of it the rig lacks."""
     completed, notes = _with_properties(armature_object, character_map)
     if completed.root is None:
         up = find_stance(character, completed)[2]
         completed = replace(completed, root=find_root(character, completed, up))
     if not completed.soles:
         completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
-    return CompletedMap(completed, notes)
+    return completed, notes
 
 
 def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:

@@ -57,7 +57,7 @@ def test_properties_that_are_not_there_are_left_out_and_named() -> None:
     character, known = control_rig()
     ik = {"arm.L": IkControls("ik_hand.L", "pole_arm.L", None, Switch("ik_hand.L", "ik_fk", 0.0, 1.0))}
     given = replace(known, ik=ik, settings=(Setting("body", "follow", 1.0),))
-    completed = complete_map(character, read_character(character), given)
-    assert completed.character_map.settings == ()
-    assert completed.character_map.ik["arm.L"].switch is None
-    assert ["'follow'" in note or "'ik_fk'" in note for note in completed.notes] == [True, True]
+    completed, notes = complete_map(character, read_character(character), given)
+    assert completed.settings == ()
+    assert completed.ik["arm.L"].switch is None
+    assert ["'follow'" in note or "'ik_fk'" in note for note in notes] == [True, True]
