@@ -61,30 +61,6 @@ def control_rig(pole_behind: bool = False) -> tuple[bpy.types.Object, CharacterM
     return made, plain_map(plain)
 
 
-def simple_ik_rig() -> tuple[bpy.types.Object, CharacterMap]:
-    """A character whose own shins always reach for free goals and point to free poles."""
-    plain = plain_character(root="root")
-    bones = list(plain.bones)
-    for side in "LR":
-        foot, shin = plain.bone(f"foot.{side}"), plain.bone(f"shin.{side}")
-        bones.append(CharacterBone(f"goal.{side}", 0, foot.rest, foot.tail, deforms=False))
-        rest = plain.bone("head").rest.copy()
-        rest[:3, 3] = shin.head + [0.0, -POLE_M, 0.0]
-        bones.append(CharacterBone(f"pole.{side}", 0, rest, rest[:3, 3] + [0.0, 0.0, 0.1], deforms=False))
-    made = build_character(Character("Simple", tuple(bones)))
-    for side in "LR":
-        constraint = made.pose.bones[f"shin.{side}"].constraints.new("IK")
-        constraint.target, constraint.subtarget = made, f"goal.{side}"
-        constraint.pole_target, constraint.pole_subtarget = made, f"pole.{side}"
-        constraint.chain_count = 2
-        pole = made.data.bones[f"pole.{side}"].head_local
-        constraint.pole_angle = _pole_angle(made, ("thigh", "shin"), side, pole)
-        turned = made.pose.bones[f"foot.{side}"].constraints.new("COPY_ROTATION")
-        turned.target, turned.subtarget = made, f"goal.{side}"
-    bpy.context.view_layer.update()
-    return made, plain_map(plain)
-
-
 def _limb(made: bpy.types.Object, kind: str, parts: tuple[str, ...], side: str, behind: bool) -> None:
     holder = made.pose.bones[f"ik_{parts[2]}.{side}"]
     holder["to_ik"] = 1.0

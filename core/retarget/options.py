@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ..finish.contacts import STRAY_M
-
 
 class RootMotion(Enum):
     """Where the way over the ground goes."""
@@ -46,8 +44,6 @@ class RetargetOptions:
     """A limb without IK controls is keyed in FK whatever is chosen."""
     plant_feet: bool = True
     reach_hands: bool = True
-    stray_m: float = STRAY_M
-    """Distance that the performer's resting foot may stray and still be held [m]."""
     tolerance_m: float | None = 0.005
     """Largest distance of any joint, end or sole of the character from the motion [m]; None for a key on
     every frame."""

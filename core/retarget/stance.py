@@ -20,10 +20,6 @@ PAIRS = (*LEG[:3], *ARM[1:])
 def find_stance(character: Character, character_map: CharacterMap) -> Array:
     """Rotation from the armature's axes to a stance with Z up, facing -Y, the character's left at +X.
 
-    Args:
-        character: Its bones at rest.
-        character_map: Its roles, of which legs and arms are looked at.
-
     Returns:
         (3, 3); `rotation @ point` turns a point of the armature's space. The identity where the map lacks the
         limbs that would tell.

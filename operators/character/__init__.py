@@ -7,7 +7,6 @@ MODULES = (
     "remove_character",
     "make_override",
     "recognize_character",
-    "use_active_bone",
     "pick_bone",
     "chain_bones",
     "mirror_roles",

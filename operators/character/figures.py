@@ -19,11 +19,7 @@ def figures(quality: "Quality") -> list[str]:
         lines.append(label("Hands {distance:.0f} mm from what they reach", distance=quality.hands_mm))
     elif quality.arms_deg is not None and quality.legs_deg is not None:
         lines.append(
-            label(
-                "Arms {arms:.1f}°, legs {legs:.1f}° off",
-                arms=quality.arms_deg,
-                legs=quality.legs_deg,
-            )
+            label("Arms {arms:.1f}°, legs {legs:.1f}° off", arms=quality.arms_deg, legs=quality.legs_deg)
         )
     if quality.keys is not None and quality.dense_keys is not None:
         lines.append(label("{keys} keys instead of {dense}", keys=quality.keys, dense=quality.dense_keys))

@@ -22,10 +22,7 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
     requirements = (armature, idle)
 
     filepath: bpy.props.StringProperty(
-        name="File Path",
-        description="A character map",
-        subtype="FILE_PATH",
-        options={"SKIP_SAVE"},
+        name="File Path", description="A character map", subtype="FILE_PATH", options={"SKIP_SAVE"}
     )
     title: bpy.props.StringProperty(
         name="Title",

@@ -3,7 +3,7 @@
 import bpy
 
 from ...core.errors import InputError
-from ..bridge.character.read_character import needs_override
+from ..bridge.character.read_character import make_override, needs_override
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import label, say
 from ..shell.requirements import idle
@@ -40,29 +40,12 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
         if instance is not None:
             overridden = _override_instance(context, original, instance)
         else:
-            overridden = _override_object(context, original)
+            overridden = make_override(context, original)
         known = map_of(character.character_map)
         character.armature = overridden
         if known.roles:
             show_map(character.character_map, known)
         say(self, "INFO", "'{name}' can be animated now", name=overridden.name)
-
-
-def _override_object(context: bpy.types.Context, original: bpy.types.Object) -> bpy.types.Object:
-    """Override a linked armature object and what belongs to it; returns the override.
-
-    Raises:
-        InputError: Blender refuses.
-    """
-    if original.override_library is not None:  # one of Blender's own, of what the animator did not choose
-        original.override_library.is_system_override = False
-        return original
-    made = original.override_hierarchy_create(context.scene, context.view_layer, do_fully_editable=True)
-    if made is None or made.type != "ARMATURE":
-        raise InputError(
-            "Blender makes no library override of '{original}'; append it instead", original=original.name
-        )
-    return made
 
 
 def _override_instance(

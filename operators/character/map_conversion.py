@@ -1,7 +1,6 @@
 """Character maps from properties, and into them."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import bpy
 
@@ -78,28 +77,6 @@ def show_map(
         shown = group.settings.add()
         shown.bone, shown.property, shown.value = setting.bone, setting.property, float(setting.value)
         shown.kind = {bool: "BOOL", int: "INT"}.get(type(setting.value), "FLOAT")
-
-
-def show_found_controls(group: bpy.types.PropertyGroup, completed: CharacterMap) -> None:
-    """Show the controls that were found on the rig while it was retargeted; what is shown already stays."""
-    shown = map_of(group)
-    if {name: role.bones for name, role in shown.roles.items()} != {
-        name: role.bones for name, role in completed.roles.items()
-    }:
-        return  # corrected while the job ran
-    known = {(setting.bone, setting.property) for setting in shown.settings}
-    found = replace(
-        shown,
-        fk={**completed.fk, **shown.fk},
-        ik={**completed.ik, **shown.ik},
-        settings=(
-            *shown.settings,
-            *(each for each in completed.settings if (each.bone, each.property) not in known),
-        ),
-        root=shown.root or completed.root,
-    )
-    if found != shown:
-        show_map(group, found, {role.name: role.doubt for role in group.roles if role.doubt})
 
 
 def clear_map(group: bpy.types.PropertyGroup) -> None:

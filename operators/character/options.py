@@ -15,6 +15,5 @@ def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
         legs=LimbKeys[group.legs],
         plant_feet=group.plant_feet,
         reach_hands=group.reach_hands,
-        stray_m=group.stray_mm / MM,
         tolerance_m=group.tolerance_mm / MM if group.keys == "TOLERANCE" else None,
     )

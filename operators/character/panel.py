@@ -155,9 +155,6 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
         column.prop(options, "root_motion")
         column.prop(options, "placement")
         column.prop(options, "plant_feet")
-        feet = column.column()
-        feet.active = options.plant_feet
-        feet.prop(options, "stray_mm")
         column.prop(options, "reach_hands")
         column.prop(options, "keys")
         few = column.column()
@@ -183,10 +180,5 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_UL_characters,
-        KEYMARK_PT_character,
-        KEYMARK_PT_character_map,
-        KEYMARK_PT_retarget_options,
-    )
+    (KEYMARK_UL_characters, KEYMARK_PT_character, KEYMARK_PT_character_map, KEYMARK_PT_retarget_options)
 )

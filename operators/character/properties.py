@@ -2,7 +2,6 @@
 
 import bpy
 
-from ...core.finish.contacts import STRAY_M
 from ...core.retarget.options import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
 from .map_properties import KEYMARK_PG_character_map
@@ -12,11 +11,7 @@ DEFAULTS = RetargetOptions()
 LIMB_KEYS = (
     ("FK", "FK", "Key the bones of the chain, or their FK controls, and show FK"),
     ("IK", "IK", "Key the IK controls and show IK; a limb that has none is keyed in FK"),
-    (
-        "BOTH",
-        "Both",
-        "Key FK and IK alike and show IK, so that you may switch between them",
-    ),
+    ("BOTH", "Both", "Key FK and IK alike and show IK, so that you may switch between them"),
 )
 ROOT_MOTIONS = (
     ("AS_FILMED", "As Filmed", "The character goes where the performer went, by its hips"),
@@ -29,18 +24,10 @@ PLACEMENTS = (
         "Performer's Place",
         "The character is placed and turned to where the performer stands and faces in the footage",
     ),
-    (
-        "CHARACTER",
-        "Character's Place",
-        "The character stays where it stands, and the motion begins there",
-    ),
+    ("CHARACTER", "Character's Place", "The character stays where it stands, and the motion begins there"),
 )
 KEYS = (
-    (
-        "TOLERANCE",
-        "Within Tolerance",
-        "The fewest keys that keep the character within the tolerance",
-    ),
+    ("TOLERANCE", "Within Tolerance", "The fewest keys that keep the character within the tolerance"),
     ("EVERY_FRAME", "Every Frame", "A key on every frame"),
 )
 SOURCES = (
@@ -141,16 +128,6 @@ class KEYMARK_PG_retarget_options(bpy.types.PropertyGroup):
         description="Hold resting feet at one place, flat on the floor; the legs follow",
         default=DEFAULTS.plant_feet,
     )
-    stray_mm: bpy.props.FloatProperty(
-        name="Foot Stray (mm)",
-        description="Distance that the performer's resting foot may stray and still be held",
-        default=MM * STRAY_M,
-        min=1.0,
-        soft_max=100.0,
-        max=500.0,
-        precision=0,
-        step=100,
-    )
     reach_hands: bpy.props.BoolProperty(
         name="Reach With Hands",
         description="Let the hands reach what the performer's reached: each other, the body, the floor",
@@ -185,8 +162,7 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
     )
     doubts: bpy.props.CollectionProperty(type=KEYMARK_PG_result_line)
     suggested: bpy.props.StringProperty(
-        name="Map at Hand",
-        description="Title of a map in your library folder for this armature's bones",
+        name="Map at Hand", description="Title of a map in your library folder for this armature's bones"
     )
     character_map: bpy.props.PointerProperty(type=KEYMARK_PG_character_map)
     source: bpy.props.EnumProperty(
@@ -217,10 +193,5 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PG_result_line,
-        KEYMARK_PG_retargeted,
-        KEYMARK_PG_retarget_options,
-        KEYMARK_PG_character,
-    )
+    (KEYMARK_PG_result_line, KEYMARK_PG_retargeted, KEYMARK_PG_retarget_options, KEYMARK_PG_character)
 )

@@ -6,7 +6,6 @@ from ..bridge.character.read_character import needs_override
 from ..shell.messages import label
 from ..shell.takes import active_take, find_take
 from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
-from .role_bone import active_bone_of
 from .source_motion import missing_source
 
 
@@ -79,13 +78,3 @@ def result(context: bpy.types.Context) -> str | None:
         return character(context)
     made = any(each.action is not None for each in chosen.results)
     return None if made else label("Retarget the motion first")
-
-
-def active_bone(context: bpy.types.Context) -> str | None:
-    """A bone of the chosen character is active."""
-    unmet = armature(context)
-    if unmet is not None:
-        return unmet
-    if active_bone_of(active_character(context.scene)) is None:
-        return label("Make a bone of the character active first: click on it in Pose Mode")
-    return None

@@ -13,7 +13,7 @@ from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
 from .characters import active_character
 from .figures import figures
-from .map_conversion import map_of, show_found_controls
+from .map_conversion import map_of
 from .options import options_of
 from .requirements import editable, recognized, source
 from .results import add_result, result_to_replace, show_lines
@@ -85,16 +85,9 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         source = SourceMotion(result.kind, source_action, actor, result.title)
         listed = add_result(character, source, action)
         show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
-        show_found_controls(character.character_map, result.retargeted.character_map)
         for note in result.retargeted.notes:
             warn(self, note)
-        say(
-            self,
-            "INFO",
-            "'{name}' performs '{action}'",
-            name=character.armature.name,
-            action=action.name,
-        )
+        say(self, "INFO", "'{name}' performs '{action}'", name=character.armature.name, action=action.name)
 
 
 def _uid(block: bpy.types.ID | None) -> int:

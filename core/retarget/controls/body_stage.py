@@ -26,9 +26,6 @@ def reduce_body(
         of: Values of rotation channels.
         stages: The controls in the order of their fitting.
 
-    Yields:
-        The fraction done.
-
     Returns:
         By index what is keyed on each control, and its channels with the poses that the keys show.
     """

@@ -116,9 +116,7 @@ def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedContr
     """The motion with keys on every frame."""
     return tuple(
         KeyedControl(
-            control,
-            None if keyed.rotation is None else of(keyed.rotation, control.mode),
-            keyed.location,
+            control, None if keyed.rotation is None else of(keyed.rotation, control.mode), keyed.location
         )
         for control, keyed in zip(motion.controls, motion.channels, strict=True)
     )

@@ -26,9 +26,6 @@ def reduce_controls(
         rules: How far points may stray.
         of: Values of rotation channels.
 
-    Yields:
-        The fraction done.
-
     Returns:
         What is keyed on each control.
     """

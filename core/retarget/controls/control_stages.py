@@ -40,12 +40,7 @@ class ControlStages:
 def control_stages(
     controls: Sequence[Control], legs: Mapping[str, tuple[int, Collection[int]]]
 ) -> ControlStages:
-    """The controls in the order of their fitting.
-
-    Args:
-        controls: All controls, those that turn or carry others first.
-        legs: By leg the control that carries it, and its own in FK.
-    """
+    """The controls in the order of their fitting."""
     later = [False] * len(controls)
     for index, control in enumerate(controls):
         above = _above(control)

@@ -15,13 +15,7 @@ from .control_rig import control_rig
 from .control_stages import FollowingControls
 from .held_points import HeldPoint, PointKind
 from .leg_on_body import leg_on_body
-from .point_tolerances import (
-    CARRIED_SHARE,
-    SWITCH_M,
-    ToleranceRules,
-    pole_tolerance_m,
-    reach_tolerance_m,
-)
+from .point_tolerances import CARRIED_SHARE, SWITCH_M, ToleranceRules, pole_tolerance_m, reach_tolerance_m
 
 
 def reduce_following(
@@ -41,9 +35,6 @@ def reduce_following(
         of: Values of rotation channels.
         group: The controls.
         shown: Channels of the controls fitted before, with the poses that their keys show.
-
-    Yields:
-        The fraction done.
 
     Returns:
         By index what is keyed on each control, and its channels with the poses that the keys show.

@@ -9,13 +9,7 @@ from .control_motion import ControlMotion
 
 
 def leg_on_body(motion: ControlMotion, leg: str, carrier: ControlChannels) -> dict[str, Array]:
-    """(F, 4, 4) poses of the bones at a leg's three joints, in the armature's space.
-
-    Args:
-        motion: The motion; the foot keeps its pose.
-        leg: The leg.
-        carrier: What carries its root, as its keys show it.
-    """
+    """(F, 4, 4) poses of the bones at a leg's three joints, in the armature's space."""
     limb = motion.limbs[leg]
     first, second, third = limb.bones
     upper, lower, end = (motion.bones[bone].copy() for bone in limb.bones)

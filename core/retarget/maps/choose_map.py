@@ -59,12 +59,10 @@ def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
     if wanted == NO_MAP:
         return ()
     if wanted != AUTO:
-        return tuple(_digest(find_map(wanted, folders)))
-    return tuple(sorted(digest for entry in registered_maps(folders) for digest in _digest(entry)))
-
-
-def _digest(entry: RegisteredMap) -> Sequence[str]:
-    return [] if entry.character_map is None else [map_digest(entry.character_map)]
+        entries: Sequence[RegisteredMap] = [find_map(wanted, folders)]
+    else:
+        entries = registered_maps(folders)
+    return tuple(sorted(map_digest(entry.character_map) for entry in entries if entry.character_map))
 
 
 def _checked(entry: RegisteredMap, character: Character, origin: str) -> ChosenMap:

@@ -87,13 +87,12 @@ def map_for(character: Character, folders: Sequence[Path]) -> RegisteredMap | No
     Returns:
         The map; None where there is none.
     """
-    usable = [entry for entry in registered_maps(folders) if entry.character_map is not None]
     fitting = [
-        entry
-        for entry in usable
+        (len(entry.character_map.named_bones), entry)
+        for entry in registered_maps(folders)
         if entry.character_map is not None and not missing_bones(entry.character_map, character)
     ]
-    return max(fitting, key=_named_count, default=None)
+    return max(fitting, key=lambda each: each[0])[1] if fitting else None
 
 
 def map_path(folder: Path, title: str) -> Path:
@@ -106,10 +105,6 @@ def map_path(folder: Path, title: str) -> Path:
         if entry is not None and entry.character_map and name_key(entry.title) == name_key(title):
             return path
     return folder / (identifier_from(title, [path.stem for path in json_files(folder)], "character") + ENDING)
-
-
-def _named_count(entry: RegisteredMap) -> int:
-    return 0 if entry.character_map is None else len(entry.character_map.named_bones)
 
 
 def _read(path: Path) -> RegisteredMap | None:

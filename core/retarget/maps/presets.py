@@ -1,7 +1,7 @@
 """Presets: character maps of conventions of bone names, found by the bones that they require."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -125,39 +125,36 @@ def _key(name: str) -> str:
 
 def _renamed(character_map: CharacterMap, name_of: Callable[[str], str | None]) -> CharacterMap:
     """The map with other names, without what has none."""
+
+    def other(name: str | None) -> str | None:
+        return None if name is None else name_of(name)
+
     roles: dict[str, RoleBones] = {}
     for role, given in character_map.roles.items():
         bones = tuple(name for bone in given.bones if (name := name_of(bone)) is not None)
         if bones:
             whole = len(bones) == len(given.bones)
             roles[role] = replace(given, bones=bones, shares=given.shares if whole else ())
-    fk: dict[str, tuple[str | None, ...]] = {}
-    for role, keyed in character_map.fk.items():
-        controls = tuple(None if name is None else name_of(name) for name in keyed)
-        same = len(controls) == len(roles[role].bones) if role in roles else False
-        if same and all((new is None) == (old is None) for new, old in zip(controls, keyed, strict=True)):
-            fk[role] = controls
+    fk = {role: tuple(map(other, keyed)) for role, keyed in character_map.fk.items()}
+    fk = {
+        role: controls
+        for role, controls in fk.items()
+        if role in roles
+        and len(controls) == len(roles[role].bones)
+        and [name is None for name in controls] == [name is None for name in character_map.fk[role]]
+    }
+    ik: dict[str, IkControls] = {}
+    for limb, given_ik in character_map.ik.items():
+        goal, switch = name_of(given_ik.goal), given_ik.switch
+        if goal is not None:
+            holder = name_of(switch.bone) if switch is not None else None
+            kept = replace(switch, bone=holder) if switch is not None and holder is not None else None
+            ik[limb] = IkControls(goal, other(given_ik.pole), other(given_ik.toe), kept)
     settings = tuple(
         replace(setting, bone=bone)
         for setting in character_map.settings
         if (bone := name_of(setting.bone)) is not None
     )
-    root = name_of(character_map.root) if character_map.root is not None else None
-    ik = _renamed_ik(character_map.ik, name_of)
-    return replace(character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=root)
-
-
-def _renamed_ik(ik: Mapping[str, IkControls], name_of: Callable[[str], str | None]) -> dict[str, IkControls]:
-    """Controls with other names; limbs whose goal has none are left out."""
-    found = {}
-    for limb, controls in ik.items():
-        goal = name_of(controls.goal)
-        if goal is None:
-            continue
-        pole = name_of(controls.pole) if controls.pole is not None else None
-        toe = name_of(controls.toe) if controls.toe is not None else None
-        switch = controls.switch
-        holder = name_of(switch.bone) if switch is not None else None
-        kept = replace(switch, bone=holder) if switch is not None and holder is not None else None
-        found[limb] = IkControls(goal, pole, toe, kept)
-    return found
+    return replace(
+        character_map, roles=roles, fk=fk, ik=ik, settings=settings, root=other(character_map.root)
+    )

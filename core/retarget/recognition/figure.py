@@ -1,4 +1,7 @@
-"""Legs, arms and trunk put together: the likeliest figure, and how sure each part of it is."""
+"""A frame's likeliest figure: legs that fork from a trunk, arms higher up, spine and neck between.
+
+Names and a few measures of each bone are added up, each measure bounded so that none decides alone.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,170 +9,357 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, IndexArray
-from ..roles import ARM, LEG
-from .chains import Chains, find_chains
-from .frame import Frame
-from .likelihood import at_least, near
-from .limbs import TEMPERATURE, Limbs, find_arms, find_legs, part_scores, quick_fit
-from .trunk import Girdles, Trunk, find_trunk, fork_of
+from ..roles import ARM, LEG, MIDDLE
+from .names import CLEAR
+from .symmetry import Frame
 
-CLOSE = 12.0
-"""Frames whose limbs fit worse than the best frame's by more than this are passed over."""
-BEST_PAIRS = 12
-"""Pairs of leg and arm for which a trunk is sought."""
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A bone for a part, and the next best."""
-
-    bone: int
-    """-1 where the figure lacks it."""
-    probability: float
-    rival: int = -1
-    """The next likely bone; -1 for none."""
+NAMES_WEIGHT = 1.3
+"""Names are trusted so much more than a measure of place."""
+LONGEST_CHAIN = 16
+"""Bones upward from a limb's end among which its other bones are sought."""
+SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
+"""Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
+MANY, FEW = 150, 40
+"""Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
+NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
+"""Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
+SAME_JOINT = 0.02
+"""A bone this near to its parent, in heights of the trunk, begins where that does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """A frame's likeliest figure: bones of one side and of the middle."""
+    """Bones of one side and of the middle."""
 
     frame: Frame
-    limbs: Mapping[str, Choice]
-    """By part of `roles.ARM` and `LEG`."""
-    trunk: Trunk
-    girdles: Girdles
+    limbs: Mapping[str, int]
+    """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; some may be missing."""
+    middle: Mapping[str, tuple[int, ...]]
+    """By part of `roles.MIDDLE`, from the hips upward."""
+    fit: float
+    """What the places alone add up to."""
     score: float
-    uprightness: float
+    upright: float
     """Cosine between the trunk and up."""
-    names_score: float
-    """What the names add to the score."""
-
-    def bone(self, part: str) -> int:
-        """The bone of a part of the limbs; -1 where the figure lacks it."""
-        return self.limbs[part].bone
 
 
-def find_figures(tried: list[Frame]) -> list[Figure]:
-    """The likeliest figures of frames of the same bones, the best first.
+@dataclass(frozen=True, eq=False)
+class _Chains:
+    """C chains of three bones on one side, each above the next, which may be a leg or an arm."""
 
-    Frames in which no leg and no arm fits nearly as well as in the best are passed over.
-    """
-    chains = find_chains(tried[0]) if tried else None
-    if chains is None or not len(chains):
-        return []
-    fits = [quick_fit(frame, chains) for frame in tried]
-    close = [frame for frame, fit in zip(tried, fits, strict=True) if fit > max(fits) - CLOSE]
-    figures = [figure for frame in close if (figure := find_figure(frame, chains)) is not None]
-    return sorted(figures, key=lambda figure: -figure.score)
+    bones: IndexArray
+    """(C, 3) upper, middle and end bone; the end is -1 where the middle is a limb's last bone."""
+    attached: IndexArray
+    """(C,) bone of the middle on which each hangs; -1 for none."""
 
 
-def find_figure(frame: Frame, chains: Chains) -> Figure | None:
-    """The likeliest figure; None where there are no two pairs of limbs on one trunk."""
-    legs, arms = find_legs(frame, chains), find_arms(frame, chains)
-    if not len(legs.chains) or not len(arms.chains):
+def near(value: Array | float, mean: float, deviation: float, most: float = 6.0) -> Array:
+    """How well values (...) fit a mean: 0 at best, `-most` at worst."""
+    return -np.minimum(0.5 * ((np.asarray(value) - mean) / deviation) ** 2, most)
+
+
+def best_figure(frames: list[Frame]) -> Figure | None:
+    """The likeliest figure in frames of the same bones; None where there are no two pairs of limbs."""
+    chains = _find_chains(frames[0]) if frames else None
+    if chains is None or not len(chains.bones):
         return None
-    pairs = _pair_scores(frame, legs, arms)
-    order = np.argsort(-pairs, axis=None, kind="stable")[:BEST_PAIRS]
-    trunks: dict[tuple[int, int, int, int], Trunk | None] = {}
-    best: tuple[float, int, int, Trunk, Girdles] | None = None
-    total = np.full(pairs.shape, -np.inf)
-    for flat in order:
-        leg, arm = divmod(int(flat), pairs.shape[1])
-        if not np.isfinite(pairs[leg, arm]):
+    figures = [figure for frame in frames if (figure := _figure(frame, chains)) is not None]
+    return max(figures, key=lambda figure: figure.score, default=None)
+
+
+def _find_chains(frame: Frame) -> _Chains:
+    """All chains of one side that are long enough for a limb."""
+    bones, place = frame.bones, frame.place
+    found: list[tuple[int, int, int, int]] = []
+    for end in map(int, np.flatnonzero(frame.one_side)):
+        above: list[int] = []
+        attached = -1
+        for bone in bones.ancestors(end):
+            if frame.middle[bone]:
+                attached = bone
+                break
+            if frame.partner[bone] < 0 or len(above) == LONGEST_CHAIN:
+                break
+            above.append(bone)
+        for second, middle in enumerate(above):
+            found += [(upper, middle, end, attached) for upper in above[second + 1 :]]
+        reach = min(_reach(frame, end), _reach(frame, int(frame.partner[end])))
+        for upper in above:  # a limb may lack its hand
+            if reach < 1.2 * _length(place[end] - place[upper]):
+                found.append((upper, end, -1, attached))
+    table = np.array(found, dtype=np.intp).reshape(-1, 4)
+    ends = np.where(table[:, 2] >= 0, table[:, 2], table[:, 1])
+    length = _length(place[table[:, 1]] - place[table[:, 0]]) + _length(place[ends] - place[table[:, 1]])
+    table = table[length > SHORTEST_LIMB]
+    return _Chains(table[:, :3], table[:, 3])
+
+
+def _figure(frame: Frame, chains: _Chains) -> Figure | None:
+    legs, leg_fits = _best_limbs(frame, chains, _leg_fits(frame, chains), LEG[:3])
+    arms, arm_fits = _best_limbs(frame, chains, _arm_fits(frame, chains), ARM[1:])
+    leg_names, arm_names = _names_of(frame, legs, LEG[:3]), _names_of(frame, arms, ARM[1:])
+    fits = leg_fits[:, None] + arm_fits[None] + _pair_fits(frame, legs, arms)
+    scores = fits + leg_names[:, None] + arm_names[None]
+    for flat in np.argsort(-scores, axis=None, kind="stable"):
+        leg, arm = (int(each) for each in np.unravel_index(flat, scores.shape))
+        if not np.isfinite(scores[leg, arm]):
+            return None
+        fork = _fork(frame, legs, arms, leg, arm)
+        if fork >= 0:
             break
-        girdles = _girdles(frame, legs, arms, leg, arm)
-        key = (
-            girdles.legs_on,
-            girdles.arms_on,
-            int(legs.chains.bones[leg, 0]),
-            int(arms.chains.bones[arm, 0]),
-        )
-        if key not in trunks:
-            trunks[key] = find_trunk(frame, girdles)
-        trunk = trunks[key]
-        if trunk is None:
-            continue
-        total[leg, arm] = pairs[leg, arm] + trunk.score
-        if best is None or total[leg, arm] > best[0]:
-            best = (float(total[leg, arm]), leg, arm, trunk, girdles)
-    if best is None:
+    else:
         return None
-    score, leg, arm, trunk, girdles = best
-    rough = np.where(np.isfinite(total), total, pairs + trunk.score - 2.0)
-    limbs = _choices(legs, arms, leg, arm, rough)
-    up = girdles.shoulder - girdles.hip
-    uprightness = float(up[2] / max(np.linalg.norm(up[1:]), 1e-9))
-    return Figure(frame, limbs, trunk, girdles, score, uprightness, _names_score(frame, limbs, trunk))
+    thigh, shin, foot = (int(bone) for bone in legs.bones[leg])
+    upper_arm, forearm, hand = (int(bone) for bone in arms.bones[arm])
+    limbs = {"thigh": thigh, "shin": shin, "foot": foot, "upper_arm": upper_arm, "forearm": forearm}
+    limbs |= {"hand": hand} if hand >= 0 else {}
+    for part, options in (("toe", _toes(frame, foot, thigh)), ("shoulder", _shoulders(frame, upper_arm))):
+        bone = max(options, key=lambda bone: options[bone], default=-1)
+        if bone >= 0 and options[bone] > NO_PART:
+            limbs[part] = bone
+    hip, shoulder = (frame.place[bone] * [0.0, 1.0, 1.0] for bone in (thigh, upper_arm))
+    middle, trunk_fit = _trunk(frame, hip, shoulder, int(arms.attached[arm]), fork)
+    up = shoulder - hip
+    names = sum(_names(frame, part)[bone] for part, those in middle.items() for bone in those)
+    return Figure(
+        frame,
+        limbs,
+        middle,
+        float(fits[leg, arm]) + trunk_fit,
+        float(scores[leg, arm]) + trunk_fit + float(names),
+        float(up[2] / max(_length(up), 1e-9)),
+    )
 
 
-def _names_score(frame: Frame, limbs: Mapping[str, Choice], trunk: Trunk) -> float:
-    """What the names of chosen bones say of their parts."""
-    there = {part: choice.bone for part, choice in limbs.items() if choice.bone >= 0}
-    total = sum(float(part_scores(frame, part)[bone]) for part, bone in there.items())
-    parts = (("hips", (trunk.hips,)), ("spine", trunk.spine), ("neck", trunk.neck))
-    heads = () if trunk.head is None else (trunk.head,)
-    for part, bones in (*parts, ("head", heads)):
-        total += sum(float(part_scores(frame, part)[bone]) for bone in bones)
-    return total
+def _names(frame: Frame, part: str) -> Array:
+    """(N,) what the names say of a part, both sides' names taken together."""
+    own = np.array([reading.scores[part] for reading in frame.bones.readings])
+    return np.asarray(NAMES_WEIGHT * 0.5 * (own + np.where(frame.partner >= 0, own[frame.partner], own)))
 
 
-def _pair_scores(frame: Frame, legs: Limbs, arms: Limbs) -> Array:
-    """(legs, arms) log-likelihood of each leg with each arm; -inf where they share a bone or a trunk."""
-    hip, foot = (frame.place[legs.chains.bones[:, part]] for part in (0, 2))
-    shoulder, elbow = (frame.place[arms.chains.bones[:, part]] for part in (0, 1))
-    up = shoulder[None] - hip[:, None]
-    reach = np.maximum(np.linalg.norm(up[..., 1:], axis=-1), 1e-9)
-    leg = np.maximum(np.linalg.norm(hip - foot, axis=-1), 1e-9)
-    arm = 2.0 * np.maximum(np.linalg.norm(elbow - shoulder, axis=-1), 1e-9)
-    score = legs.score[:, None] + arms.score[None]
-    score += at_least(up[..., 2] / reach, 0.95, 0.15, 12.0)
-    score += near(np.log(reach / leg[:, None]), np.log(0.6), 0.35, 6.0)
-    score += near(np.log(arm[None] / leg[:, None]), np.log(0.65), 0.35, 6.0)
-    score += near(np.log((shoulder[None, :, 0] + 1e-3) / (hip[:, None, 0] + 1e-3)), np.log(1.9), 0.45, 5.0)
-    score += near(up[..., 1] / reach, 0.0, 0.12, 3.0)
-    for row, column in np.ndindex(*score.shape):
-        if not _compatible(frame, legs, arms, row, column):
-            score[row, column] = -np.inf
-    return np.asarray(score)
-
-
-def _compatible(frame: Frame, legs: Limbs, arms: Limbs, leg: int, arm: int) -> bool:
-    """Whether neither limb is part of the other, and both hang on one trunk."""
-    first, second = (int(limbs.chains.bones[row, 0]) for limbs, row in ((legs, leg), (arms, arm)))
-    below = frame.bones.subtree
-    if second in below[first] or first in below[second]:
-        return False
-    both = int(legs.chains.attached[leg]), int(arms.chains.attached[arm])
-    return fork_of(frame, *both) >= 0
-
-
-def _girdles(frame: Frame, legs: Limbs, arms: Limbs, leg: int, arm: int) -> Girdles:
-    legs_on, arms_on = int(legs.chains.attached[leg]), int(arms.chains.attached[arm])
-    hip = frame.place[legs.chains.bones[leg, 0]] * [0.0, 1.0, 1.0]
-    shoulder = frame.place[arms.chains.bones[arm, 0]] * [0.0, 1.0, 1.0]
-    return Girdles(hip, shoulder, legs_on, arms_on, fork_of(frame, legs_on, arms_on))
-
-
-def _choices(legs: Limbs, arms: Limbs, leg: int, arm: int, total: Array) -> dict[str, Choice]:
-    """The bone of each part of the limbs, its probability over all pairs, and the next likely bone."""
-    finite = np.isfinite(total)
-    weight = np.where(finite, np.exp((np.where(finite, total, 0.0) - total[leg, arm]) / TEMPERATURE), 0.0)
-    of_leg, of_arm = weight.sum(axis=1), weight.sum(axis=0)
-    found = {}
-    columns: list[tuple[str, IndexArray, Array, int]]
-    columns = [(part, legs.chains.bones[:, row], of_leg, leg) for row, part in enumerate(LEG[:3])]
-    columns += [(part, arms.chains.bones[:, row], of_arm, arm) for row, part in enumerate(ARM[1:])]
-    for part, limbs, weights, chosen in ((LEG[3], legs, of_leg, leg), (ARM[0], arms, of_arm, arm)):
-        columns.append((part, np.array([option.bone for option in limbs.optional]), weights, chosen))
-    for part, bones, weights, chosen in columns:
-        bone = int(bones[chosen])
-        shares = {int(each): float(weights[bones == each].sum()) for each in set(bones.tolist())}
-        share = shares[bone] / max(sum(shares.values()), 1e-12)
-        rivals = sorted((each for each in shares if each != bone), key=lambda each: -shares[each])
-        found[part] = Choice(bone, share, rivals[0] if rivals else -1)
-    for part, option in ((LEG[3], legs.optional[leg]), (ARM[0], arms.optional[arm])):
-        choice = found[part]
-        rival = option.rival if option.probability < choice.probability else choice.rival
-        found[part] = Choice(option.bone, choice.probability * option.probability, rival)
+def _names_of(frame: Frame, chains: _Chains, parts: tuple[str, ...]) -> Array:
+    """(C,) what the names of chains say of parts."""
+    found = np.zeros(len(chains.bones))
+    for bones, part in zip(chains.bones.T, parts, strict=True):
+        found += np.where(bones >= 0, _names(frame, part)[bones], 0.0)
     return found
+
+
+def _best_limbs(frame: Frame, chains: _Chains, fits: Array, parts: tuple[str, ...]) -> tuple[_Chains, Array]:
+    """The chains that fit a kind of limb best by place and name, and how their places fit."""
+    names = _names_of(frame, chains, parts)
+    many = np.argsort(-(fits + names), kind="stable")[:MANY]
+    many = many[np.isfinite(fits[many])]
+    ends = _foot_fit if parts == LEG[:3] else _hand_fit
+    closer = [_line_fit(frame, bones) + ends(frame, bones) for bones in chains.bones[many]]
+    fits, names = fits[many] + np.array(closer), names[many]
+    few = np.argsort(-(fits + names), kind="stable")[:FEW]
+    return _Chains(chains.bones[many[few]], chains.attached[many[few]]), fits[few]
+
+
+def _leg_fits(frame: Frame, chains: _Chains) -> Array:
+    """(C,) how well chains fit a leg by the places of their bones."""
+    hip, knee, ankle = (frame.place[bones] for bones in chains.bones.T)
+    upper, lower = _length(knee - hip), _length(ankle - knee)
+    length = np.maximum(upper + lower, 1e-9)
+    unit = np.maximum(length, SHORT_LEG)
+    anatomy = [not reading.mechanism for reading in frame.bones.readings]
+    floor = frame.place[anatomy, 2].min() if any(anatomy) else 0.0
+    fits = near(upper / length, 0.5, 0.06)
+    fits += near(np.minimum((hip[:, 2] - ankle[:, 2]) / length, 0.95), 0.95, 0.12, 12.0)
+    fits += near((ankle[:, 2] - floor) / unit, 0.1, 0.1, 5.0)
+    fits += near(hip[:, 0] / unit, 0.13, 0.07, 4.0) + near(length, 0.45, 0.15, 3.0)
+    fits += np.where(chains.attached >= 0, 0.0, -2.0)
+    return np.where(chains.bones[:, 2] >= 0, fits, -np.inf)
+
+
+def _arm_fits(frame: Frame, chains: _Chains) -> Array:
+    """(C,) how well chains fit an arm by the places of their bones."""
+    shoulder, elbow, wrist = (frame.place[bones] for bones in chains.bones.T)
+    ends = frame.ends[chains.bones[:, 1]]
+    has_hand = chains.bones[:, 2:] >= 0
+    wrist = np.where(has_hand, wrist, np.where(np.isfinite(ends), ends, 2.0 * elbow - shoulder))
+    upper, lower = _length(elbow - shoulder), _length(wrist - elbow)
+    length = np.maximum(upper + lower, 1e-9)
+    fits = near(upper / length, 0.52, 0.06) + near(length, 0.3, 0.12, 3.0)
+    fits += near(np.minimum(_length(wrist - shoulder) / length, 0.85), 0.85, 0.15, 8.0)
+    fits += near(np.maximum((wrist[:, 2] - shoulder[:, 2]) / length, 0.2), 0.2, 0.3, 8.0)
+    fits += near(shoulder[:, 0] / length, 0.33, 0.13, 4.0)
+    return fits + np.where(has_hand[:, 0], 0.0, NO_END) + np.where(chains.attached >= 0, 0.0, -2.0)
+
+
+def _line_fit(frame: Frame, chain: IndexArray) -> float:
+    """How little the bones that are left out bend the limb, and that it is no strand of several alike."""
+    bones, place = frame.bones, frame.place
+    parts = [reading.clear_part for reading in bones.readings]
+    found = 0.0
+    for top, low in zip(chain[:2], chain[1:], strict=True):
+        line = place[low] - place[top]
+        between = int(bones.parent[low]) if low >= 0 else int(top)
+        while between not in (int(top), -1):
+            off = place[between] - place[top]
+            off = off - line * float(np.clip(off @ line / max(float(line @ line), 1e-9), 0.0, 1.0))
+            found -= 0.3 + min(20.0 * _length(off) / max(_length(line), 1e-5), 3.0)
+            found -= 2.0 if parts[low] and parts[between] == parts[low] else 0.0
+            between = int(bones.parent[between])
+    top = int(chain[0])
+    above = int(bones.parent[top])
+    if above >= 0 and frame.one_side[above]:
+        found -= 2.0 if parts[top] and parts[above] == parts[top] else 0.0
+        lower = place[above, 2] > place[top, 2] and place[low, 2] < place[top, 2]
+        found -= 2.0 if lower and place[above, 0] > 0.6 * place[top, 0] else 0.0
+    while bones.parent[top] >= 0 and frame.one_side[bones.parent[top]]:
+        top = int(bones.parent[top])
+    beside = bones.children[bones.parent[top]] if bones.parent[top] >= 0 else ()
+    alike = [
+        bone
+        for bone in beside
+        if bone not in (top, frame.partner[top])
+        and len(bones.subtree[bone]) == len(bones.subtree[top]) > 1
+        and 0.8 < _reach(frame, bone) / _reach(frame, top) < 1.25
+    ]
+    return found - 1.2 * min(len(alike), 2)
+
+
+def _foot_fit(frame: Frame, chain: IndexArray) -> float:
+    """Whether what hangs on an ankle lies ahead of it, as a foot does, and not far below."""
+    points = frame.branch[chain[2]] - frame.place[chain[2]]
+    unit = max(_length(np.diff(frame.place[chain], axis=0)).sum(), SHORT_LEG)
+    ahead, below = np.abs(points[:, 1]).max() / unit, max(-points[:, 2].min() / unit, 0.2)
+    return -1.0 if len(points) < 2 else float(near(ahead, 0.25, 0.13, 2.0) + near(below, 0.2, 0.08, 5.0))
+
+
+def _hand_fit(frame: Frame, chain: IndexArray) -> float:
+    """Whether fingers fan out where a hand begins, and nowhere before."""
+    bones, (_, middle, end) = frame.bones, (int(bone) for bone in chain)
+    if end < 0:
+        return 0.0
+    reach = min(_reach(frame, end), _reach(frame, int(frame.partner[end])))  # one hand may hold something
+    length = _length(np.diff(frame.place[chain], axis=0)).sum()
+    found = float(near(reach / length, 0.33, 0.2, 4.0)) if reach > 1e-6 else 0.0
+    found += 0.8 * min(sum(not bones.children[each] for each in bones.subtree[end]) - 1, 2)
+    rivals = [
+        each
+        for each in bones.children[bones.parent[end]]
+        if each != end
+        and len(bones.subtree[each]) >= len(bones.subtree[end])
+        and not bones.readings[each].mechanism
+    ]
+    inner = set(bones.subtree[middle]) - set(bones.subtree[end]) - {int(bones.parent[end])}
+    fans = sum(len(bones.children[each]) >= 3 for each in inner)
+    return found - 1.5 * min(len(rivals), 2) - 0.8 * min(fans, 2)
+
+
+def _pair_fits(frame: Frame, legs: _Chains, arms: _Chains) -> Array:
+    """(legs, arms) how well each leg goes with each arm."""
+    hip, ankle = (frame.place[legs.bones[:, part], None] for part in (0, 2))
+    shoulder, elbow = (frame.place[None, arms.bones[:, part]] for part in (0, 1))
+    up = shoulder - hip
+    reach = np.maximum(_length(up[..., 1:]), 1e-9)
+    leg, arm = np.maximum(_length(hip - ankle), 1e-9), 2.0 * np.maximum(_length(elbow - shoulder), 1e-9)
+    fits = near(np.minimum(up[..., 2] / reach, 0.95), 0.95, 0.15, 12.0)
+    fits += near(np.log(reach / leg), np.log(0.6), 0.35) + near(np.log(arm / leg), np.log(0.65), 0.35)
+    fits += near(np.log((shoulder[..., 0] + 1e-3) / (hip[..., 0] + 1e-3)), np.log(1.9), 0.45, 5.0)
+    return np.asarray(fits)
+
+
+def _fork(frame: Frame, legs: _Chains, arms: _Chains, leg: int, arm: int) -> int:
+    """The lowest bone that carries a leg and an arm; -1 where none does, or one limb is part of the other."""
+    first, second = int(legs.bones[leg, 0]), int(arms.bones[arm, 0])
+    below = frame.bones.subtree
+    ends = int(legs.attached[leg]), int(arms.attached[arm])
+    if second in below[first] or first in below[second] or min(ends) < 0:
+        return -1
+    above = [ends[0], *frame.bones.ancestors(ends[0])]
+    return next((bone for bone in (ends[1], *frame.bones.ancestors(ends[1])) if bone in above), -1)
+
+
+def _toes(frame: Frame, foot: int, thigh: int) -> dict[int, float]:
+    """Bones that may bend below a foot, and their scores; of several toes the one nearest to the middle."""
+    place, names = frame.place, _names(frame, "toe")
+    unit = max(_length(place[foot] - place[thigh]), SHORT_LEG)
+    points = frame.branch[foot] - place[foot]
+    ahead = np.sign(points[np.abs(points[:, 1]).argmax(), 1]) or 1.0
+    found = {}
+    for bone in frame.bones.subtree[foot][1:]:
+        x, y, z = (place[bone] - place[foot]) / unit
+        depth = frame.bones.ancestors(bone).index(foot)
+        score = float(near(ahead * y, 0.2, 0.12) + near(z, -0.09, 0.1, 3.0)) + float(names[bone])
+        found[bone] = score - 0.7 * depth - abs(x) - 2.0 * place[bone, 0] / unit
+    return found
+
+
+def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
+    """Bones above an upper arm that may be its collar bone, and their scores."""
+    place, names = frame.place, _names(frame, "shoulder")
+    length = _reach(frame, upper_arm)
+    above = [bone for bone in frame.bones.ancestors(upper_arm) if frame.one_side[bone]]
+    found = {}
+    for rank, bone in enumerate(reversed(above)):
+        away = place[upper_arm] - place[bone]
+        reach = max(_length(away), 1e-9)
+        score = float(near(reach / length, 0.25, 0.15, 5.0)) - 0.3 * rank + float(names[bone])
+        found[bone] = score + float(near(min(away[0] / reach, 0.5), 0.5, 0.3, 4.0))
+    return found
+
+
+def _trunk(
+    frame: Frame, hip: Array, shoulder: Array, arms_on: int, fork: int
+) -> tuple[dict[str, tuple[int, ...]], float]:
+    """Hips, spine, neck and head between given joints, and how well their places fit."""
+    bones, place = frame.bones, frame.place
+    names = {part: _names(frame, part) for part in MIDDLE}
+    height = max(float(shoulder[2] - hip[2]), 1e-6)
+    path = [*reversed(bones.ancestors(arms_on)), arms_on]
+    off = _length(place - hip) / height
+    over = (place[:, 2] - shoulder[2]) / height
+    off_parent = _length(place - place[bones.parent])
+    rank = {bone: number - path.index(fork) for number, bone in enumerate(path)}
+    late = {bone: -4.0 * (rank[bone] > 0) - 6.0 * (rank[bone] < 0) for bone in path}
+    hips_fits = {
+        bone: late[bone] + float(near(off[bone] if rank[bone] else 0.0, 0.0, 0.4, 4.0)) for bone in path
+    }
+    hips = max(path, key=lambda bone: hips_fits[bone] + float(names["hips"][bone]))
+    spine = path[path.index(hips) + 1 :]
+    options = {}
+    for bone in bones.subtree[fork]:
+        if not frame.middle[bone] or bone in path or over[bone] < -0.3:
+            continue
+        fit = float(
+            near(over[bone], 0.35, 0.2, 5.0) + near((place[bone, 1] - shoulder[1]) / height, 0.0, 0.25, 4.0)
+        )
+        fit += 0.8 * min(sum(frame.one_side[child] for child in bones.children[bone]), 2)
+        inner = [child for child in bones.children[bone] if off_parent[child] > SAME_JOINT * height]
+        onward = (
+            len(bones.children[bone]) == 1 == len(inner) and frame.middle[inner[0]] and over[inner[0]] < 0.55
+        )
+        line = [bone, *(each for each in bones.ancestors(bone) if each in options)]
+        fit -= 4.0 * sum(bool(off_parent[each] < SAME_JOINT * height) for each in line) + 1.5 * onward
+        options[bone] = fit + float(names["head"][bone])
+    head = max(options | {-1: NO_HEAD}, key=lambda bone: options.get(bone, NO_HEAD))
+    neck: list[int] = []
+    if head >= 0:
+        neck = [
+            bone
+            for bone in reversed(bones.ancestors(head))
+            if bone not in path and bone in bones.subtree[fork]
+        ]
+    carried = [bone for bone in spine if names["neck"][bone] >= CLEAR > names["spine"][bone]]
+    low = [bone for bone in neck if over[bone] < -0.08 and names["neck"][bone] < CLEAR]
+    neck = [*carried, *(bone for bone in neck if bone not in low)]
+    spine = [*(bone for bone in spine if bone not in carried), *low]
+    found = {
+        part: tuple(bone for bone in those if not bones.readings[bone].mechanism or part == "hips")
+        for part, those in (("hips", [hips]), ("spine", spine), ("neck", neck))
+    }
+    fit = hips_fits[hips] + (options[head] - float(names["head"][head]) if head >= 0 else NO_HEAD)
+    return {**found, "head": (head,) if head >= 0 else ()}, fit
+
+
+def _reach(frame: Frame, bone: int) -> float:
+    """How far all below a bone reaches from its head [sizes]."""
+    return max(float(_length(frame.branch[bone] - frame.place[bone]).max()), 1e-9)
+
+
+def _length(vectors: Array) -> Array:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))

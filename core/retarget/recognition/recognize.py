@@ -1,26 +1,61 @@
-"""Recognition of a character: roles from preset, names and shape together, or a refusal."""
+"""Recognition of a character: roles from preset, names, hierarchy and symmetry, or a refusal."""
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
+import numpy as np
+
+from ...arrays import Array
+from ...body.human import HUMAN
+from ...errors import InputError
+from ...files.json_file import shown
 from ...text import Sentence
 from ..character import Character
-from ..maps.character_map import CharacterMap
+from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset
+from ..roles import ARM, CHAINS, LEG, REQUIRED, ROLES
 from ..stance import find_stance
 from .bones import candidate_bones
-from .doubts import limb_doubts, missing_doubts, name_doubts, side_doubts, trunk_doubts
-from .facing import find_facing
-from .figure import Figure, find_figures
-from .frame import Frame, frames
-from .preset_check import UNSEEN, merged_with_preset, stands_upright, swapped_sides, with_confidence
-from .recognition import Recognition
-from .refusals import check_character, refusal, why_no_figure
-from .roles_of_figure import roles_of
+from .facing import Facing, find_facing
+from .figure import Figure, best_figure
+from .names import CLEAR
 from .root_bone import extra_ends, find_root
-from .symmetry import find_symmetries
+from .symmetry import Frame, find_frames
 
+AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
+"""Confidence of a role: of a preset and confirmed by its place, of a name, of a preset alone, of a place, and
+where something speaks against it."""
+SURE_SIDES = 0.9
+"""Confidence from which left and right are not doubted."""
+SAME_JOINT = 0.03
+"""Heads this near to each other, in sizes, are one joint."""
+LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7
+"""Least cosine between the trunk and up, and between a leg and down."""
+HANDS_ABOVE = 0.1
+"""Hands are at least so many lengths of a leg above the ankles."""
+LEAST_FIT, LEAST_FIT_NAMED = -12.0, -26.0
+"""Least fit of a figure's places, and where names speak for its arms and legs."""
 CLEAR_FIT = -6.0
-"""Log-likelihood of a figure's places from which no other plane of symmetry is tried."""
+"""Fit from which no other plane of symmetry is tried."""
+LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
+"""Parts of limbs that a character must have, in words."""
+VALID = "a character stands on two legs and has two arms"
+
+
+@dataclass(frozen=True)
+class Recognition:
+    """Roles found for a character's bones."""
+
+    character_map: CharacterMap
+    """Roles with confidence and source; of a preset also its controls and settings."""
+    doubts: tuple[str, ...] = ()
+    """What a person should look at, in sentences without a full stop."""
+    preset: str | None = None
+    """Identifier of the preset whose names the bones have."""
+    extras: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    """By role of hand and foot: bones that lie at its joint and do not hang on it, such as goals of inverse
+    kinematics; the motion leaves them behind."""
 
 
 def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -> Recognition:
@@ -34,22 +69,40 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
         InputError: It is no character: too few bones, an animal, a prop, an actor of Keymark, a half-built
             rig, or numbers that cannot be used.
     """
-    check_character(character)
+    _check_character(character)
     preset = find_preset(character, presets)
     figure, frame, reason = _best_figure(character)
+    doubts: list[str] = []
     if figure is not None:
-        character_map, doubts = _of_figure(character, figure, preset)
-    elif preset is not None and stands_upright(character, preset):
-        character_map = replace(preset, roles=with_confidence(preset.roles, UNSEEN))
-        doubts = [
+        facing = find_facing(figure)
+        roles = _roles_of(figure, facing)
+        doubts += _side_doubts(facing)
+        if preset is None:
+            character_map = CharacterMap(character.name, roles)
+            doubts += _place_doubts(figure, roles)
+        else:
+            character_map, against = _merged(
+                character, _swapped(preset) if facing.by_names < 0.0 else preset, roles, figure
+            )
+            doubts += against
+    elif preset is not None and _stands_upright(character, preset):
+        unseen = {role: replace(bones, confidence=UNSEEN) for role, bones in preset.roles.items()}
+        character_map = replace(preset, roles=unseen)
+        doubts.append(
             Sentence(
                 "no body was recognized by shape: all roles are those of the names of {preset}",
                 preset=preset.title,
             )
-        ]
+        )
     else:
-        raise refusal(character, frame, reason)
-    doubts += missing_doubts(character_map)
+        raise _refusal(character, frame, reason)
+    if "head" not in character_map.roles:
+        doubts.append(Sentence("head not found: no bone of the middle lies where a head begins"))
+    hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
+    if hands:
+        doubts.append(
+            Sentence("{roles} not found: the forearm is the last bone of the arm", roles=" and ".join(hands))
+        )
     if character_map.root is None:
         up = find_stance(character, character_map)[2]
         character_map = replace(character_map, root=find_root(character, character_map, up))
@@ -57,37 +110,260 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     return Recognition(character_map, tuple(doubts), character_map.preset, extras)
 
 
-def _of_figure(
-    character: Character, figure: Figure, preset: CharacterMap | None
-) -> tuple[CharacterMap, list[str]]:
-    """The map of a figure, with a preset held against it where there is one, and the doubts."""
-    facing = find_facing(figure)
-    roles = roles_of(figure, facing)
-    doubts = side_doubts(facing)
-    if preset is None:
-        doubts += trunk_doubts(figure) + limb_doubts(figure, facing, roles) + name_doubts(figure, roles)
-        return CharacterMap(character.name, roles), doubts
-    if facing.by_names < 0.0:
-        preset = swapped_sides(preset)
-    character_map, against = merged_with_preset(character, preset, roles, figure)
-    return character_map, doubts + against
-
-
 def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str]:
     """The likeliest figure that is a character's; else a frame, and why the likeliest is none."""
-    frame, reason = None, ""
+    first, reason = None, ""
     for bones in candidate_bones(character):
         best: Figure | None = None
-        for symmetry in find_symmetries(bones):
-            tried = frames(bones, symmetry)
-            frame = frame or next(iter(tried), None)
-            for figure in find_figures(tried):
-                why = why_no_figure(figure)
-                reason = reason or why
-                if not why and (best is None or figure.score > best.score):
-                    best = figure
-            if best is not None and best.score - best.names_score > CLEAR_FIT:
+        for frames in find_frames(bones):
+            first = first or next(iter(frames), None)
+            figure = best_figure(frames)
+            why = "" if figure is None else _why_no_character(figure)
+            reason = reason or why
+            if figure is not None and not why and (best is None or figure.score > best.score):
+                best = figure
+            if best is not None and best.fit > CLEAR_FIT:
                 break
         if best is not None:
-            return best, frame, ""
-    return None, frame, reason
+            return best, first, ""
+    return None, first, reason
+
+
+def _roles_of(figure: Figure, facing: Facing) -> dict[str, RoleBones]:
+    """Bones, confidence and source of each role that is there."""
+    bones = figure.frame.bones
+
+    def role_bones(part: str, those: tuple[int, ...], share: float = 1.0) -> RoleBones:
+        named = all(bones.readings[bone].scores[part] >= CLEAR for bone in those)
+        names = tuple(bones.names[bone] for bone in those)
+        return RoleBones(names, (NAMED if named else PLACED) * share, "names" if named else "shape")
+
+    found = {part: role_bones(part, those) for part, those in figure.middle.items() if those}
+    near_side, far_side = ("L", "R") if facing.ahead > 0 else ("R", "L")
+    for part in (*ARM, *LEG):
+        if part in figure.limbs:
+            bone = figure.limbs[part]
+            for side, own in ((near_side, bone), (far_side, int(figure.frame.partner[bone]))):
+                found[f"{part}.{side}"] = role_bones(part, (own,), facing.confidence)
+    if "hand" not in figure.limbs:
+        for side, forearm in ((near_side, figure.limbs["forearm"]), (far_side, -1)):
+            forearm = forearm if forearm >= 0 else int(figure.frame.partner[figure.limbs["forearm"]])
+            hand = _lone_hand(figure, forearm)
+            if hand is not None:
+                found[f"hand.{side}"] = role_bones("hand", (hand,), facing.confidence)
+    return found
+
+
+def _lone_hand(figure: Figure, forearm: int) -> int | None:
+    """The hand on a forearm whose counterpart has none: as far from the elbow as the shoulder, about."""
+    frame = figure.frame
+    elbow, shoulder = (frame.place[figure.limbs[part]] for part in ("forearm", "upper_arm"))
+    length = float(np.linalg.norm(elbow - shoulder)) * frame.bones.size
+    for bone in frame.bones.children[forearm]:
+        way = float(np.linalg.norm(frame.bones.head[bone] - frame.bones.head[forearm]))
+        alone = frame.partner[bone] < 0 and not frame.bones.readings[bone].other
+        if alone and 0.5 * length < way < 1.7 * length:
+            return bone
+    return None
+
+
+def _side_doubts(facing: Facing) -> list[str]:
+    """What is doubtful about left and right."""
+    if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
+        if facing.by_names < 0.0:
+            return [
+                Sentence(
+                    "left and right are taken from the shape, against the names of the bones: feet and knees "
+                    "point the other way"
+                )
+            ]
+        return [
+            Sentence(
+                "left and right are taken from the names of the bones, although the feet point the other way"
+            )
+        ]
+    if facing.confidence < SURE_SIDES:
+        return [
+            Sentence(
+                "left and right may be swapped for all roles of a side: names, feet, knees and elbows "
+                "hardly tell where the character faces"
+            )
+        ]
+    return []
+
+
+def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
+    """Roles that bones play by their places: another may have the name, or no name tells."""
+    named: dict[str, str] = {}
+    for name, reading in zip(figure.frame.bones.names, figure.frame.bones.readings, strict=True):
+        if reading.clear_part in (*ARM, *LEG) and reading.side:
+            named.setdefault(f"{reading.clear_part}.{reading.side}", name)
+    found: list[str] = []
+    for role, other in named.items():
+        if role not in roles:
+            found.append(
+                Sentence("{role} not found, but {bone} has the name for it", role=role, bone=shown(other))
+            )
+        elif roles[role].source != "names":
+            found.append(
+                Sentence(
+                    "{role} is doubtful: {bone} was chosen by its place, and {other} has the name for it",
+                    role=role,
+                    bone=shown(roles[role].bones[0]),
+                    other=shown(other),
+                )
+            )
+    placed = [role for role, bones in roles.items() if bones.source == "shape" and role not in named]
+    if placed:
+        found.append(
+            Sentence(
+                "no name tells which bone plays {roles}: they are chosen by their places alone",
+                roles=", ".join(placed),
+            )
+        )
+    return found
+
+
+def _merged(
+    character: Character, preset: CharacterMap, roles: Mapping[str, RoleBones], figure: Figure
+) -> tuple[CharacterMap, list[str]]:
+    """The preset's map with its roles held against the figure's, and what is doubtful about them."""
+    kept = dict(preset.roles)
+    if _neck_carries_arms(character, preset):  # the trunk as names and shape say
+        trunk = (*CHAINS, "head")
+        kept = {role: bones for role, bones in kept.items() if role not in trunk}
+        kept |= {role: roles[role] for role in trunk if role in roles}
+    taken = {bone for bones in kept.values() for bone in bones.bones}
+    near = SAME_JOINT * figure.frame.bones.size
+    merged: dict[str, RoleBones] = {}
+    found: list[str] = []
+    for role in ROLES:
+        given, seen = kept.get(role), roles.get(role)
+        if given is None:
+            if seen is not None and taken.isdisjoint(seen.bones):
+                merged[role] = seen
+        elif seen is None or role in CHAINS:
+            merged[role] = replace(given, confidence=UNSEEN if seen is None else AGREED)
+        elif np.linalg.norm(_head(character, given) - _head(character, seen)) < near:
+            merged[role] = replace(given, confidence=AGREED)
+        else:
+            merged[role] = replace(given, confidence=AGAINST)
+            found.append(
+                Sentence(
+                    "{role} is doubtful: {bone} was chosen by the names of {preset}, and by its place "
+                    "{other} fits better",
+                    role=role,
+                    bone=shown(given.bones[0]),
+                    preset=preset.title,
+                    other=shown(seen.bones[0]),
+                )
+            )
+    return replace(preset, roles=merged), found
+
+
+def _head(character: Character, role: RoleBones) -> Array:
+    return character.bone(role.bones[0]).head
+
+
+def _neck_carries_arms(character: Character, character_map: CharacterMap) -> bool:
+    """Whether a bone of the neck carries an upper arm although its name does not say neck."""
+    arm = character_map.bone("upper_arm.L")
+    above = -1 if arm is None else character.index[arm]
+    while above >= 0:
+        name = character.bones[above].name
+        if name in character_map.bones("neck") and "neck" not in name.casefold():
+            return True
+        above = character.bones[above].parent
+    return False
+
+
+def _swapped(character_map: CharacterMap) -> CharacterMap:
+    """The map with left and right exchanged."""
+
+    def other(role: str) -> str:
+        part, dot, side = role.partition(".")
+        return part + dot + {"L": "R", "R": "L"}.get(side, "")
+
+    return replace(
+        character_map,
+        roles={
+            role: character_map.roles[other(role)] for role in ROLES if other(role) in character_map.roles
+        },
+        fk={other(role): bones for role, bones in character_map.fk.items()},
+        ik={other(limb): controls for limb, controls in character_map.ik.items()},
+    )
+
+
+def _stands_upright(character: Character, character_map: CharacterMap) -> bool:
+    """Whether a map has all roles that a character must have, on a body that stands upright on its legs."""
+    if any(role not in character_map.roles for role in REQUIRED):
+        return False
+    shoulder, hip, ankle, hand = (
+        np.mean([_head(character, character_map.roles[f"{part}.{side}"]) for side in "LR"], axis=0)
+        for part in ("upper_arm", "thigh", "foot", "hand" if "hand.L" in character_map.roles else "forearm")
+    )
+    leg, trunk = hip - ankle, shoulder - hip
+    lengths = float(np.linalg.norm(leg)), float(np.linalg.norm(trunk))
+    if not min(lengths) > 0.0 or float(leg @ trunk) < LEAST_UPRIGHT * lengths[0] * lengths[1]:
+        return False
+    return float((hand - ankle) @ leg) > HANDS_ABOVE * lengths[0] ** 2
+
+
+def _check_character(character: Character) -> None:
+    """Refuse what is no character before its bones are looked at."""
+    name = f"armature {shown(character.name)}"
+    if not character.bones:
+        raise InputError(f"{name} has no bones; {VALID}")
+    if {segment.name for segment in HUMAN.segments} <= set(character.index):
+        raise InputError(f"{name} is an actor of Keymark; choose the character that is to get its motion")
+    if len(character.bones) < len(REQUIRED):
+        count = f"{len(character.bones)} bone{'s' if len(character.bones) > 1 else ''}"
+        raise InputError(f"{name} has {count}, at least {len(REQUIRED)} are needed; {VALID}")
+    if not np.isfinite(character.scale) or character.scale <= 0.0:
+        raise InputError(f"{name}: its scale is {character.scale:g}; it must be one positive number")
+    for bone in character.bones:
+        if not np.isfinite(bone.rest).all() or not np.isfinite(bone.tail).all():
+            raise InputError(
+                f"{name}: bone {shown(bone.name)} has a place that is no number; all must be finite"
+            )
+    extent = float(np.max(np.ptp([bone.head for bone in character.bones], axis=0)))
+    if not extent * character.scale > 1e-6:
+        raise InputError(f"{name} has no size, all its bones begin at one point; {VALID}")
+
+
+def _why_no_character(figure: Figure) -> str:
+    """Why a figure is no character's, to follow the armature's name; empty for a character's."""
+    places, limbs = figure.frame.place, figure.limbs
+    hip, ankle = places[limbs["thigh"]], places[limbs["foot"]]
+    leg = max(float(np.linalg.norm(ankle - hip)), 1e-9)
+    if figure.upright < LEAST_UPRIGHT or (hip[2] - ankle[2]) / leg < LEAST_LEG_DOWN:
+        return "its trunk does not stand upright on its legs, like an animal's"
+    if (places[limbs.get("hand", limbs["forearm"]), 2] - ankle[2]) / leg < HANDS_ABOVE:
+        return "its hands are as low as its feet, like an animal's"
+    readings = figure.frame.bones.readings
+    named = all(
+        readings[limbs[part]].scores[part] >= CLEAR for part in ("upper_arm", "forearm", "thigh", "shin")
+    )
+    if figure.fit < (LEAST_FIT_NAMED if named else LEAST_FIT):
+        return "its bones do not have the proportions of a body with two legs and two arms"
+    return ""
+
+
+def _refusal(character: Character, frame: Frame | None, reason: str) -> InputError:
+    """The error for a character that is refused: what is missing by a frame of its bones, or the reason."""
+    name = f"armature {shown(character.name)}"
+    if frame is None:
+        return InputError(f"{name} has no bones that mirror each other; {VALID}")
+    sides = {
+        part: {r.side for r in frame.bones.readings if r.side and r.clear_part == part} for part in LIMB_WORDS
+    }
+    half = next((part for part in LIMB_WORDS if len(sides[part]) == 1), None)
+    if half is not None:
+        side, other = ("left", "right") if "L" in sides[half] else ("right", "left")
+        missing = f"a {side} {LIMB_WORDS[half]} but no {other} one"
+        return InputError(f"{name} has {missing}; {VALID}, so complete the rig or choose another")
+    if [part for part in LIMB_WORDS if not sides[part]] == ["foot"]:
+        return InputError(f"{name} has legs without feet; {VALID}, so complete the rig or choose another")
+    if reason:
+        return InputError(f"{name} is not recognized as a character: {reason}; {VALID}")
+    return InputError(f"{name} has no pair of legs and pair of arms on one trunk; {VALID}")

@@ -1,76 +1,114 @@
-"""The plane between a character's two sides, and which bones are each other's mirror images."""
+"""The plane between a character's two sides, which bones mirror each other, and places seen from it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...arrays import Array, IndexArray
+from ...arrays import Array, BoolArray, IndexArray
 from .bones import Bones
 
 SAME = 0.02
-"""A mirrored head lies this near to its counterpart, in sizes."""
-BESIDE = 0.02
-"""A head farther from the plane than this, in sizes, is on a side."""
+"""A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
 LOOSE = 0.12
-"""Two branches may mirror each other although their heads are this far, in sizes, from doing so."""
-MOST_SYMMETRIES = 3
-"""Planes that are yielded."""
-WORSE = 0.5
-"""Share of the heads that a plane may mirror less than the best one."""
+"""Two branches may mirror each other although they are this far, in sizes, from doing so."""
+MOST_PLANES, MOST_SYMMETRIES = 60, 3
+"""Planes that are tried, and that are yielded."""
 ALIKE = 0.98
 """Cosine between normals of planes from which they are taken for one."""
-MOST_PLANES = 60
-"""Planes that are tried."""
-MOST_POINTS = 200
-"""Heads that a plane is tried on."""
-BRANCH_POINTS = 32
-"""Points of a branch that are compared with another's."""
+LEVEL = 0.2
+"""Largest cosine between an axis that may point up and the way from side to side."""
 
 
 @dataclass(frozen=True, eq=False)
-class Symmetry:
-    """The plane n·p = offset, and the bones' counterparts."""
+class Frame:
+    """Bones with their plane of symmetry, n·p = offset, and the direction that is taken for up."""
 
+    bones: Bones
     normal: Array
     """(3,) unit vector from one side to the other."""
     offset: float
     partner: IndexArray
     """(N,) counterpart of each bone on the other side; itself in the middle; -1 where there is none."""
+    up: Array
+    """(3,) unit vector at right angles to the normal."""
 
-    def lateral(self, points: Array) -> Array:
-        """Signed distances (...) of points (..., 3) from the plane."""
-        return points @ self.normal - self.offset
+    @cached_property
+    def place(self) -> Array:
+        """(N, 3) heads in sizes: distance from the plane, along normal × up, and up; means of both sides."""
+        return self.coordinates(self.bones.head)
 
-    def mirrored(self, points: Array) -> Array:
-        """Mirror images of points (..., 3)."""
-        return _mirrored(points, self.normal, self.offset)
+    @cached_property
+    def ends(self) -> Array:
+        """(N, 3) tails in the coordinates of `place`; NaN where tails say nothing."""
+        return self.coordinates(self.bones.tail)
+
+    @cached_property
+    def branch(self) -> tuple[Array, ...]:
+        """(K, 3) places of each bone with all below it, tails included."""
+        both = np.stack([self.place, self.ends], axis=1)
+        found = [both[list(below)].reshape(-1, 3) for below in self.bones.subtree]
+        return tuple(points[np.isfinite(points[:, 0])] for points in found)
+
+    @cached_property
+    def one_side(self) -> BoolArray:
+        """(N,) bones of one side, one of each pair."""
+        across = np.array([float(np.mean(points @ self.normal)) for points in self.bones.points])
+        paired = (self.partner >= 0) & ~self.middle
+        ahead = across > across[self.partner]
+        tie = (across == across[self.partner]) & (self.partner > np.arange(len(across)))
+        return np.asarray(paired & (ahead | tie))
+
+    @cached_property
+    def middle(self) -> BoolArray:
+        """(N,) bones of the middle."""
+        return self.partner == np.arange(len(self.partner))
+
+    def coordinates(self, points: Array) -> Array:
+        """Points (N, 3) of the bones in the coordinates of `place`."""
+        paired = self.partner >= 0
+        images = mirrored(points[np.where(paired, self.partner, 0)], self.normal, self.offset)
+        both = np.where(paired[:, None], 0.5 * (points + images), points)
+        across = np.abs(both @ self.normal - self.offset)
+        ahead = np.cross(self.normal, self.up)
+        return np.stack([across, both @ ahead, both @ self.up], axis=-1) / self.bones.size
 
 
-def find_symmetries(bones: Bones) -> Iterator[Symmetry]:
-    """Yield planes that mirror many bones onto others, the one that mirrors most first.
+def find_frames(bones: Bones) -> Iterator[list[Frame]]:
+    """Yield frames for each direction that may be up, plane by plane, the one that mirrors most first.
 
     A body in a T pose is nearly flat, so that one in a skirt may have its front and back mirrored as well.
     """
+    for normal, offset, partner in find_planes(bones):
+        found = []
+        for axis in np.eye(3)[[2, 1, 0]]:
+            if abs(float(axis @ normal)) < LEVEL:
+                up = axis - normal * float(axis @ normal)
+                up /= np.linalg.norm(up)
+                found += [Frame(bones, normal, offset, partner, sign * up) for sign in (1.0, -1.0)]
+        yield found
+
+
+def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
+    """Yield normal, offset and partners (see `Frame`) of planes, the one that mirrors most bones first."""
     named = _named_pairs(bones)
-    planes = _planes(bones, named)
-    sample = bones.head[:: max(1, len(bones.names) // MOST_POINTS)]
     tree = cKDTree(bones.head)
-    planes += [_fitted(bones, tree, *plane) for plane in planes]
-    scores = [_score(sample, tree, normal, offset, bones.size) for normal, offset in planes]
+    planes = [_fitted(bones, tree, *plane) for plane in _planes(bones, named)]
+    planes.sort(key=lambda plane: -_score(bones, tree, *plane))
     taken: list[Array] = []
-    for index in sorted(range(len(planes)), key=lambda index: -scores[index]):
-        normal, offset = planes[index]
-        if len(taken) == MOST_SYMMETRIES or scores[index] < max(scores) - WORSE * len(sample):
-            return
+    for normal, offset in planes:
         if any(abs(float(normal @ other)) > ALIKE for other in taken):
             continue
+        taken.append(normal)
         for _ in range(2):
             partner = _partners(bones, normal, offset, named)
-            normal, offset = _refined(bones, partner, normal, offset)
-        taken.append(planes[index][0])
-        yield Symmetry(normal, offset, partner)
+            pairs = np.flatnonzero(partner > np.arange(len(partner)))
+            normal, offset = _between(bones, pairs, partner[pairs], normal, offset)
+        yield normal, offset, partner
+        if len(taken) == MOST_SYMMETRIES:
+            return
 
 
 def _named_pairs(bones: Bones) -> dict[int, int]:
@@ -90,162 +128,63 @@ def _named_pairs(bones: Bones) -> dict[int, int]:
 def _planes(bones: Bones, named: dict[int, int]) -> list[tuple[Array, float]]:
     """Planes between branches that may be each other's counterparts, different ones only."""
     weighted: list[tuple[float, Array, Array]] = []
-    pairs = [(bone, other) for bone, other in named.items() if bones.readings[bone].side == "L"]
-    if pairs:
-        left, right = (bones.head[list(side)] for side in zip(*pairs, strict=True))
-        apart = np.median(left - right, axis=0)
-        weighted.append((np.inf, apart, 0.5 * np.median(left + right, axis=0)))
+    left = [bone for bone in named if bones.readings[bone].side == "L"]
+    if left:
+        heads, others = bones.head[left], bones.head[[named[bone] for bone in left]]
+        weighted.append((np.inf, np.median(heads - others, axis=0), np.median(heads + others, axis=0)))
     centers = np.array([points.mean(axis=0) for points in bones.points])
-    for siblings in (bones.roots, *bones.children):
-        those = [bone for bone in siblings if len(siblings) <= 60 or len(bones.subtree[bone]) > 2]
+    count = [len(below) for below in bones.subtree]
+    for siblings in (np.flatnonzero(bones.parent < 0), *bones.children):
+        those = [int(bone) for bone in siblings if len(siblings) <= 60 or count[bone] > 2]
         for first, a in enumerate(those):
             for b in those[first + 1 :]:
-                small, large = sorted((len(bones.subtree[a]), len(bones.subtree[b])))
+                small, large = sorted((count[a], count[b]))
                 apart = centers[a] - centers[b]
-                if small >= 0.6 * large and np.linalg.norm(apart) > BESIDE * bones.size:
-                    weight = small * float(np.linalg.norm(apart))
-                    weighted.append((weight, apart, 0.5 * (centers[a] + centers[b])))
-    weighted.sort(key=lambda plane: -plane[0])
-    return _different(weighted, bones.size)
-
-
-def _different(weighted: Sequence[tuple[float, Array, Array]], size: float) -> list[tuple[Array, float]]:
+                if small >= 0.6 * large:
+                    weighted.append((small * float(np.linalg.norm(apart)), apart, centers[a] + centers[b]))
     found: list[tuple[Array, float]] = []
-    for _, apart, middle in weighted:
+    for _, apart, both in sorted(weighted, key=lambda plane: -plane[0]):
         length = float(np.linalg.norm(apart))
-        if length < 1e-9 * size:
+        if len(found) == MOST_PLANES or length < SAME * bones.size:
             continue
         normal = apart / length
-        offset = float(normal @ middle)
-        for other, other_offset in found:
-            cosine = float(normal @ other)
-            if abs(cosine) > 0.9995 and abs(offset * np.sign(cosine) - other_offset) < 0.005 * size:
-                break
-        else:
+        offset = 0.5 * float(normal @ both)
+        if all(
+            abs(cosine := float(normal @ other)) < 0.9995
+            or abs(offset * np.sign(cosine) - other_offset) > 0.005 * bones.size
+            for other, other_offset in found
+        ):
             found.append((normal, offset))
-            if len(found) == MOST_PLANES:
-                break
     return found
 
 
-def _score(points: Array, tree: cKDTree, normal: Array, offset: float, size: float) -> float:
-    """How many points beside a plane have a counterpart, and how few have none."""
-    beside = np.abs(points @ normal - offset) > BESIDE * size
-    images = _mirrored(points[beside], normal, offset)
+def _score(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> float:
+    """How many heads beside a plane have a counterpart, and how few have none."""
+    beside = np.abs(bones.head @ normal - offset) > SAME * bones.size
+    images = mirrored(bones.head[beside], normal, offset)
     if not len(images):
         return -np.inf
-    apart, _ = tree.query(images, distance_upper_bound=SAME * size)
-    near = np.where(np.isfinite(apart), 1.0 - 0.5 * apart / (SAME * size), -0.5)
-    return float(near.sum())
+    apart, _ = tree.query(images, distance_upper_bound=SAME * bones.size)
+    return float(np.where(np.isfinite(apart), 1.0 - 0.5 * apart / (SAME * bones.size), -0.5).sum())
 
 
 def _fitted(bones: Bones, tree: cKDTree, normal: Array, offset: float) -> tuple[Array, float]:
     """The plane between the heads that a plane nearly mirrors onto others."""
-    images = _mirrored(bones.head, normal, offset)
+    images = mirrored(bones.head, normal, offset)
     apart, other = tree.query(images, distance_upper_bound=2 * SAME * bones.size)
     paired = np.flatnonzero(np.isfinite(apart) & (other != np.arange(len(other))))
-    return _between(bones.head[paired], bones.head[other[paired]], normal, offset, bones.size)
+    return _between(bones, paired, other[paired], normal, offset)
 
 
-def _partners(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> IndexArray:
-    """Counterparts by the tree: children of the middle among themselves, children of a pair between both."""
-    partner = np.full(len(bones.names), -1, dtype=np.intp)
-    _match(bones, list(bones.roots), normal, offset, named, partner)
-    for bone in range(len(bones.names)):  # parents stand before children
-        other = int(partner[bone])
-        if other == bone:
-            _match(bones, list(bones.children[bone]), normal, offset, named, partner)
-        elif other > bone:
-            both = [*bones.children[bone], *bones.children[other]]
-            _match(bones, both, normal, offset, named, partner, across=len(bones.children[bone]))
-        elif other < 0 and bone in named and partner[named[bone]] < 0:
-            partner[bone], partner[named[bone]] = named[bone], bone
-    return partner
-
-
-def _match(
-    bones: Bones,
-    those: list[int],
-    normal: Array,
-    offset: float,
-    named: dict[int, int],
-    partner: IndexArray,
-    across: int | None = None,
-) -> None:
-    """Find counterparts among some bones.
-
-    Args:
-        bones: The bones.
-        those: Which of them.
-        normal: (3,) of the plane.
-        offset: Of the plane.
-        named: Pairs by their names.
-        partner: (N,) where what is found is noted.
-        across: Where given, the first so many are of one side and the rest of the other.
-    """
-    if not those:
-        return
-    cost = _costs(bones, those, normal, offset)
-    for a, bone in enumerate(those):
-        if named.get(bone) in those:
-            cost[a, those.index(named[bone])] -= 1.0
-        side = bones.readings[bone].side
-        for b, other in enumerate(those):
-            if a != b and side and bones.readings[other].side == side:
-                cost[a, b] += 1.0
-    if across is not None:
-        cost[:across, :across] = cost[across:, across:] = np.inf
-    open_rows = set(range(len(those)))
-    for flat in np.argsort(cost, axis=None, kind="stable"):
-        a, b = divmod(int(flat), len(those))
-        if not cost[a, b] < LOOSE:
-            break
-        if a in open_rows and b in open_rows:
-            partner[those[a]], partner[those[b]] = those[b], those[a]
-            open_rows -= {a, b}
-
-
-def _costs(bones: Bones, those: list[int], normal: Array, offset: float) -> Array:
-    """(K, K) how badly bones mirror each other, in sizes; on the diagonal how far each is from the middle."""
-    heads = bones.head[those]
-    apart = np.linalg.norm(heads[:, None] - _mirrored(heads, normal, offset)[None], axis=-1)
-    cost = 0.5 * apart / bones.size
-    branches = [_some(bones.points[bone]) for bone in those]
-    images = [_mirrored(points, normal, offset) for points in branches]
-    for a, points in enumerate(branches):
-        for b, image in enumerate(images):
-            if cost[a, b] < LOOSE:
-                cost[a, b] += 0.5 * _apart(points, image) / bones.size
-    count = np.array([len(bones.subtree[bone]) for bone in those], dtype=np.float64)
-    cost += 0.02 * np.abs(np.log(count[:, None] / count[None]))
-    cost[np.diag_indices(len(those))] += 0.005  # a pair close to the plane is a pair
-    return cost
-
-
-def _some(points: Array) -> Array:
-    """At most `BRANCH_POINTS` of some points."""
-    return points[:: -(-len(points) // BRANCH_POINTS)]
-
-
-def _apart(points: Array, others: Array) -> float:
-    """Median distance from the fewer points to the nearest of the others: one side may hold a weapon."""
-    fewer, more = (points, others) if len(points) <= len(others) else (others, points)
-    return float(np.median(np.linalg.norm(fewer[:, None] - more[None], axis=-1).min(axis=1)))
-
-
-def _refined(bones: Bones, partner: IndexArray, normal: Array, offset: float) -> tuple[Array, float]:
-    """The plane between all pairs, as they are."""
-    pairs = np.flatnonzero(partner > np.arange(len(partner)))
-    return _between(bones.head[pairs], bones.head[partner[pairs]], normal, offset, bones.size)
-
-
-def _between(a: Array, b: Array, normal: Array, offset: float, size: float) -> tuple[Array, float]:
-    """The plane between pairs of points (K, 3), near a given one; that itself where they do not tell."""
-    apart = a - b
-    apart *= np.where(apart @ normal < 0.0, -1.0, 1.0)[:, None]
+def _between(
+    bones: Bones, first: IndexArray, second: IndexArray, normal: Array, offset: float
+) -> tuple[Array, float]:
+    """The plane between pairs of bones, near a given one; that itself where they do not tell."""
+    a, b = bones.head[first], bones.head[second]
+    apart = (a - b) * np.where((a - b) @ normal < 0.0, -1.0, 1.0)[:, None]
     direction = apart.sum(axis=0)
     length = float(np.linalg.norm(direction))
-    if length < 1e-6 * size:
+    if length < 1e-6 * bones.size:
         return normal, offset
     unit = direction / length
     axis = np.round(unit)
@@ -254,5 +193,53 @@ def _between(a: Array, b: Array, normal: Array, offset: float, size: float) -> t
     return unit, float(np.median(0.5 * (a + b) @ unit))
 
 
-def _mirrored(points: Array, normal: Array, offset: float) -> Array:
+def _partners(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> IndexArray:
+    """Counterparts by the tree: children of the middle among themselves, children of a pair between both."""
+    partner = np.full(len(bones.names), -1, dtype=np.intp)
+    cost = _costs(bones, normal, offset, named)
+    _match([int(bone) for bone in np.flatnonzero(bones.parent < 0)], None, cost, partner)
+    for bone in range(len(bones.names)):  # parents stand before children
+        other, children = int(partner[bone]), list(bones.children[bone])
+        if other == bone:
+            _match(children, None, cost, partner)
+        elif other > bone:
+            _match(children, list(bones.children[other]), cost, partner)
+        elif other < 0 and bone in named and partner[named[bone]] < 0:
+            partner[bone], partner[named[bone]] = named[bone], bone
+    return partner
+
+
+def _match(those: list[int], others: list[int] | None, cost: Array, partner: IndexArray) -> None:
+    """Note counterparts among some bones, or between those and others, the nearest first."""
+    rows, columns = np.array(those, dtype=np.intp), np.array(others or those, dtype=np.intp)
+    if others is not None and not others:
+        return
+    part = cost[np.ix_(rows, columns)]
+    for flat in np.argsort(part, axis=None, kind="stable"):
+        a, b = (int(each) for each in np.unravel_index(flat, part.shape))
+        if not part[a, b] < LOOSE:
+            return
+        if partner[rows[a]] < 0 and partner[columns[b]] < 0:
+            partner[rows[a]], partner[columns[b]] = columns[b], rows[a]
+
+
+def _costs(bones: Bones, normal: Array, offset: float, named: dict[int, int]) -> Array:
+    """(N, N) how badly bones mirror each other, in sizes; on the diagonal how far each is from the middle."""
+    middles = np.array([np.median(points, axis=0) for points in bones.points])
+    cost = np.zeros((len(bones.names), len(bones.names)))
+    for points in (bones.head, middles):
+        images = mirrored(points, normal, offset)
+        cost += 0.5 * np.linalg.norm(points[:, None] - images[None], axis=-1) / bones.size
+    count = np.log([len(below) for below in bones.subtree])
+    cost += 0.02 * np.abs(count[:, None] - count[None])
+    sides = np.array([{"L": 1, "R": 2}.get(reading.side or "", 0) for reading in bones.readings])
+    cost += (sides[:, None] == sides[None]) & (sides[:, None] > 0)
+    cost[np.diag_indices(len(cost))] += 0.005 - (sides > 0)  # a pair close to the plane is a pair
+    for bone, other in named.items():
+        cost[bone, other] -= 1.0
+    return cost
+
+
+def mirrored(points: Array, normal: Array, offset: float) -> Array:
+    """Mirror images (..., 3) of points."""
     return np.asarray(points - 2.0 * (points @ normal - offset)[..., None] * normal)

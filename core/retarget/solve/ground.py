@@ -12,7 +12,7 @@ from ...arrays import Array
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...body.soles import sole_offsets
-from ...finish.contacts import Contact, find_contacts
+from ...finish.contacts import STRAY_M, Contact, find_contacts
 from .smoothing import smooth_above
 
 SAME_LEVEL_M = 0.03
@@ -41,15 +41,10 @@ class Ground:
     """Height of a resting ankle over the ground [m]."""
 
 
-def find_ground(source: SegmentMotion, stray_m: float) -> Ground:
-    """Find the ground.
-
-    Args:
-        source: The performer's motion.
-        stray_m: Distance that a resting foot may stray and still rest [m].
-    """
+def find_ground(source: SegmentMotion) -> Ground:
+    """Find the ground under a performer."""
     ankles = np.stack([source.start[f"foot.{side}"] for side in SIDES], axis=1)
-    rests = find_contacts(ankles, source.time_s, stray_m)
+    rests = find_contacts(ankles, source.time_s, STRAY_M)
     depth = np.stack([_depth_m(source, side) for side in SIDES], axis=1)
     flat = float(-sole_offsets(source.body)[..., 2].min(axis=1).mean())
     if not rests:

@@ -61,13 +61,7 @@ class Nearness:
 
 
 def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]) -> Nearness:
-    """Find what the performer's hands are near.
-
-    Args:
-        source: The performer's motion.
-        ground: The ground.
-        segments: The parts of the body to look at.
-    """
+    """Find what the performer's hands are near."""
     parts = {}
     for side in SIDES:
         wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]

@@ -38,9 +38,6 @@ def solve_motion(
         options: What a person chose.
         object_space: Where the armature object stands now; it stays there with `Placement.CHARACTER`.
 
-    Yields:
-        Progress.
-
     Returns:
         The poses of the role bones.
 
@@ -53,7 +50,7 @@ def solve_motion(
     floor_m = rest_floor_m(body)
     shapes = {side: foot_shape(body, side, floor_m) for side in SIDES}
     yield Progress("Finding where the feet rest", 0.1)
-    ground = find_ground(source, options.stray_m)
+    ground = find_ground(source)
     stand = np.array([*body.hip_joints[:2], floor_m])
     ankle_m = float(np.mean([shape.ankle_m for shape in shapes.values()]))
     stage = find_stage(source, ground, stand, body.leg_m, ankle_m)

@@ -1,7 +1,7 @@
 """A character map made ready for its character: soles of the mesh, controls found, properties checked."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 
@@ -10,38 +10,20 @@ from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switc
 from ....core.retarget.recognition.root_bone import find_root
 from ....core.retarget.stance import find_stance
 from ....core.text import Sentence
-from .controls.find_controls import find_controls
-from .controls.probe_controls import character_size
 from .mesh_soles import mesh_soles
-
-
-@dataclass(frozen=True, eq=False)
-class CompletedMap:
-    """A completed map."""
-
-    character_map: CharacterMap
-    notes: tuple[str, ...]
 
 
 def complete_map(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
-) -> CompletedMap:
-    """Add to a map what only Blender knows; what it says stays.
-
-    Args:
-        armature_object: The character.
-        character: The same at rest.
-        character_map: Its map.
-    """
-    checked, missing = _with_properties(armature_object, character_map)
-    found = find_controls(armature_object, checked, character_size(armature_object, checked))
-    completed = found.character_map
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """Add to a map what only Blender knows; what it says stays. Notes say what of it the rig lacks."""
+    completed, notes = _with_properties(armature_object, character_map)
     if completed.root is None:
         up = find_stance(character, completed)[2]
         completed = replace(completed, root=find_root(character, completed, up))
     if not completed.soles:
         completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
-    return CompletedMap(completed, (*missing, *found.notes))
+    return completed, notes
 
 
 def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:

@@ -24,12 +24,7 @@ CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 def character_figure(armature_object: bpy.types.Object, lines: Iterable[FigureLine]) -> CharacterFigure:
-    """The character as its scene shows it now.
-
-    Args:
-        armature_object: The armature.
-        lines: What is drawn where there is no mesh.
-    """
+    """The character as its scene shows it now."""
     meshes = [_mesh(one) for one in skins(armature_object)]
     if meshes and sum(len(mesh.triangles) for mesh in meshes) <= MOST_TRIANGLES:
         starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])

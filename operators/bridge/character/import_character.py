@@ -47,10 +47,6 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
     Of a .blend objects are appended; nothing in it is run. Other files are read by Blender's own importers,
     without their motions. The objects get a collection with the armature's name.
 
-    Args:
-        file: The file, and the armature where it has several.
-        scene: An empty scene.
-
     Raises:
         InputError: Blender cannot read the file, it has no such armature or none at all, or several and none
             is named.

@@ -76,9 +76,6 @@ def measure(
         character_map: Its map.
         in_fk: The switches' values with which its limbs show FK; none where nothing can be switched.
 
-    Yields:
-        The fraction done.
-
     Returns:
         The figures, without those of keys.
     """
@@ -139,9 +136,7 @@ def _poses(armature_object: bpy.types.Object, bones: Mapping[str, str]) -> list[
 
 @contextmanager
 def _switched(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    values: Mapping[Property, Value],
+    armature_object: bpy.types.Object, action: bpy.types.Action, values: Mapping[Property, Value]
 ) -> Iterator[None]:
     """Let the keys of custom properties in an Action have other values meanwhile."""
     channelbag = existing_channelbag(action, armature_object)

@@ -32,13 +32,7 @@ MOST_STEPS = 64
 def mesh_soles(
     armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
 ) -> dict[str, tuple[Point, ...]]:
-    """Points of the soles by role, in the armature's space; nothing where no mesh shows a foot.
-
-    Args:
-        armature_object: The character.
-        character: The same at rest.
-        character_map: Its map.
-    """
+    """Points of the soles by role, in the armature's space; nothing where no mesh shows a foot."""
     stance = find_stance(character, character_map)
     found: dict[str, list[Array]] = {}
     leading = _leading_roles(armature_object, character_map)

@@ -28,10 +28,7 @@ def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> P
     mode = armature_object.rotation_mode
     delta = _delta_rotation(armature_object)
     location = basis[:3, 3] - np.array(armature_object.delta_location)
-    return (
-        ("location", location),
-        (rotation_path(mode), rotation_values((delta.T @ turn)[None], mode)[0]),
-    )
+    return (("location", location), (rotation_path(mode), rotation_values((delta.T @ turn)[None], mode)[0]))
 
 
 def _around(armature_object: bpy.types.Object) -> Array:

@@ -6,7 +6,6 @@ import numpy as np
 from ....core.errors import InputError
 from ....core.retarget.character import Character, CharacterBone
 from ..object_space import object_space
-from .controls.cycles import dependency_cycle
 
 SMALLEST_SCALE = 1e-9
 
@@ -57,14 +56,6 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
             "armature '{name}' has an NLA strip in tweak mode, which locks its Action; leave tweak mode "
             "(Tab in the NLA editor)",
             name=name,
-        )
-    cycle = dependency_cycle(armature_object)
-    if cycle:
-        raise InputError(
-            "armature '{name}' has a dependency cycle, {cycle}, whose pose Blender cannot determine; remove "
-            "one of these drivers or constraints",
-            name=name,
-            cycle=" > ".join(cycle),
         )
     return armature_object
 

@@ -23,6 +23,7 @@ from ....core.retarget.maps.map_check import check_map
 from ....core.retarget.options import Placement, RetargetOptions
 from ....core.retarget.quality import Quality
 from ....core.retarget.solve.solve_motion import solve_motion
+from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
 from .complete_map import complete_map
@@ -33,7 +34,7 @@ from .measure import measure_keys
 from .object_placement import placement_keys, require_placeable
 from .pose_scales import scaled_bones
 from .read_character import read_character
-from .write_retargeted import RetargetedKeys, write_retargeted
+from .write_retargeted import RetargetedKeys, write_keys
 
 SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, the controls are known, and the keys are found."""
@@ -63,17 +64,22 @@ class Retargeted:
         return self.motion.size
 
     def write(self, scene: bpy.types.Scene, action: bpy.types.Action | str) -> bpy.types.Action:
-        """Write the motion into an Action, and let it animate the character.
-
-        Args:
-            scene: The scene, which shows the character's new pose.
-            action: The name of a new Action; or an Action, in which what an earlier retargeting made for the
-                character is replaced.
+        """Write the motion into a new Action of a name, or one that was retargeted before, and assign it.
 
         Raises:
             InputError: The character has been deleted meanwhile.
         """
-        return write_retargeted(self.keys, self.session_uid, self.character.name, scene, action)
+        made = next((one for one in bpy.data.objects if one.session_uid == self.session_uid), None)
+        if made is None:
+            name = self.character.name
+            raise InputError("armature '{name}' has been deleted meanwhile; nothing was changed", name=name)
+        if isinstance(action, str):
+            action = bpy.data.actions.new(action)
+        write_keys(self.keys, made, action)
+        action.use_fake_user = True
+        assign_action(made, action)
+        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+        return action
 
 
 def retarget(
@@ -107,8 +113,7 @@ def retarget(
     placed = options.placement is Placement.PERFORMER
     if placed:
         require_placeable(armature_object)
-    completed = complete_map(armature_object, character, character_map)
-    character_map = completed.character_map
+    character_map, lacking = complete_map(armature_object, character, character_map)
     solving = solve_motion(
         character, character_map, source, options, Similarity(here.rotation, here.location, here.scale)
     )
@@ -147,7 +152,7 @@ def retarget(
         keys,
         replace(quality, keys=keys.key_count, dense_keys=keys.dense_count),
         (
-            *completed.notes,
+            *lacking,
             *motion.notes,
             *probed.notes,
             *channel_notes(armature_object, keyed, controls, keys.scaled),
@@ -171,10 +176,7 @@ def _keyed(
 
 
 def _on_controls(
-    character: Character,
-    character_map: CharacterMap,
-    motion: CharacterMotion,
-    probed: ProbedControls,
+    character: Character, character_map: CharacterMap, motion: CharacterMotion, probed: ProbedControls
 ) -> ControlMotion:
     """The motion on the controls, by channels for every frame."""
     planned = [control.plan for control in probed.controls]

@@ -27,10 +27,6 @@ def read_source(
 
     Hands and feet are as keyed; those without keys as the motion alone would turn them.
 
-    Args:
-        armature_object: The actor.
-        action: The final or the reconstructed motion, or any other of an actor.
-
     Yields:
         Progress; nothing in Blender is changed.
 

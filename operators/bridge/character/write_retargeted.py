@@ -8,10 +8,9 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.errors import InputError
 from ....core.finish.hermite import Spline
 from ....core.retarget.controls.control_motion import KeyedControl
-from ..actions import assign_action, channelbag_for
+from ..actions import channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
 from ..rotation_modes import ALL_PATHS, bone_path
 from .controls.channel_notes import driven_channels, keyed_paths
@@ -49,33 +48,6 @@ class RetargetedKeys:
     def dense_count(self) -> int:
         """Number of keys on the controls with one on every frame."""
         return sum(keyed.channel_count for keyed in self.controls) * len(self.frames)
-
-
-def write_retargeted(
-    keys: RetargetedKeys, session_uid: int, name: str, scene: bpy.types.Scene, action: bpy.types.Action | str
-) -> bpy.types.Action:
-    """Write a motion into an Action, and let it animate its character.
-
-    Args:
-        keys: What is keyed.
-        session_uid: Blender's number of the armature object in this session.
-        name: The name that it had.
-        scene: The scene, which shows the new pose.
-        action: As `Retargeted.write` says.
-
-    Raises:
-        InputError: The character is gone.
-    """
-    armature_object = next((one for one in bpy.data.objects if one.session_uid == session_uid), None)
-    if armature_object is None:
-        raise InputError("armature '{name}' has been deleted meanwhile; nothing was changed", name=name)
-    if isinstance(action, str):
-        action = bpy.data.actions.new(action)
-    write_keys(keys, armature_object, action)
-    action.use_fake_user = True
-    assign_action(armature_object, action)
-    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-    return action
 
 
 def write_keys(keys: RetargetedKeys, armature_object: bpy.types.Object, action: bpy.types.Action) -> None:

@@ -59,8 +59,7 @@ class OpenedCharacter:
         with blender_silence(debug):
             from ...bridge.character.complete_map import complete_map
 
-            found = complete_map(self.imported.armature, self.character, self.chosen.character_map)
-        return found.character_map, found.notes
+            return complete_map(self.imported.armature, self.character, self.chosen.character_map)
 
 
 @contextmanager

@@ -1,17 +1,16 @@
 """A character's map in properties: nothing is lost there, in the file, or by correcting one role."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import bpy
 import pytest
 from _character_maps import full_map
-from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
+from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.maps.character_map_file import read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset
 from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.roles import LIMBS, ROLES
-from keymark.operators.character.map_conversion import map_of, show_found_controls, show_map
+from keymark.operators.character.map_conversion import map_of, show_map
 from keymark.operators.character.options import options_of
 from keymark.operators.shell.takes import active_take
 
@@ -55,9 +54,7 @@ def test_the_map_is_in_the_file(character: bpy.types.PropertyGroup, tmp_path: Pa
 def test_the_defaults_are_cores(character: bpy.types.PropertyGroup) -> None:
     """What the panel begins with is what a script begins with."""
     shown, wanted = options_of(character.options), RetargetOptions()
-    assert shown.stray_m == pytest.approx(wanted.stray_m) and shown.tolerance_m == pytest.approx(
-        wanted.tolerance_m
-    )
+    assert shown.tolerance_m == pytest.approx(wanted.tolerance_m)
     for name in ("root_motion", "placement", "arms", "legs", "plant_feet", "reach_hands"):
         assert getattr(shown, name) == getattr(wanted, name)
     character.options.keys, character.options.arms = "EVERY_FRAME", "FK"
@@ -88,21 +85,16 @@ def test_an_emptied_field_is_a_missing_role(character: bpy.types.PropertyGroup) 
     assert "toe.L" not in found.roles and found.bones("spine") == ("chest",)
 
 
-def test_the_active_bone_is_used(character: bpy.types.PropertyGroup) -> None:
-    """As clicked on in Pose Mode; without one the button says so."""
-    bones = character.armature.data.bones
-    bones.active = None
-    with pytest.raises(RuntimeError, match="Make a bone of the character active first"):
-        bpy.ops.keymark.use_active_bone(role="hand.L")
-    bones.active = bones["finger.L"]
-    assert bpy.ops.keymark.use_active_bone(role="hand.L") == {"FINISHED"}
+def test_a_bone_is_picked(character: bpy.types.PropertyGroup) -> None:
+    """By its name, as scripts do; what is wrong is said."""
+    assert bpy.ops.keymark.pick_bone(role="hand.L", bone="finger.L") == {"FINISHED"}
     assert (role(character, "hand.L").bones[0].bone, role(character, "hand.L").source) == ("finger.L", "you")
     for words, said in (
         ({"role": "tail"}, "no role 'tail'"),
         ({"role": "hand.L", "index": 3}, "no number 3"),
     ):
         with pytest.raises(RuntimeError, match=said):
-            bpy.ops.keymark.use_active_bone(**words)
+            bpy.ops.keymark.pick_bone(bone="finger.L", **words)
     with pytest.raises(RuntimeError, match="has no bone 'nobody'"):
         bpy.ops.keymark.pick_bone(role="hand.L", bone="nobody")
     with pytest.raises(RuntimeError, match="No bone is chosen"):
@@ -185,23 +177,3 @@ def test_a_map_in_the_library_folder_is_suggested(
     assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("My Hero", "hand.L")
     assert bpy.ops.keymark.load_map(title=anew.suggested) == {"FINISHED"}
     assert (anew.suggested, role(anew, "hand.L").bones[0].bone) == ("", "finger.L")
-
-
-def test_controls_found_on_the_rig_are_shown(character: bpy.types.PropertyGroup) -> None:
-    """Beside what is shown already; not where the roles were corrected meanwhile."""
-    plain = map_of(character.character_map)
-    controls = IkControls("finger.L", None, None, Switch("hand.L", "IK_FK", 0.0, 1.0))
-    found = replace(
-        plain,
-        fk={"head": ("neck",), "neck": ("head",)},
-        ik={"arm.L": controls},
-        settings=(Setting("hips", "follow", 1.0),),
-    )
-    role(character, "neck").bones[0].control = "chest"
-    show_found_controls(character.character_map, found)
-    shown = map_of(character.character_map)
-    assert shown.fk == {"head": ("neck",), "neck": ("chest",)} and shown.ik == {"arm.L": controls}
-    assert shown.settings == found.settings and shown.roles == plain.roles
-    role(character, "hand.L").bones[0].bone = "finger.L"
-    show_found_controls(character.character_map, replace(found, root="hips"))
-    assert map_of(character.character_map).root is None

@@ -11,8 +11,10 @@ from .....core.retarget.controls.control_channels import Control
 from .....core.retarget.controls.control_motion import ControlMotion, KeyedControl
 from .....core.text import Sentence
 from ...rotation_modes import bone_path, rotation_path
-from .dependencies import CARRYING, active_constraints, drivers
+from .dependencies import active_constraints, drivers
 
+CARRYING = ("CHILD_OF", "ARMATURE")
+"""Constraints that carry a bone as a parent does: its own channels still count."""
 MOST_NAMES = 3
 """Bones that a sentence names; more are counted."""
 NOTICEABLE_M = 0.005

@@ -5,22 +5,28 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from .....core.arrays import Array
 from .....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from .....core.retarget.controls.control_plan import ControlKind, PlannedControl
-from .....core.retarget.controls.control_spaces import ControlSpace, PosedControls, chosen, find_spaces
-from .....core.retarget.controls.control_targets import PoleSetting
+from .....core.retarget.controls.control_plan import ControlKind, PlannedControl, limb_bones
+from .....core.retarget.controls.control_spaces import (
+    NOTHING,
+    ControlSpace,
+    PosedControls,
+    chosen,
+    find_spaces,
+)
+from .....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from .....core.retarget.controls.rigid_offset import rigid_offset
 from .....core.retarget.maps.character_map import CharacterMap
 from .....core.text import Sentence
 from ..pose_scales import ONE, scaled_bones
 from .dependencies import active_constraints, driven_bone, drivers
-from .posing import posing, set_properties
-from .probe_ik import try_inverse_kinematics
-from .random_poses import RandomPoses, pose_at_random
-from .shown_properties import probed_properties
+from .posing import posing, read_poses, set_channels, set_properties
+from .shown_properties import fk_shown
 
+SEED = 4
 STILL, MOVED = 3, 4
 """Poses at random, without and with locations."""
 TURN_RAD = 0.4
@@ -31,6 +37,8 @@ DISPLACED = 1e-5
 """Location of a control that counts as one, in sizes of the character."""
 FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
 """Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
+STRAIGHT = 0.005
+"""A limb whose joints span less than this, in squares of its length, is straight and shows no plane."""
 NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
 """Turn, and distance in sizes, by which a bone may fail to follow its control before a note is made."""
 
@@ -62,35 +70,37 @@ def probe_controls(
     """
     size = character_size(armature_object, character_map)
     notes: list[str] = []
-    in_fk, in_ik = (probed_properties(character_map, in_ik) for in_ik in (False, True))
-    displaced = _displaced(armature_object, planned, size)
+    in_fk = fk_shown(character_map)
+    bones = armature_object.pose.bones
+    displaced = {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
-            armature_object.pose.bones[name].scale = ONE
-        names, bones = [plan.name for plan in planned], [plan.bone for plan in planned]
-        poses = RandomPoses(STILL, MOVED, TURN_RAD, MOVE_SHARE * size)
-        channels, shown, followed = pose_at_random(armature_object, names, bones, poses)
-        posed = PosedControls(channels, shown, STILL)
-        kept = _steady(armature_object, planned, find_spaces(posed), notes)
-        posed, followed = chosen(posed, kept), followed[:, kept]
-        planned = [planned[index] for index in kept]
-        controls = ordered_controls(
-            [
-                Control(
-                    plan,
-                    armature_object.pose.bones[plan.name].rotation_mode,
-                    space,
-                    turns=plan.kind is not ControlKind.POLE,
-                    displaced=plan.name in displaced,
-                )
-                for plan, space in zip(planned, find_spaces(posed), strict=True)
-            ]
-        )
-        offsets = _fk_offsets(armature_object, posed, followed, planned, size, notes)
-        ik = try_inverse_kinematics(armature_object, character_map, controls, size, in_ik)
-    controls = tuple(_placed(control, ik.places, size) for control in controls)
-    return ProbedControls(controls, offsets | dict(ik.offsets), ik.poles, size, (*notes, *ik.notes))
+            bones[name].scale = ONE
+        posed, followed = _posed_at_random(armature_object, planned, size)
+    kept = _steady(armature_object, planned, find_spaces(posed), notes)
+    posed, followed = chosen(posed, kept), followed[:, kept]
+    planned = [planned[index] for index in kept]
+    controls = ordered_controls(
+        [
+            Control(
+                plan,
+                bones[plan.name].rotation_mode,
+                space,
+                turns=plan.kind is not ControlKind.POLE,
+                displaced=plan.name in displaced,
+            )
+            for plan, space in zip(planned, find_spaces(posed), strict=True)
+        ]
+    )
+    offsets = _offsets(armature_object, posed, followed, planned, size, notes)
+    poles = {
+        plan.name: _pole_setting(armature_object, limb_bones(character_map, str(plan.limb)), plan.name)
+        for plan in planned
+        if plan.kind is ControlKind.POLE
+    }
+    placed = tuple(_placed(armature_object, control, controls, size) for control in controls)
+    return ProbedControls(placed, offsets, poles, size, tuple(notes))
 
 
 def character_size(armature_object: bpy.types.Object, character_map: CharacterMap) -> float:
@@ -101,13 +111,35 @@ def character_size(armature_object: bpy.types.Object, character_map: CharacterMa
     return float(np.ptp(heads, axis=0).max())
 
 
-def _displaced(armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float) -> set[str]:
-    """The controls that have a location now."""
-    bones = armature_object.pose.bones
-    return {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
+def _posed_at_random(
+    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
+) -> tuple[PosedControls, Array]:
+    """The controls as posed at random, the same in every run, and poses (S, C, 4, 4) of their bones."""
+    rng = np.random.default_rng(SEED)
+    names, count = [plan.name for plan in planned], len(planned)
+    channels, shown = [], []
+    for sample in range(STILL + MOVED):
+        matrices = np.tile(np.eye(4), (count, 1, 1))
+        turns = rng.normal(0.0, TURN_RAD, (count, 3))
+        if count:
+            matrices[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
+        if sample >= STILL:
+            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (count, 3))
+        set_channels(armature_object, dict(zip(names, matrices, strict=True)))
+        own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
+        channels.append(own[:count])
+        shown.append(poses)
+    both = np.array(shown)
+    return PosedControls(np.array(channels), both[:, :count], STILL), both[:, count:]
 
 
-def _fk_offsets(
+def _rests(armature_object: bpy.types.Object, names: Sequence[str]) -> Array:
+    """(N, 4, 4) poses of bones at rest."""
+    bones = armature_object.data.bones
+    return np.array([bones[name].matrix_local for name in names], dtype=np.float64)
+
+
+def _offsets(
     armature_object: bpy.types.Object,
     posed: PosedControls,
     bones: Array,
@@ -115,18 +147,19 @@ def _fk_offsets(
     size: float,
     notes: list[str],
 ) -> dict[str, Array]:
-    """How bones follow their controls while all limbs show FK; sentences on those that do not are added."""
+    """How bones follow their controls: in FK as seen, in IK as at rest; sentences on others are added."""
     offsets = {}
     for index, plan in enumerate(planned):
+        control, bone = _rests(armature_object, [plan.name, plan.bone])
+        offsets[plan.name] = np.linalg.inv(control) @ bone
         if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
             continue
         # Locations of other controls may stretch what lies between: only the first poses count.
         offset, turn_rad, distance = rigid_offset(
             posed.poses[: posed.still, index], bones[: posed.still, index]
         )
-        if turn_rad > FOLLOWS_RAD or distance > FOLLOWS * size:
-            offset = _offset_at_rest(armature_object, plan)
-        offsets[plan.name] = offset
+        if turn_rad <= FOLLOWS_RAD and distance <= FOLLOWS * size:
+            offsets[plan.name] = offset
         if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
             notes.append(
                 Sentence(
@@ -138,13 +171,14 @@ def _fk_offsets(
     return offsets
 
 
-def _offset_at_rest(armature_object: bpy.types.Object, plan: PlannedControl) -> Array:
-    """(4, 4) the rest pose of a control's bone in the control's own axes."""
-    control, bone = (
-        np.array(armature_object.data.bones[name].matrix_local, dtype=np.float64)
-        for name in (plan.name, plan.bone)
-    )
-    return np.linalg.inv(control) @ bone
+def _pole_setting(armature_object: bpy.types.Object, limb: Sequence[str], name: str) -> PoleSetting:
+    """Where a limb's pole belongs: as far and in the direction that it lies at rest."""
+    root, middle, end, pole = _rests(armature_object, [*limb, name])[:, :3, 3]
+    length = float(np.linalg.norm(middle - root) + np.linalg.norm(end - middle))
+    distance = float(np.linalg.norm(pole - middle))
+    bent = float(np.linalg.norm(np.cross(middle - root, end - root))) > STRAIGHT * length**2
+    offset_rad = pole_offset(root, middle, end, pole) if bent else 0.0
+    return PoleSetting(distance if distance > SHORTEST_POLE * length else 0.5 * length, offset_rad)
 
 
 def _steady(
@@ -175,11 +209,14 @@ def _steady(
     return kept
 
 
-def _placed(control: Control, places: Mapping[str, Array], size: float) -> Control:
-    """A control that random poses did not place, where a limb within reach shows its place."""
+def _placed(
+    armature_object: bpy.types.Object, control: Control, controls: Sequence[Control], size: float
+) -> Control:
+    """A control that random poses did not place: where it rests on what turns it, else where it is."""
     space = control.space
     if control.plan.kind in ALWAYS_MOVED or space.is_placed(size):
         return control
-    if control.name in places and space.residual_rad < NOTICEABLE_RAD:
-        return replace(control, space=space.placed_by_turner(places[control.name]))
+    if space.turner != NOTHING and space.residual_rad < NOTICEABLE_RAD:
+        turner, own = _rests(armature_object, [controls[space.turner].name, control.name])
+        return replace(control, space=space.placed_by_turner((np.linalg.inv(turner) @ own)[:3, 3]))
     return replace(control, space=replace(space, axes=np.zeros((3, 3))))

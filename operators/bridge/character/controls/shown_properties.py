@@ -17,12 +17,10 @@ def shown_properties(character_map: CharacterMap, options: RetargetOptions) -> d
     return values
 
 
-def probed_properties(character_map: CharacterMap, in_ik: bool) -> dict[Property, Value]:
-    """The settings, and all switches to IK or all to FK."""
+def fk_shown(character_map: CharacterMap) -> dict[Property, Value]:
+    """The settings, and all switches to FK."""
     values = _settings(character_map)
-    for _, switch in _switches(character_map):
-        values[switch.bone, switch.property] = switch.ik if in_ik else switch.fk
-    return values
+    return values | {(switch.bone, switch.property): switch.fk for _, switch in _switches(character_map)}
 
 
 def fk_properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, Value]:

@@ -14,7 +14,6 @@ from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.retarget.options import RetargetOptions
 from keymark.core.retarget.recognition.recognize import recognize
-from keymark.operators.bridge.character.controls.cycles import dependency_cycle
 from keymark.operators.bridge.character.read_character import make_override, needs_override, read_character
 from keymark.operators.bridge.character.retarget import retarget
 
@@ -80,21 +79,6 @@ def tweaked(made: bpy.types.Object) -> None:
     data.use_tweak_mode = True
 
 
-def driven_in_a_circle(made: bpy.types.Object) -> None:
-    """A thigh that turns with its shin, which turns with it."""
-    curve = made.pose.bones["thigh.L"].driver_add("location", 0)
-    variable = curve.driver.variables.new()
-    variable.type = "TRANSFORMS"
-    variable.targets[0].id, variable.targets[0].bone_target = made, "shin.L"
-    curve.driver.expression = variable.name
-
-
-def constrained_in_a_circle(made: bpy.types.Object) -> None:
-    """Hips that copy a foot."""
-    constraint = made.pose.bones["hips"].constraints.new("COPY_ROTATION")
-    constraint.target, constraint.subtarget = made, "foot.R"
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
@@ -110,33 +94,12 @@ def constrained_in_a_circle(made: bpy.types.Object) -> None:
         (changed(lambda made: made.hide_set(True)), "is hidden"),
         (changed(lambda made: bpy.context.scene.collection.objects.unlink(made)), "in no scene"),
         (changed(tweaked), "tweak mode"),
-        (changed(driven_in_a_circle), "dependency cycle"),
-        (changed(constrained_in_a_circle), "dependency cycle"),
     ],
 )
 def test_what_cannot_be_retargeted_is_refused(make: Callable[[], bpy.types.Object], words: str) -> None:
     """One sentence says what is wrong, and what to do."""
     with pytest.raises(InputError, match=words):
         read_character(make())
-
-
-def test_the_drivers_of_a_real_rig_are_no_cycle(rigify: bpy.types.Object) -> None:
-    """Rigify's drivers and constraints wait for each other nowhere."""
-    assert len(rigify.animation_data.drivers) > 50
-    assert dependency_cycle(rigify) == ()
-
-
-def test_a_driver_by_a_bones_own_property_is_no_cycle() -> None:
-    """A custom property that moves its own bone depends on nothing."""
-    made = build_character(plain_character())
-    made.pose.bones["hips"]["lift"] = 0.5
-    curve = made.pose.bones["hips"].driver_add("location", 1)
-    variable = curve.driver.variables.new()
-    variable.targets[0].id, variable.targets[0].data_path = made, 'pose.bones["hips"]["lift"]'
-    curve.driver.expression = variable.name
-    assert dependency_cycle(made) == ()
-    variable.targets[0].data_path = 'pose.bones["hips"].location[1]'
-    assert dependency_cycle(made) != ()
 
 
 def test_a_linked_character_is_refused_until_it_is_overridden(rigify_blend: Path) -> None:

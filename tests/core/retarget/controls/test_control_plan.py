@@ -25,10 +25,8 @@ from keymark.core.retarget.controls.point_tolerances import (
     pole_tolerance_m,
     reach_tolerance_m,
 )
-from keymark.core.retarget.controls.rigid_following import followed_controls
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
-from scipy.spatial.transform import Rotation
 
 FRAMES = 30
 
@@ -168,17 +166,3 @@ def test_every_bone_has_points_that_show_its_place_and_turn() -> None:
     sole = next(point for point in points if point.kind is PointKind.SOLE)
     rest = character.bone("foot.L").rest
     assert rest[:3, :3] @ sole.place + rest[:3, 3] == pytest.approx([10.0, 5.0, 0.0])
-
-
-def test_the_control_that_a_bone_follows() -> None:
-    """One of several that are posed at random; none where none carries it."""
-    rng = np.random.default_rng(1)
-    poses = np.tile(np.eye(4), (4, 3, 1, 1))
-    poses[..., :3, :3] = Rotation.random(12, random_state=3).as_matrix().reshape(4, 3, 3, 3)
-    poses[..., :3, 3] = rng.normal(size=(4, 3, 3))
-    offset = np.eye(4)
-    offset[:3, 3] = [0.1, 0.2, 0.3]
-    bones = np.stack([poses[:, 1] @ offset, poses[:, 2] @ offset, poses[:, 0]], axis=1)
-    bones[2, 1, :3, :3] = poses[2, 0, :3, :3]
-    assert followed_controls(["a", "b", "c"], poses, bones, 1.0) == ["b", None, "a"]
-    assert followed_controls([], poses[:, :0], bones, 1.0) == [None, None, None]

@@ -13,8 +13,7 @@ from keymark.core.arrays import Array
 from keymark.core.body.heading import yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
-from keymark.core.retarget.recognition.recognition import Recognition
-from keymark.core.retarget.recognition.recognize import recognize
+from keymark.core.retarget.recognition.recognize import Recognition, recognize
 from keymark.core.retarget.recognition.root_bone import find_root
 from keymark.core.retarget.roles import ROLES
 from keymark.core.retarget.stance import find_stance
@@ -201,7 +200,13 @@ def test_a_presets_sides_are_exchanged_where_the_shape_is_against_them() -> None
 def test_a_preset_alone_is_enough_where_the_shape_says_nothing() -> None:
     """In bones that all hang on the hips, all roles are the names', and it is said."""
     character = plain_character(names=convention_names("Mixamo"))
-    flat = replace(character, bones=tuple(replace(b, parent=min(b.parent, 0)) for b in character.bones))
+    flat = replace(
+        character,
+        bones=tuple(
+            replace(bone, parent=min(bone.parent, 0), tail=bone.head + [0.1, 0.0, 0.0])
+            for bone in character.bones
+        ),
+    )
     with pytest.raises(InputError):
         recognize(renamed(flat))
     found = recognize(flat)

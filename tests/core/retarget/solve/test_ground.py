@@ -4,7 +4,6 @@ import numpy as np
 from _performances import performance, stepping, steps
 from keymark.core.body.posture import Posture
 from keymark.core.body.segment_motion import SegmentMotion
-from keymark.core.finish.contacts import STRAY_M
 from keymark.core.retarget.solve.ground import find_ground
 
 
@@ -20,7 +19,7 @@ def raised(*heights_m: float) -> SegmentMotion:
 
 def test_rests_on_the_scenes_ground_are_on_it() -> None:
     """An ankle's height over its sole is not known to the millimeter: near 0, it is 0."""
-    ground = find_ground(steps(), STRAY_M)
+    ground = find_ground(steps())
     assert set(ground.levels_m) == {0.0}
     assert not ground.height_m.any()
     assert 0.06 < ground.ankle_m < 0.09
@@ -28,7 +27,7 @@ def test_rests_on_the_scenes_ground_are_on_it() -> None:
 
 def test_steps_keep_their_heights() -> None:
     """Two levels a stair apart are two, each of them level; under moving feet the ground is the lower one."""
-    ground = find_ground(raised(0.0, 0.2), STRAY_M)
+    ground = find_ground(raised(0.0, 0.2))
     levels = np.unique(np.round(ground.levels_m, 6))
     assert len(levels) == 2 and levels[0] == 0.0
     assert abs(levels[1] - 0.2) < 0.02
@@ -37,13 +36,13 @@ def test_steps_keep_their_heights() -> None:
 
 def test_noise_is_leveled() -> None:
     """Rests a centimeter apart are on one level, though not the scene's."""
-    ground = find_ground(raised(0.5, 0.51), STRAY_M)
+    ground = find_ground(raised(0.5, 0.51))
     assert len(set(ground.levels_m)) == 1
 
 
 def test_a_slope_is_not_leveled() -> None:
     """Rests ever two centimeters higher keep their heights."""
-    ground = find_ground(raised(*np.arange(1.0, 1.12, 0.02)), STRAY_M)
+    ground = find_ground(raised(*np.arange(1.0, 1.12, 0.02)))
     assert np.ptp(ground.levels_m) > 0.08
 
 
@@ -52,6 +51,6 @@ def test_without_rests_the_lowest_feet_tell() -> None:
     body, posture = stepping()
     sliding = posture.translation + np.linspace([0.0, 0.0, 0.3], [9.0, 0.0, 0.3], posture.batch[0])
     source = performance(body, Posture(posture.skeleton, sliding, posture.rotations, posture.angles))
-    ground = find_ground(source, STRAY_M)
+    ground = find_ground(source)
     assert ground.rests == ()
     assert abs(ground.height_m[0, 0] - 0.3) < 0.02

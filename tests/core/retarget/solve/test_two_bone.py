@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.rotations import exponential
-from keymark.core.retarget.solve.two_bone import (
-    LimbPose,
-    reach_for,
-    smallest_rotation,
-    stretched_m,
-    unit,
-)
+from keymark.core.retarget.solve.two_bone import LimbPose, reach_for, smallest_rotation, stretched_m, unit
 
 UPPER_M, LOWER_M = 0.4, 0.35
 
