@@ -1,4 +1,4 @@
-"""Moments in which the performer stands or walks upright, by keypoints or markers, to find the camera by.
+"""Moments in which the performer stands or walks upright, by keypoints, to find the camera by.
 
 A body of known height that is upright in several places on the floor measures the room. Nobody has looked
 here whether it stands. So trunk and legs must lie in line and be as long as those of someone upright, and
@@ -16,7 +16,6 @@ from ..body.standing_posture import standing_posture
 from .camera_evidence import COMMON_LEAN_RAD, STATURE_STD, Uprights
 from .keypoints.keypoints import Keypoints
 from .keypoints.principal_keypoints import principal_keypoints
-from .region_tracks import RegionTracks
 
 APART_S = 0.3
 """Time after which a posture is another one: half a step of someone who walks."""
@@ -39,9 +38,6 @@ FLIGHT_S, FLIGHT_SHARE = 0.25, 0.12
 walks toward the camera comes down in the picture by less than these shares in that time."""
 MOST_UNLIKE = 0.2
 """Largest logarithm of the ratio of legs to trunk, relative to that of someone upright in the same clip."""
-REGION_STD_PX = 1.0
-REGION_COMMON_STD = 0.06
-"""Share by which sleeves and shirts put the middles of trunk and shins too high or too low."""
 
 
 def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights:
@@ -67,62 +63,16 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     upright &= _on_floor(ankle[:, 1], np.linalg.norm(head - ankle, axis=-1), fps)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
-    heights_m, common_std = (height["ankle"], height["head"]), float(np.hypot(STATURE_STD, DETECTOR_STD))
-    return _uprights(ankle[chosen], head[chosen], heights_m, PIXEL_SHARE * size, common_std)
-
-
-def standing_regions(tracks: RegionTracks, segments: tuple[str, ...], body: Body, fps: float) -> Uprights:
-    """The same by the regions of markers on trunk and both shins; none where these are not worn.
-
-    Args:
-        tracks: The markers' regions.
-        segments: The segment each marker is bound to.
-        body: As above.
-        fps: Frames per second.
-    """
-    wanted = ("trunk", *(f"shin.{side}" for side in SIDES))
-    if not set(wanted) <= set(segments):
-        return Uprights.none()
-    columns = [segments.index(segment) for segment in wanted]
-    whole = (tracks.visible & ~tracks.clipped)[:, columns].all(axis=1)
-    centroid = tracks.centroid[:, columns]
-    shins, trunk = centroid[:, 1:].mean(axis=1), centroid[:, 0]
-    size = np.linalg.norm(trunk - shins, axis=-1)
-    # Shins lie in line where both are plumb; of someone who bends or sits the trunk comes nearer to them.
-    level = np.abs(centroid[:, 1, 1] - centroid[:, 2, 1]) < MOST_UNLIKE * size
-    level &= _along(trunk - shins, np.array([0.0, -1.0]), PLUMB)
-    tall = size > np.exp(-MOST_UNLIKE) * np.nanmax(np.where(whole, size, np.nan)) if whole.any() else whole
-    on_floor = _on_floor(shins[:, 1], size, fps)
-    chosen = _apart(whole & level & np.asarray(tall) & on_floor, fps)
-    height = _heights(body)
-    middle_m = 0.5 * (height["knee"] + height["ankle"]), 0.5 * (height["hip"] + height["shoulder"])
-    pixel_std = np.maximum(REGION_STD_PX, PIXEL_SHARE * size[chosen])
-    common_std = float(np.hypot(STATURE_STD, REGION_COMMON_STD))
-    return _uprights(shins[chosen], trunk[chosen], middle_m, pixel_std, common_std)
-
-
-def _uprights(
-    lower_px: Array, upper_px: Array, heights_m: tuple[float, float], pixel_std: Array, common_std: float
-) -> Uprights:
-    """One body at N moments, by two of its points.
-
-    Args:
-        lower_px: (N, 2) the lower one [px].
-        upper_px: (N, 2) the one above it [px].
-        heights_m: Height of each above the floor [m].
-        pixel_std: (N,) standard deviation of a point [px].
-        common_std: Share by which all lengths may be off together.
-    """
-    ones, (lower_m, upper_m) = np.ones(len(pixel_std)), heights_m
+    ones = np.ones(len(chosen))
     return Uprights(
-        lower_px,
-        upper_px,
-        lower_m * ones,
-        (upper_m - lower_m) * ones,
-        pixel_std,
-        LENGTH_STD * ones,
-        LEAN_STD_RAD * ones,
-        common_std=common_std,
+        lower_px=ankle[chosen],
+        upper_px=head[chosen],
+        lower_m=height["ankle"] * ones,
+        length_m=(height["head"] - height["ankle"]) * ones,
+        pixel_std=PIXEL_SHARE * size,
+        length_std=LENGTH_STD * ones,
+        lean_std_rad=LEAN_STD_RAD * ones,
+        common_std=float(np.hypot(STATURE_STD, DETECTOR_STD)),
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )

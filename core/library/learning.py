@@ -31,7 +31,7 @@ DECIMALS_S = 3
 
 @dataclass(frozen=True)
 class LibraryMetadata:
-    """Title, author, license and other metadata of a library."""
+    """Title, author and license of a library that is made."""
 
     title: str
     author: str
@@ -39,10 +39,6 @@ class LibraryMetadata:
     """SPDX expression; by default all rights are reserved."""
     identifier: str = ""
     """By default derived from the title."""
-    version: int = 1
-    description: str = ""
-    sources: tuple[str, ...] = ()
-    tags: tuple[str, ...] = ()
 
 
 def learn_library(
@@ -101,7 +97,7 @@ def learn_library(
     return Library(
         identifier=about.identifier or identifier_from(about.title),
         title=about.title,
-        version=about.version,
+        version=1,
         author=about.author,
         license=about.license,
         actor=body.actor,
@@ -110,9 +106,6 @@ def learn_library(
             for name, frame, tag in zip(names, chosen, tags, strict=True)
         ),
         motions=(motion,),
-        description=about.description,
-        sources=about.sources,
-        tags=about.tags,
     )
 
 

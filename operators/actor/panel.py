@@ -54,7 +54,7 @@ def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     else:
         sentence = label("The actor is gone from the scene")
     draw_sentence(box, context, sentence, "ERROR")
-    box.operator("keymark.restore_actor", icon="LOOP_BACK")
+    box.operator("keymark.apply_lengths", text="Bring Actor Back", icon="LOOP_BACK")
 
 
 class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):

@@ -12,8 +12,8 @@ from ..shell.takes import kept_actions, present_actor
 from .properties import panel_lengths
 
 
-def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> bool:
-    """Bring a take's actor back into the scene, selected; return whether it had to be built anew.
+def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
+    """Bring a take's actor back into the scene, selected.
 
     One that was deleted in the viewport is still in the file and is linked again. Else an armature of the
     scene that the take's Actions animate is the actor; else one is built of the lengths in the panel, with
@@ -23,16 +23,14 @@ def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> 
     if take.armature is not None:
         if present_actor(take) is None:
             scene.collection.objects.link(take.armature)
-        select_alone(context, take.armature)
-        return False
-    actions = kept_actions(take)
-    found = next((each for each in scene.objects if is_actor(each) and _action_of(each) in actions), None)
-    if found is None:
-        new_actor(context, take, Body(Actor(panel_lengths(take.lengths))))
-        return True
-    take.armature = found
-    select_alone(context, found)
-    return False
+    else:
+        actions = kept_actions(take)
+        found = next((each for each in scene.objects if is_actor(each) and _action_of(each) in actions), None)
+        if found is None:
+            new_actor(context, take, Body(Actor(panel_lengths(take.lengths))))
+            return
+        take.armature = found
+    select_alone(context, take.armature)
 
 
 def new_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:

@@ -7,6 +7,5 @@ MODULES = (
     "relocate_clip",
     "confirm_lens",
     "confirm_camera",
-    "camera_from_lines",
     "panel",
 )

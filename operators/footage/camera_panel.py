@@ -49,8 +49,6 @@ def _draw_tools(
     buttons = column.column(align=True)
     buttons.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
     buttons.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT
-    if len(take.follow.files) or len(take.markers):
-        buttons.operator("keymark.camera_from_walk", text="From the Walk", icon="ARMATURE_DATA")
     for index, sentence in enumerate(take.camera_findings.splitlines()):
         draw_sentence(column, context, sentence, "DOT" if index else "CHECKMARK")
 

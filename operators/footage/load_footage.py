@@ -7,7 +7,7 @@ from ..shell.file_browser import browse, chosen_file
 from ..shell.messages import label, say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
-from .occluding_objects import warn_of_occluders
+from .startup_cube import hide_startup_cube
 from .take_footage import (
     IMAGES,
     VIDEOS,
@@ -62,6 +62,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(path))
         give_footage(take, clip)
+        hide_startup_cube(context)
         look_through_camera(context, take)
         show_range(context)
         self._report_footage(context, take)
@@ -84,7 +85,6 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
                 "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
                 lens=take.guessed_lens_mm,
             )
-        warn_of_occluders(self, context, take)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))

@@ -9,6 +9,6 @@ MODULES = (
     "remove_clicks",
     "click_performer",
     "assign_track",
-    "camera_from_walk",
+    "camera_from_lines",
     "panel",
 )

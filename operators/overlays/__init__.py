@@ -3,5 +3,5 @@
 Draw functions use only what is in memory and read no file.
 """
 
-PROPERTIES = ("properties", "timeline_properties")
+PROPERTIES = ("properties",)
 MODULES = ("panel", "mask", "ignored", "registry")

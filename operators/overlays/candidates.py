@@ -106,7 +106,7 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
     """
     scale, names = drawing.ui_scale(), HUMAN.point_names
     heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
-    style = Style(settings.opacity, settings.line_width, scale, body_scale(heights / TALL_M, scale))
+    style = Style(settings.opacity, scale, body_scale(heights / TALL_M, scale))
     width = LIMB * style.width * style.body_scale
     items: list[Item] = []
     taken: list[Array] = []

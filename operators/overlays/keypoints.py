@@ -41,9 +41,7 @@ def picture(
     scale = drawing.ui_scale()
     rows = np.concatenate([view.to_region(each.pixel)[..., 1].ravel() for each in seen])
     height = np.ptp(rows[np.isfinite(rows)]) if np.isfinite(rows).any() else np.nan
-    style = Style(
-        settings.opacity, settings.line_width, scale, body_scale(np.array([height / TALL_M]), scale)
-    )
+    style = Style(settings.opacity, scale, body_scale(np.array([height / TALL_M]), scale))
     sources = all_sources(None, seen)
     items = seen_marks(seen, view.to_region, sources, style)
     if settings.show_legend:

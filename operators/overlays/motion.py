@@ -20,7 +20,7 @@ from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_
 from .paths import paths, window
 from .picture import Item
 from .skeleton import skeleton
-from .style import Style, body_scale
+from .style import PATH_POINTS, UNCERTAIN_M, Style, body_scale
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
@@ -73,16 +73,16 @@ def picture(
     """All enabled items, and their legend."""
     scale = drawing.ui_scale()
     meter = view.pixels_per_meter(what.review, what.index)
-    style = Style(settings.opacity, settings.line_width, scale, body_scale(meter, scale))
+    style = Style(settings.opacity, scale, body_scale(meter, scale))
     items: list[Item] = []
     if settings.show_paths:
-        items += _paths(what, view, settings, style)
+        items += _paths(what, view, style)
     if view.footage is not None:
         items += _outlines(what, view.footage, settings, style)
     seen = _seen(what) if view.footage is not None and settings.show_keypoints else ()
     if settings.show_skeleton:
         (positions,) = view.point_positions(what.review, np.array([what.index]))
-        items += skeleton(what.review, what.index, positions, meter, settings.uncertain_beyond, style)
+        items += skeleton(what.review, what.index, positions, meter, style)
     if view.footage is not None and settings.show_keypoints:
         sources, to_region = all_sources(what.review.keypoints, seen), view.footage.to_region
         items += compared_marks(what.review.keypoints, what.index, to_region, sources, style)
@@ -113,10 +113,10 @@ def _seen(what: Shown) -> tuple[FrameKeypoints, ...]:
     return not_yet_compared(keypoints_at(what.take, frame), what.review.keypoints, what.index)
 
 
-def _paths(what: Shown, view: MotionView, settings: bpy.types.PropertyGroup, style: Style) -> list[Item]:
+def _paths(what: Shown, view: MotionView, style: Style) -> list[Item]:
     review = what.review
-    frames = window(what.index, settings.path_before, settings.path_after, len(review.frames))
-    chosen = [point for point, name in enumerate(review.point_names) if name in settings.path_points]
+    frames = window(what.index, len(review.frames))
+    chosen = [point for point, name in enumerate(review.point_names) if name in PATH_POINTS]
     names = [review.point_names[point] for point in chosen]
     positions = np.swapaxes(view.point_positions(review, frames)[:, chosen], 0, 1)
     return paths(names, positions, frames, what.index, review.keyframe_indices, style)
@@ -143,7 +143,7 @@ def _rows(
     if settings.show_skeleton:
         rows.append((Sample.LEFT, label("Performer's left")))
         rows.append((Sample.RIGHT, label("Performer's right")))
-        if (what.review.sigma_m[what.index] > settings.uncertain_beyond).any():
+        if (what.review.sigma_m[what.index] > UNCERTAIN_M).any():
             rows.append((Sample.RING, label("Uncertain point")))
     if settings.show_paths:
         rows.append((Sample.PAST, label("Path so far")))

@@ -7,12 +7,12 @@ import numpy as np
 from ...core.arrays import Array, IndexArray
 from .figures import circles, dashes, diamonds, segments
 from .picture import Fill, Item, Stroke
-from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, Style, side_color
+from .style import DASH, DIAMOND, DOT, GAP, MIDDLE, PATH_FRAMES, Style, side_color
 
 
-def window(index: int, before: int, after: int, frame_count: int) -> IndexArray:
-    """Indices of the frames from `before` before to `after` after one, within the clip."""
-    return np.arange(max(0, index - before), min(frame_count, index + after + 1))
+def window(index: int, frame_count: int) -> IndexArray:
+    """Indices of a path's frames about one, within the clip."""
+    return np.arange(max(0, index - PATH_FRAMES), min(frame_count, index + PATH_FRAMES + 1))
 
 
 def paths(

@@ -2,8 +2,6 @@
 
 import bpy
 
-from ...core.body.human import HUMAN
-from ..markers.properties import segment_title
 from . import registry
 
 
@@ -50,7 +48,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     )
     show_paths: bpy.props.BoolProperty(
         name="Paths",
-        description="Draw the paths of chosen points: past solid, future dashed, diamonds at keyframes",
+        description="Draw the paths of wrists and ankles: past solid, future dashed, diamonds at keyframes",
         default=False,
         update=_changed,
     )
@@ -67,38 +65,11 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
-    path_points: bpy.props.EnumProperty(
-        name="Points",
-        description="Points whose path is drawn; Shift-click to choose several",
-        items=[(name, segment_title(name), "", 1 << bit) for bit, name in enumerate(HUMAN.point_names)],
-        options={"ENUM_FLAG"},
-        default={"wrist.L", "wrist.R"},
-        update=_changed,
-    )
-    path_before: bpy.props.IntProperty(
-        name="Frames Before",
-        description="Length of the path before the current frame, in frames",
-        default=15,
-        min=0,
-        soft_max=100,
-        update=_changed,
-    )
-    path_after: bpy.props.IntProperty(
-        name="After",
-        description="Length of the path after the current frame, in frames",
-        default=15,
-        min=0,
-        soft_max=100,
-        update=_changed,
-    )
-    uncertain_beyond: bpy.props.FloatProperty(
-        name="Uncertainty",
-        description="Standard deviation above which a point is drawn as a ring within a circle of that size",
-        subtype="DISTANCE",
-        default=0.05,
-        min=0.001,
-        soft_max=0.2,
-        precision=3,
+    show_timeline: bpy.props.BoolProperty(
+        name="In the Timeline",
+        description="Speed in the footage, proposed and found keyframes, confidence and weak frames, in "
+        "Timeline and Dope Sheet",
+        default=True,
         update=_changed,
     )
     opacity: bpy.props.FloatProperty(
@@ -108,16 +79,6 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         default=1.0,
         min=0.0,
         max=1.0,
-        update=_changed,
-    )
-    line_width: bpy.props.FloatProperty(
-        name="Line Width",
-        description="Thickness of lines",
-        subtype="PIXEL",
-        default=1.5,
-        min=0.5,
-        max=8.0,
-        precision=1,
         update=_changed,
     )
 

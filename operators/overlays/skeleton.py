@@ -7,7 +7,7 @@ import numpy as np
 from ...core.arrays import Array, BoolArray
 from .figures import circles, segments
 from .picture import Fill, Item, Stroke
-from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, Style, side_color
+from .style import CORE, CORE_SHARE, JOINT, LIMB, SIDES, UNCERTAIN_M, Style, side_color
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
@@ -30,7 +30,7 @@ LIMBS = (
 
 
 def skeleton(
-    review: "Review", index: int, positions: Array, pixels_per_meter: Array, limit_m: float, style: Style
+    review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
 ) -> list[Item]:
     """The body of one frame.
 
@@ -39,11 +39,10 @@ def skeleton(
         index: Index of the frame.
         positions: (13, 2) region pixels of the points.
         pixels_per_meter: (13,) size of a meter at each point in the region.
-        limit_m: Standard deviation above which a point is uncertain [m].
         style: Colors and sizes.
     """
     sigma = review.sigma_m[index]
-    uncertain = sigma > limit_m
+    uncertain = sigma > UNCERTAIN_M
     colors = np.array([style.color(side_color(name)) for name in review.point_names])
     return [
         *_limbs(review.point_names, positions, style),

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -44,14 +45,20 @@ METER, SMALLEST = 160.0, 0.35
 PALER = 0.5
 """Share of white in the prediction's color, so that dashes show over a solid line."""
 HALO = 0.9
+UNCERTAIN_M = 0.05
+"""Standard deviation above which a point is drawn as a ring within a circle of that size [m]."""
+PATH_POINTS = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
+PATH_FRAMES = 15
+"""Frames of a path before the current one, and after it."""
 
 
 @dataclass(frozen=True)
 class Style:
-    """The animator's settings, and the scales of screen and body."""
+    """The animator's opacity, and the scales of screen and body."""
 
+    width: ClassVar[float] = 1.5
+    """Thickness of lines."""
     opacity: float
-    width: float
     scale: float
     """Screen pixels for each unscaled pixel."""
     body_scale: float = 1.0

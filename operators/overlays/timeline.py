@@ -121,42 +121,41 @@ def draw(context: bpy.types.Context) -> None:
     timeline = timeline_of(context.region, drawing.ui_scale())
     if take is None or timeline is None:
         return
-    paint(picture(context.scene, take, timeline))
+    if context.scene.keymark.overlays.show_timeline:
+        paint(picture(context.scene, take, timeline))
 
 
 def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Timeline) -> list[Item]:
-    """All enabled items that have data."""
-    settings = scene.keymark.timeline
+    """All items that have data."""
     items: list[Item] = []
     speed = _speed(scene, take)
-    if settings.show_speed and speed is not None:
+    if speed is not None:
         items += _drawn(
             f"speed {speed.key} {timeline}", lambda: speed_graph(speed.frames, speed.values, timeline)
         )
     review = review_of(take)
-    if settings.show_confidence and review is not None and np.isfinite(review.confidence).any():
+    if review is not None and np.isfinite(review.confidence).any():
         items += _drawn(
             f"confidence {take.review_key} {timeline}",
             lambda: confidence_strip(review.frames, review.confidence, timeline),
         )
-    weak = [weak.frame for weak in take.review.weak_frames] if settings.show_weak_frames else []
-    proposed = [proposal.frame for proposal in take.proposals] if settings.show_proposals else []
+    weak = [weak.frame for weak in take.review.weak_frames]
+    proposed = [proposal.frame for proposal in take.proposals]
     posed = posed_frames(take) if weak or proposed else ()
     if weak:
         frames = np.array(weak, dtype=np.float64)
         items += weak_pointers(frames[~have_frames(posed, frames)], timeline)
-    shown_speed = speed if settings.show_speed else None
-    matched = matched_frames(take) if settings.show_matches else ()
+    matched = matched_frames(take)
     if proposed:
         frames = np.array(proposed, dtype=np.float64)
         still = frames[~have_frames(matched, frames)]
-        items += proposals(still, _level(still, shown_speed), have_frames(posed, still), timeline)
+        items += proposals(still, _level(still, speed), have_frames(posed, still), timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
         found = take.matching.matches
         doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
         sure = np.array([frame not in doubtful for frame in matched])
-        items += matches(frames, _level(frames, shown_speed), sure, timeline)
+        items += matches(frames, _level(frames, speed), sure, timeline)
     return items
 
 

@@ -5,7 +5,7 @@ import bpy
 from ..markers.properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.messages import label
-from ..shell.panel import RowList, TakePanel, draw_sentence
+from ..shell.panel import RowList, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 
@@ -72,23 +72,4 @@ class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
         row.operator("keymark.jump_to_weak_frame", text="", icon="TRIA_DOWN").direction = "NEXT"
 
 
-class KEYMARK_PT_timeline(TakePanel, bpy.types.Panel):
-    """Overlay of the Timeline."""
-
-    bl_label = "Timeline"
-    bl_parent_id = "KEYMARK_PT_review"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the switches."""
-        timeline, column = context.scene.keymark.timeline, self.column()
-        column.prop(timeline, "show_confidence")
-        column.prop(timeline, "show_weak_frames")
-        column.prop(timeline, "show_speed")
-        column.prop(timeline, "show_proposals")
-        column.prop(timeline, "show_matches")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_weak_frames, KEYMARK_PT_review, KEYMARK_PT_timeline)
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_weak_frames, KEYMARK_PT_review))

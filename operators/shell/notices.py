@@ -1,8 +1,7 @@
 """Notices: what a person must know of a step for as long as it is true, in the panel of that step.
 
 The status bar shows a sentence for some seconds; a notice stays until whoever gave it, or another operator
-that makes it untrue, gives the step's notices anew, until the objects or the keyframe that it is about are
-gone, or until it is dismissed.
+that makes it untrue, gives the step's notices anew, or until the keyframe that it is about is gone.
 """
 
 from collections.abc import Iterable
@@ -11,9 +10,6 @@ import bpy
 
 from .keyed_frames import has_frame, keyframes_of
 from .panel import draw_sentence
-
-SEPARATOR = "\n"
-"""Between names of objects, which are of one line each."""
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
@@ -26,9 +22,6 @@ class KEYMARK_PG_notice(bpy.types.PropertyGroup):
         options={"HIDDEN"},
     )
     text: bpy.props.StringProperty(name="Notice", description="The sentence")
-    objects: bpy.props.StringProperty(
-        name="Objects", description="It holds while one of these objects is visible", options={"HIDDEN"}
-    )
     of_keyframe: bpy.props.BoolProperty(
         name="Of a Keyframe",
         description="It holds while there is a keyframe at its frame",
@@ -44,7 +37,6 @@ def give_notices(
     step: str,
     about: str,
     sentences: Iterable[str] = (),
-    objects: Iterable[str] = (),
     frame: float | None = None,
 ) -> None:
     """Replace the notices about something of a step; none: there is nothing to know any more.
@@ -54,7 +46,6 @@ def give_notices(
         step: The step in whose panel they stand, a name of `steps.STEPS`.
         about: What they are about, by any name: `clip`, `lengths`.
         sentences: The notices, as they are shown.
-        objects: Names of objects; the notices hold while one of them is visible.
         frame: Scene frame of a keyframe; the notices hold while there is one.
     """
     notices = take.notices
@@ -65,37 +56,25 @@ def give_notices(
         entry = notices.add()
         entry.step, entry.about = step, about
         entry.text = sentence
-        entry.objects = SEPARATOR.join(objects)
         entry.of_keyframe, entry.frame = frame is not None, frame or 0.0
 
 
-def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[tuple[int, str]]:
-    """Index and sentence of the notices of a step that hold now."""
+def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[str]:
+    """The sentences of a step that hold now."""
+    posed = keyframes_of(take)
     return [
-        (index, entry.text)
-        for index, entry in enumerate(take.notices)
-        if entry.step == step and _holds(take, entry)
+        entry.text
+        for entry in take.notices
+        if entry.step == step and (not entry.of_keyframe or has_frame(posed, entry.frame))
     ]
-
-
-def _holds(take: bpy.types.PropertyGroup, notice: bpy.types.PropertyGroup) -> bool:
-    if notice.of_keyframe and not has_frame(keyframes_of(take), notice.frame):
-        return False
-    if not notice.objects:
-        return True
-    layer = bpy.context.view_layer.objects
-    named = (layer.get(name) for name in notice.objects.split(SEPARATOR))
-    return any(each is not None and each.visible_get() for each in named)
 
 
 def draw_notices(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup, step: str
 ) -> None:
-    """Draw the notices of a step, each with the button that dismisses it."""
-    for index, sentence in notices_of(take, step):
-        row = layout.row()
-        draw_sentence(row.column(), context, sentence, "ERROR")
-        row.operator("keymark.dismiss_notice", text="", icon="X", emboss=False).index = index
+    """Draw the notices of a step."""
+    for sentence in notices_of(take, step):
+        draw_sentence(layout, context, sentence, "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_notice,))

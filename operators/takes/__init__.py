@@ -7,7 +7,6 @@ MODULES = (
     "save_take",
     "add_performer",
     "remove_take",
-    "dismiss_notice",
     "open_dropped",
     "file_handlers",
     "panel",

@@ -8,7 +8,6 @@ from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.messages import label, tooltip
 from ..shell.requirements import idle, object_mode_possible
-from .startup_cube import hide_startup_cube
 
 AEROBIC, GREETING = "AEROBIC", "GREETING"
 EXAMPLES = (
@@ -88,7 +87,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
             opened = read_for_scene(copy_example(name, Path(bpy.path.abspath(self.directory))))
         else:
             opened = read_for_scene(example_folder(name), POSED_BY_HAND)
-        hide_startup_cube(context)
         open_in_scene(self, context, opened)
 
 

@@ -4,7 +4,6 @@ import bpy
 
 from ..footage.fitted_view import keep_beside_sidebar
 from ..library import registry
-from ..shell.job_progress import job_is_running
 from ..shell.messages import label, pgettext_n
 from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
 from ..shell.takes import find_take
@@ -98,8 +97,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
             box.label(text="A newer Keymark wrote this file", icon="ERROR")
             box.label(text="Update Keymark before editing", icon="BLANK1")
         if take is None:
-            # Installation shows its progress in the panel of libraries; the panel above must not move.
-            if job_is_running(context, "keymark.install_") or not draw_progress(layout, context):
+            if not draw_progress(layout, context):
                 _draw_beginning(layout)
             return
         _draw_takes(layout, context.scene.keymark)

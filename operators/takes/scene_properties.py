@@ -4,7 +4,6 @@ import bpy
 
 from ..footage.take_footage import is_missing
 from ..overlays.properties import KEYMARK_PG_overlays
-from ..overlays.timeline_properties import KEYMARK_PG_timeline
 from ..shell.takes import find_take, show_active_take
 from .take_properties import KEYMARK_PG_take
 
@@ -31,7 +30,6 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
         update=_active_take_changed,
     )
     overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
-    timeline: bpy.props.PointerProperty(type=KEYMARK_PG_timeline)
 
 
 def register() -> None:

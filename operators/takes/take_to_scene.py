@@ -20,7 +20,7 @@ from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
-from ..footage.occluding_objects import warn_of_occluders
+from ..footage.startup_cube import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
 from ..keypoints.keypoint_paths import add_keypoint_file
 from ..markers.ignored_regions import add_ignored_regions
@@ -75,6 +75,7 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
         InputError: Blender cannot read the clip; the scene is unchanged.
     """
     add_take_to_scene(context, opened)
+    hide_startup_cube(context)
     take = active_take(context.scene)
     look_through_camera(context, take)
     show_range(context)
@@ -82,7 +83,6 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     give_notices(take, "footage", "files", notes)
     count = len(opened.take.keyframes)
     say(operator, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
-    warn_of_occluders(operator, context, take)
 
 
 def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:

@@ -73,6 +73,10 @@ DROPPED = (
     "].turntable.",
     "keymark.libraries",  # the library is in its pose assets
     "keymark.active_library",
+    "keymark.timeline.",
+    "keymark.overlays.path_",
+    "keymark.overlays.line_width",
+    "keymark.overlays.uncertain_beyond",
 )
 """Properties of then that nothing needs any more."""
 REPLACED = {"].matching.library_name": "auto", "].matching.library": "auto"}

@@ -1,11 +1,22 @@
 """`keymark library` with its commands: their arguments."""
 
 import argparse
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
 from ..command import Command, CommandGroup
 
 LIBRARY_HELP = "name or file of a library"
+
+
+def _use_case(module: str, function: str) -> Callable[[argparse.Namespace], None]:
+    """A command's function in `use_cases/library`, imported when it runs."""
+
+    def run(arguments: argparse.Namespace) -> None:
+        getattr(import_module(f"..use_cases.library.{module}", __package__), function)(arguments)
+
+    return run
 
 
 def _add_library(parser: argparse.ArgumentParser) -> None:
@@ -22,17 +33,11 @@ def _add_library_file(parser: argparse.ArgumentParser) -> None:
     _add_output(parser, "FILE", "the new library file")
 
 
-def _run_list(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.list_show_check import list_command
-
-    list_command(arguments)
-
-
 LIST = Command(
     name="list",
     summary="list the libraries that can be named",
     description="Lists the libraries that come with Keymark and those in the folders of KEYMARK_LIBRARIES.",
-    run=_run_list,
+    run=_use_case("list_show_check", "list_command"),
 )
 
 
@@ -41,29 +46,17 @@ def _add_show(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sheet", metavar="FILE", type=Path, help="draw all its postures there, a PNG")
 
 
-def _run_show(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.list_show_check import show_command
-
-    show_command(arguments)
-
-
 SHOW = Command(
     name="show",
     summary="say what a library holds",
     description="Says what a library holds, and draws it.",
     add_arguments=_add_show,
-    run=_run_show,
+    run=_use_case("list_show_check", "show_command"),
 )
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", metavar="FILE", type=Path, nargs="+", help="library files")
-
-
-def _run_check(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.list_show_check import check_command
-
-    check_command(arguments)
 
 
 CHECK = Command(
@@ -73,7 +66,7 @@ CHECK = Command(
         "Reads library files as strictly as Keymark always does and says what is wrong with each that is."
     ),
     add_arguments=_add_check,
-    run=_run_check,
+    run=_use_case("list_show_check", "check_command"),
 )
 
 
@@ -95,12 +88,6 @@ def _add_merge(parser: argparse.ArgumentParser) -> None:
     _add_library_file(parser)
 
 
-def _run_merge(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.learn_merge_mirror import merge_command
-
-    merge_command(arguments)
-
-
 MERGE = Command(
     name="merge",
     summary="join two libraries",
@@ -110,7 +97,7 @@ MERGE = Command(
         "postures of the same name get a number."
     ),
     add_arguments=_add_merge,
-    run=_run_merge,
+    run=_use_case("learn_merge_mirror", "merge_command"),
 )
 
 
@@ -122,12 +109,6 @@ def _add_mirror(parser: argparse.ArgumentParser) -> None:
     _add_library_file(parser)
 
 
-def _run_mirror(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.learn_merge_mirror import mirror_command
-
-    mirror_command(arguments)
-
-
 MIRROR = Command(
     name="mirror",
     summary="exchange left and right",
@@ -136,7 +117,7 @@ MIRROR = Command(
         "itself; it is for posing."
     ),
     add_arguments=_add_mirror,
-    run=_run_mirror,
+    run=_use_case("learn_merge_mirror", "mirror_command"),
 )
 
 
@@ -161,12 +142,6 @@ def _add_learn(parser: argparse.ArgumentParser) -> None:
     _add_library_file(parser)
 
 
-def _run_learn(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.learn_merge_mirror import learn_command
-
-    learn_command(arguments)
-
-
 LEARN = Command(
     name="learn",
     summary="make a library of a finished motion",
@@ -175,19 +150,13 @@ LEARN = Command(
         "same kind needs fewer keyframes or none. A motion that repeats itself becomes one average cycle."
     ),
     add_arguments=_add_learn,
-    run=_run_learn,
+    run=_use_case("learn_merge_mirror", "learn_command"),
 )
 
 
 def _add_blend(parser: argparse.ArgumentParser) -> None:
     _add_library(parser)
     _add_output(parser, "DIR", "folder of the assets")
-
-
-def _run_blend(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.blend_read import blend_command
-
-    blend_command(arguments)
 
 
 BLEND = Command(
@@ -198,7 +167,7 @@ BLEND = Command(
         "and the catalog. Needs Blender."
     ),
     add_arguments=_add_blend,
-    run=_run_blend,
+    run=_use_case("blend_read", "blend_command"),
 )
 
 
@@ -208,18 +177,12 @@ def _add_read(parser: argparse.ArgumentParser) -> None:
     _add_library_file(parser)
 
 
-def _run_read(arguments: argparse.Namespace) -> None:
-    from ..use_cases.library.blend_read import read_command
-
-    read_command(arguments)
-
-
 READ = Command(
     name="read",
     summary="read a library from Blender pose assets",
     description="Writes as a library file what `blend` wrote, or what was posed since. Needs Blender.",
     add_arguments=_add_read,
-    run=_run_read,
+    run=_use_case("blend_read", "read_command"),
 )
 
 LIBRARY = CommandGroup(

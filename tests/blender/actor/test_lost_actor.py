@@ -24,7 +24,7 @@ def delete(armature_object: bpy.types.Object) -> None:
         assert bpy.ops.object.delete() == {"FINISHED"}
 
 
-@pytest.mark.parametrize("again", ["restore_actor", "build_actor"])
+@pytest.mark.parametrize("again", ["apply_lengths", "build_actor"])
 @pytest.mark.parametrize("how", ["in the viewport", "from the file"])
 def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, how: str, again: str) -> None:
     """Whether it is in the file still or has to be built: the same lengths, frames and poses."""
@@ -43,8 +43,8 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
     with pytest.raises(RuntimeError, match="Bring the deleted actor back"):
         bpy.ops.keymark.store_keyframe()
 
-    if again == "restore_actor":
-        assert bpy.ops.keymark.restore_actor() == {"FINISHED"}
+    if again == "apply_lengths":
+        assert bpy.ops.keymark.apply_lengths() == {"FINISHED"}
         assert read_body(take.armature, HUMAN).actor.segments_m == pytest.approx(lengths, rel=1e-4)
     else:
         assert bpy.ops.keymark.build_actor(stature=stature) == {"FINISHED"}
@@ -63,7 +63,7 @@ def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opene
     opened.frame_set(FRAME)
     before = posture_of(opened)
     bpy.data.objects.remove(take.armature)
-    bpy.ops.keymark.restore_actor()
+    bpy.ops.keymark.apply_lengths()
     opened.frame_set(FRAME)
     np.testing.assert_allclose(posture_of(opened).minus(before), 0.0, atol=NEAR)
 
@@ -86,15 +86,8 @@ def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.t
     take = active_take(opened)
     actor, count = take.armature, len(bpy.data.objects)
     take.armature = None
-    assert bpy.ops.keymark.restore_actor() == {"FINISHED"}
+    assert bpy.ops.keymark.apply_lengths() == {"FINISHED"}
     assert take.armature == actor and len(bpy.data.objects) == count
-
-
-def test_an_actor_in_the_scene_needs_no_bringing_back(opened: bpy.types.Scene) -> None:
-    """The operator says so."""
-    assert not has_lost_actor(active_take(opened))
-    with pytest.raises(RuntimeError, match="is in the scene"):
-        bpy.ops.keymark.restore_actor()
 
 
 def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:

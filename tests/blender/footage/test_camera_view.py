@@ -3,12 +3,8 @@
 from math import sqrt
 from types import SimpleNamespace
 
-import bpy
 import pytest
-from keymark.core.take.take import Take
 from keymark.operators.footage.camera_view import camera_view, free_box, picture_at_factor_one
-from keymark.operators.footage.occluding_objects import occluding_objects
-from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 REGION = (1000, 600)
@@ -48,27 +44,3 @@ def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fi
         edges.append((center - half - free[axis], free[axis + 2] - center - half))
     assert min(min(pair) for pair in edges) == pytest.approx(12.0)
     assert all(pair[0] == pytest.approx(pair[1]) for pair in edges)
-
-
-def test_what_hides_the_performer_is_named_and_left_alone(tiny_take: Take) -> None:
-    """Blender's cube does; hidden, drawn as wire, behind the camera or beside the picture it does not."""
-    bpy.ops.wm.read_homefile(use_factory_startup=True)
-    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
-    context, cube = bpy.context, bpy.data.objects["Cube"]
-    take = active_take(context.scene)
-
-    def hiding() -> list[str]:
-        context.view_layer.update()
-        return occluding_objects(context, take)
-
-    assert hiding() == ["Cube"]
-    assert cube.visible_get()
-    cube.display_type = "WIRE"
-    assert hiding() == []
-    cube.display_type = "TEXTURED"
-    for location in ((0.0, -50.0, 0.0), (30.0, 0.0, 0.0)):
-        cube.location = location
-        assert hiding() == []
-    cube.location = (0.0, 0.0, 0.0)
-    cube.hide_set(True)
-    assert hiding() == []

@@ -1,4 +1,4 @@
-"""The camera from the walk that a detector's keypoints show."""
+"""The camera from the performer whom a detector's keypoints show upright."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -54,23 +54,25 @@ def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
     take = active_take(bpy.context.scene)
     take.camera.data.lens, take.stature = plain_take.camera.lens_mm, plain_take.body.actor.stature_m
     bpy.ops.keymark.load_keypoints(filepath=str(walking_file(plain_take, FRAMES, tmp_path / "walk.json")))
-    assert bpy.ops.keymark.camera_from_walk() == {"FINISHED"}
+    assert bpy.ops.keymark.camera_from_lines(kind="HEIGHT") == {"FINISHED"}
     take = active_take(bpy.context.scene)
     assert take.camera_height == pytest.approx(HEIGHT_M, abs=0.15)
     assert take.camera_tilt == pytest.approx(TILT, abs=np.radians(2.5))
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="VERTICAL")
     assert take.camera.data.lens == pytest.approx(plain_take.camera.lens_mm) and take.camera_findings
 
 
 def test_who_never_stands_is_no_measure(
     plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion
 ) -> None:
-    """The camera stays as it was, and it is said what to do instead; without keypoints, what lacks."""
-    with pytest.raises(RuntimeError, match="needs more than contours"):
-        bpy.ops.keymark.camera_from_walk()
+    """The camera stays as it was, with keypoints that show nobody upright as without any."""
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
     lying = np.array(wave_motion.points)[..., [2, 1, 0]]
     path = seen_file(plain_take, lying, plain_take.folder / "lying.json")
     bpy.ops.keymark.load_keypoints(filepath=str(path))
     before = active_take(plain).camera_height
-    with pytest.raises(RuntimeError, match="upright in too few frames"):
-        bpy.ops.keymark.camera_from_walk()
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
     assert active_take(plain).camera_height == before

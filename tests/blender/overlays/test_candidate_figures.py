@@ -62,7 +62,7 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
     """But for the one that the frame has, which the actor shows; the number stands where they differ most."""
     points = candidates.candidate_points(active_take(opened).armature, match)
     positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
-    settings = SimpleNamespace(opacity=0.5, line_width=1.5)
+    settings = SimpleNamespace(opacity=0.5)
     for chosen, other in ((0, 1), (1, 0)):
         lines, cores, number = candidates.picture(positions, chosen, settings)
         assert isinstance(lines, Stroke) and len(lines.segments) == 12 and len(cores.segments) == 4
@@ -81,7 +81,7 @@ def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy
     """Of figures in one place each has its number above another joint; where none is free, above one."""
     points = candidates.candidate_points(active_take(opened).armature, match)
     positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
-    settings = SimpleNamespace(opacity=0.5, line_width=1.5)
+    settings = SimpleNamespace(opacity=0.5)
     many = np.concatenate([positions[:1], np.repeat(positions[1:2], 4, axis=0)])
     numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
     places = np.array([[number.x, number.y] for number in numbers])
@@ -97,7 +97,7 @@ def test_points_that_are_not_seen_are_left_out() -> None:
     """A figure behind the viewer is none, and has no number."""
     positions = np.full((2, 13, 2), np.nan)
     positions[0] = np.arange(26.0).reshape(13, 2)
-    lines, cores = candidates.picture(positions, 0, SimpleNamespace(opacity=1.0, line_width=1.5))
+    lines, cores = candidates.picture(positions, 0, SimpleNamespace(opacity=1.0))
     assert len(lines.segments) == len(cores.segments) == 0
 
 

@@ -24,7 +24,7 @@ from keymark.operators.overlays.style import SOURCES, THROWN_OUT, Style
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 
-STYLE = Style(opacity=1.0, width=1.5, scale=1.0)
+STYLE = Style(opacity=1.0, scale=1.0)
 FOOTAGE = FootageView(None, (160, 120), np.array([10.0, 490.0]), np.array([640.0, -480.0]), None)
 KEYPOINTS = made_up_keypoints()
 ALL = all_sources(KEYPOINTS, ())

@@ -50,7 +50,7 @@ def test_what_a_person_opens_stays_open_until_the_step_changes(opened: bpy.types
     assert switches.actor and not switches.finish and "actor" not in folded(take)
     bpy.data.objects.remove(take.armature)
     assert switches.actor  # gone: open in any case
-    bpy.ops.keymark.restore_actor()
+    bpy.ops.keymark.apply_lengths()
     assert switches.actor  # as it was opened
     bpy.ops.keymark.add_performer()
     assert switches.actor and switches.finish  # those of another take

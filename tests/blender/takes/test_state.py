@@ -6,7 +6,6 @@ import bpy
 import keymark
 import pytest
 from keymark.core.take.take import Take
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.shell.takes import VERSION, active_take, add_take
 from keymark.operators.takes.upgrade import ensure_unique_identifiers, is_newer
 
@@ -64,58 +63,6 @@ def test_what_a_newer_keymark_wrote_is_left_alone(tiny_take: Take, tmp_path: Pat
     assert active_take(scene).identifier == ""
     add_take(scene, "Another")
     assert scene.keymark.version == VERSION + 1
-
-
-class OldMarker(bpy.types.PropertyGroup):
-    """A marker as version 0 had it."""
-
-    segment: bpy.props.EnumProperty(items=[("trunk", "", ""), ("head", "", "")])
-    name: bpy.props.StringProperty()
-    color: bpy.props.FloatVectorProperty(size=3)
-
-
-class OldSettings(bpy.types.PropertyGroup):
-    """A scene's settings as version 0 had them, for one performer."""
-
-    armature: bpy.props.PointerProperty(type=bpy.types.Object)
-    stature: bpy.props.FloatProperty()
-    keyframe_action: bpy.props.PointerProperty(type=bpy.types.Action)
-    method: bpy.props.EnumProperty(items=[("map", "", ""), ("ekf", "", "")])
-    markers: bpy.props.CollectionProperty(type=OldMarker)
-
-
-def test_a_file_of_one_performer_becomes_a_take(tmp_path: Path, body, tiny_take: Take) -> None:  # noqa: ANN001
-    """Version 0 kept in the scene what a take keeps now; saved again it stays as it is."""
-    for old in (OldMarker, OldSettings):
-        bpy.utils.register_class(old)
-    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=OldSettings)
-    scene = bpy.context.scene
-    scene.keymark.armature = build_armature(scene, body)
-    scene.keymark.keyframe_action = bpy.data.actions.new("Posed")
-    scene.keymark.stature, scene.keymark.method = 1.62, "ekf"
-    for segment in ("trunk", "head"):
-        marker = scene.keymark.markers.add()
-        marker.name, marker.segment, marker.color = f"my {segment}", segment, (0.25, 0.5, 0.75)
-    scene.active_clip = bpy.data.movieclips.load(str(tiny_take.clip))
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
-    del bpy.types.Scene.keymark
-    for old in (OldSettings, OldMarker):
-        bpy.utils.unregister_class(old)
-    keymark.register()
-    try:
-        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
-        for _ in range(2):
-            take = active_take(bpy.context.scene)
-            assert (take.armature.name, take.keyframe_action.name, take.method) == ("Actor", "Posed", "ekf")
-            assert take.stature == pytest.approx(1.62)
-            assert [marker.name for marker in take.markers] == ["my trunk", "my head"]
-            assert take.markers[0].segment == "trunk"
-            assert tuple(take.markers[1].color) == (0.25, 0.5, 0.75)
-            assert take.clip == bpy.context.scene.active_clip
-            assert (len(bpy.context.scene.keymark.takes), bpy.context.scene.keymark.version) == (1, VERSION)
-            save_and_reopen(tmp_path / "new.blend")
-    finally:
-        keymark.unregister()
 
 
 def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) -> None:

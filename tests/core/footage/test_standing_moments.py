@@ -1,7 +1,6 @@
-"""Moments in which the performer is upright, found in keypoints and in the markers' regions."""
+"""Moments in which the performer is upright, found in keypoints."""
 
 import numpy as np
-import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
@@ -14,14 +13,12 @@ from keymark.core.footage.camera_fit import LENS, fit_camera
 from keymark.core.footage.camera_placement import CameraPlacement
 from keymark.core.footage.default_camera import default_camera_pose
 from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.footage.standing_moments import standing_keypoints, standing_regions
+from keymark.core.footage.standing_moments import standing_keypoints
 
 BODY = Body(Actor.from_stature(1.8))
 SIZE = (640, 480)
 FPS = 30.0
 TRUE = Camera(35.0, 36.0, SIZE, CameraPlacement(1.6, float(np.radians(-8.0)), 0.0).matrix())
-SEGMENTS = ("trunk", "shin.L", "shin.R")
 
 
 def walk(count: int = 120) -> Array:
@@ -101,37 +98,3 @@ def test_single_moments_far_off_change_little() -> None:
     )  # fmt: skip
     fit = fit_camera(before(), CameraEvidence(uprights=wrong), lens_is_known=True)
     assert abs(fit.placement.tilt_rad + np.radians(8.0)) < np.radians(2.5)
-
-
-def test_markers_of_trunk_and_shins_do_as_well() -> None:
-    """By the middles of their segments; without one of the three there is nothing."""
-    points = walk()
-    names = list(HUMAN.point_names)
-
-    def middle(*parts: str) -> Array:
-        return points[:, [names.index(part) for part in parts]].mean(axis=1)
-
-    places = np.stack(
-        [
-            middle("hip.L", "hip.R", "shoulder.L", "shoulder.R"),
-            middle("knee.L", "ankle.L"),
-            middle("knee.R", "ankle.R"),
-        ],
-        axis=1,
-    )
-    count = len(points)
-    tracks = RegionTracks(
-        SEGMENTS,
-        TRUE.project(places)[0],
-        np.tile(np.eye(2), (count, 3, 1, 1)),
-        np.full((count, 3), 100.0),
-        np.ones((count, 3)),
-        np.zeros((count, 3), dtype=bool),
-        np.arange(count) / FPS,
-        SIZE,
-    )
-    seen = standing_regions(tracks, SEGMENTS, BODY, FPS)
-    fit = fit_camera(before(), CameraEvidence(uprights=seen), lens_is_known=True)
-    assert abs(fit.placement.tilt_rad + np.radians(8.0)) < 2.0 * fit.std["tilt"]
-    assert fit.placement.height_m == pytest.approx(1.6, abs=2.0 * fit.std["height"])
-    assert len(standing_regions(tracks, ("trunk", "shin.L", "head"), BODY, FPS)) == 0

@@ -35,8 +35,7 @@ ENGLISH = {
     "operators.shell.lru_cache": "a type",
     "operators.shell.preferences": "the place of an error of core's",
     "operators.shell.takes": "a name of data",
-    "operators.takes.startup_cube": "the name that Blender's startup file gives it",
-    "operators.takes.upgrade": "a name of data",
+    "operators.footage.startup_cube": "the name that Blender's startup file gives it",
 }
 """Modules with texts that stay as they are, and why; `operators.cli` is English throughout."""
 REPORTING = {"operators.shell.messages", "operators.shell.error_reports"}

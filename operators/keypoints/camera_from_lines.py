@@ -1,21 +1,14 @@
 """Find the camera from lines that are drawn over the footage, and from the performer at several places."""
 
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
 
 from ...core.errors import InputError, KeymarkError
-from ..shell.base_operator import BaseOperator
-from ..shell.cancel_on_esc import cancel_click
-from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import FootageView, view_of_footage_under
-from ..shell.messages import label, say, tooltip, warn
-from ..shell.redraw import redraw_footage, redraw_sidebars_soon
-from ..shell.requirements import camera, footage, idle
-from ..shell.takes import active_take
-from .camera_fields import still_camera
-from .drawn_lines import (
+from ..footage.camera_fields import still_camera
+from ..footage.drawn_lines import (
     CLICKED_PX,
     HEIGHT,
     NEAR_PX,
@@ -27,8 +20,20 @@ from .drawn_lines import (
     show,
     store_lines,
 )
-from .found_camera import fit_take, values, write_fit
-from .properties import KINDS
+from ..footage.found_camera import fit_take, values, write_fit
+from ..footage.properties import KINDS
+from ..shell.base_operator import BaseOperator
+from ..shell.cancel_on_esc import cancel_click
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import FootageView, view_of_footage_under
+from ..shell.messages import label, say, tooltip, warn
+from ..shell.redraw import redraw_footage, redraw_sidebars_soon
+from ..shell.requirements import camera, footage, idle
+from ..shell.takes import active_take
+from .standing_performer import standing_performer
+
+if TYPE_CHECKING:
+    from ...core.footage.camera_fit import CameraFit
 
 DONE = {"RET", "NUMPAD_ENTER"}
 REMOVE = {"X", "DEL"}
@@ -40,6 +45,9 @@ REQUESTS = {
     "HEIGHT": "Draw from between the performer's feet to the top of the head, or type another known height",
 }
 PERFORMER_REQUEST = "Click on the floor between the feet, then on the top of the head; type the body height"
+WALK_REQUEST = (
+    "Keypoints show the camera; Enter takes it, or click on the floor between the feet, then on the head"
+)
 KEYS = "{request}   |   Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
 
 
@@ -56,6 +64,8 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     )
 
     _drawing: Any = None
+    _upright: Any = None
+    """Body height, and moments in which keypoints show somebody of that height upright."""
     _place: tuple[int, int] = (0, 0)
 
     @classmethod
@@ -64,7 +74,8 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         if properties.kind == HEIGHT:
             return tooltip(
                 "Find the camera from the performer: click on the floor between the feet, then on the top of "
-                "the head, where the performer stands upright; in other frames too, nearer and farther away"
+                "the head, where the performer stands upright; in other frames too, nearer and farther away; "
+                "keypoints of somebody who stands or walks do so as well"
             )
         return tooltip(
             "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
@@ -134,14 +145,14 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     def _find(self, context: bpy.types.Context) -> None:
         """Find the camera anew, show it, and ask for the next line."""
         drawing = self._drawing
-        with_ends, drawing.fit = drawing.complete, None
-        if with_ends:
-            try:
-                drawing.fit = fit_take(active_take(context.scene), evidence_of(with_ends, drawing.stature_m))
-            except KeymarkError as error:
-                warn(self, error.sentence)
-        by_performer = drawing.of_performer and drawing.kind == HEIGHT
-        wanted = label(PERFORMER_REQUEST if by_performer else REQUESTS[drawing.kind])
+        drawing.fit = None
+        try:
+            drawing.fit = self._fit(active_take(context.scene), drawing.complete, drawing.stature_m)
+        except KeymarkError as error:
+            warn(self, error.sentence)
+        wanted = label(REQUESTS[drawing.kind])
+        if drawing.of_performer and drawing.kind == HEIGHT:
+            wanted = label(PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST)
         request = label(KEYS, request=wanted)
         context.workspace.status_text_set(request)
         redraw_footage(context)
@@ -150,13 +161,13 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
         take, lines = active_take(context.scene), self._drawing.complete
         before = read_lines(take), take.stature
-        stature = self._drawing.stature_m
+        stature, found = self._drawing.stature_m, lines or self._drawing.fit is not None
         self.cancel(context)
-        if not lines and not before[0]:
+        if not found and not before[0]:
             return {"CANCELLED"}
         store_lines(take, lines)
         take.stature = stature
-        done = self.execute(context) if lines else {"FINISHED"}
+        done = self.execute(context) if found else {"FINISHED"}
         if "CANCELLED" in done:
             store_lines(take, before[0])
             take.stature = before[1]
@@ -172,18 +183,28 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
-        """Find the camera from the lines that the take keeps, and set it.
+        """Find the camera from the lines that the take keeps, or the performer's keypoints, and set it.
 
         Raises:
-            InputError: There are no lines, or they say nothing of the camera.
+            InputError: There is neither, or they say nothing of the camera.
         """
         take = active_take(context.scene)
-        lines = read_lines(take)
-        if not lines:
+        fit = self._fit(take, read_lines(take), take.stature)
+        if fit is None:
             raise InputError("take '{take}' has no lines to find its camera by; draw some", take=take.name)
-        fit = fit_take(take, evidence_of(lines, take.stature))
         write_fit(take, fit)
         say(self, "INFO", "{values}", values=values(fit))
+
+    def _fit(
+        self, take: bpy.types.PropertyGroup, lines: list[DrawnLine], stature_m: float
+    ) -> "CameraFit | None":
+        """The camera by lines, and by keypoints where the performer tells it; None without any."""
+        evidence = evidence_of(lines, stature_m)
+        if self.kind == HEIGHT:
+            if self._upright is None or self._upright[0] != stature_m:
+                self._upright = stature_m, standing_performer(take, stature_m)
+            evidence = replace(evidence, uprights=evidence.uprights + self._upright[1])
+        return fit_take(take, evidence) if lines or len(evidence.uprights) else None
 
     def _view(self, context: bpy.types.Context) -> FootageView | None:
         """The view of the footage under the mouse."""

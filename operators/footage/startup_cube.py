@@ -1,4 +1,4 @@
-"""The cube of Blender's startup file, which stands where an example's performer does."""
+"""The cube of Blender's startup file, which stands where the performer does."""
 
 import bpy
 
