@@ -6,8 +6,8 @@ through the clip by a hidden Markov model over whole postures and headings, and 
 probable become likelier. A part that the library has wrong is left to the evidence: the belief is bounded.
 """
 
-from collections.abc import Sequence
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np

@@ -12,7 +12,6 @@ SWITCHES = (
     "keypoints",
     "skeleton",
     "candidates",
-    "occluders",
     "paths",
     "floor_grid",
     "timeline",
