@@ -1,12 +1,13 @@
 """Keyframe libraries of what was posed: of keyframes, and of pose assets."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.body.actor import Actor
 from ....core.body.heading import headings_rad, turned_and_shifted
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Body
@@ -80,26 +81,26 @@ def library_of_assets(
         )
     library = found.get(identifier) or next(iter(found.values()), None)
     body = None if armature_object is None else read_body(armature_object, HUMAN)
-    loose = {} if body is None else dict(_loose(local, body))
+    loose = [] if body is None else list(_loose(local, body))
     if library is None:
         if body is None or not loose:
             raise InputError("this file has no pose assets of a library, and none of the take's actor")
         library = _empty(body, about)
     entries = list(library.postures)
-    for name, posture in loose.items():
-        given = transferred(_leveled(body, Posture.stack([posture])), body.actor, Body(library.actor))
-        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), given[0]))
+    for name, actor, posture in loose:
+        given = transferred(posture, actor, Body(library.actor))
+        entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), given))
     return _checked(replace(library, postures=tuple(entries)))
 
 
-def _loose(actions: Iterable[bpy.types.Action], body: Body) -> Iterable[tuple[str, Posture]]:
-    """Names and postures of pose assets of a body that belong to no library."""
+def _loose(actions: Iterable[bpy.types.Action], body: Body) -> Iterator[tuple[str, Actor, Posture]]:
+    """Names, proportions and leveled postures of pose assets of a body that belong to no library."""
     for action in actions:
         first, last = action.curve_frame_range
         if action.asset_data is not None and not is_posture(action) and first == last:
             posture = read_posture_curves(action, body)
             if posture is not None:
-                yield action.name, posture
+                yield action.name, body.actor, _leveled(body, Posture.stack([posture]))[0]
 
 
 def _leveled(body: Body, postures: Posture) -> Posture:
