@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from ..roles import ARM, LEG, MIDDLE
 from .vocabulary import (
@@ -59,7 +59,7 @@ class NameReading:
     unsided: str
     """The name with the side's word replaced, equal for a pair's two names."""
 
-    @property
+    @cached_property
     def clear_part(self) -> str | None:
         """The part that the name speaks for most; None where it speaks for none."""
         part = max(self.scores, key=lambda name: self.scores[name])
