@@ -21,6 +21,8 @@ SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
 """Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
 MANY, FEW = 150, 40
 """Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
+CLOSE = 12.0
+"""Frames whose limbs fit worse than the best frame's by more than this are passed over."""
 NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
 """Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
 SAME_JOINT = 0.02
@@ -63,7 +65,13 @@ def best_figure(frames: list[Frame]) -> Figure | None:
     chains = _find_chains(frames[0]) if frames else None
     if chains is None or not len(chains.bones):
         return None
-    figures = [figure for frame in frames if (figure := _figure(frame, chains)) is not None]
+    quick = [
+        (_leg_fits(frame, chains) + _names_of(frame, chains, LEG[:3])).max()
+        + (_arm_fits(frame, chains) + _names_of(frame, chains, ARM[1:])).max()
+        for frame in frames
+    ]
+    close = [frame for frame, fit in zip(frames, quick, strict=True) if fit > max(quick) - CLOSE]
+    figures = [figure for frame in close if (figure := _figure(frame, chains)) is not None]
     return max(figures, key=lambda figure: figure.score, default=None)
 
 
@@ -191,8 +199,12 @@ def _arm_fits(frame: Frame, chains: _Chains) -> Array:
 def _line_fit(frame: Frame, chain: IndexArray) -> float:
     """How little the bones that are left out bend the limb, and that it is no strand of several alike."""
     bones, place = frame.bones, frame.place
-    parts = [reading.clear_part for reading in bones.readings]
     found = 0.0
+
+    def same_part(one: int, other: int) -> bool:
+        part = bones.readings[one].clear_part
+        return part is not None and bones.readings[other].clear_part == part
+
     for top, low in zip(chain[:2], chain[1:], strict=True):
         line = place[low] - place[top]
         between = int(bones.parent[low]) if low >= 0 else int(top)
@@ -200,12 +212,12 @@ def _line_fit(frame: Frame, chain: IndexArray) -> float:
             off = place[between] - place[top]
             off = off - line * float(np.clip(off @ line / max(float(line @ line), 1e-9), 0.0, 1.0))
             found -= 0.3 + min(20.0 * _length(off) / max(_length(line), 1e-5), 3.0)
-            found -= 2.0 if parts[low] and parts[between] == parts[low] else 0.0
+            found -= 2.0 * same_part(low, between)
             between = int(bones.parent[between])
     top = int(chain[0])
     above = int(bones.parent[top])
     if above >= 0 and frame.one_side[above]:
-        found -= 2.0 if parts[top] and parts[above] == parts[top] else 0.0
+        found -= 2.0 * same_part(top, above)
         lower = place[above, 2] > place[top, 2] and place[low, 2] < place[top, 2]
         found -= 2.0 if lower and place[above, 0] > 0.6 * place[top, 0] else 0.0
     while bones.parent[top] >= 0 and frame.one_side[bones.parent[top]]:

@@ -4,7 +4,7 @@ import re
 import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from ..roles import ARM, LEG, MIDDLE
 from .vocabulary import (
@@ -23,6 +23,8 @@ NO_PART = -4.0
 """Score of every part where the name speaks for something that plays no role."""
 CLEAR = 1.0
 """Score from which a name speaks for a part."""
+UNKNOWN = 3
+"""As many words as this a letter counts that is no word."""
 LONGEST_NAME = 120
 """Characters of a name that are read; Blender's own names hold 63 bytes."""
 
@@ -57,7 +59,7 @@ class NameReading:
     unsided: str
     """The name with the side's word replaced, equal for a pair's two names."""
 
-    @property
+    @cached_property
     def clear_part(self) -> str | None:
         """The part that the name speaks for most; None where it speaks for none."""
         part = max(self.scores, key=lambda name: self.scores[name])
@@ -73,8 +75,6 @@ def read_name(name: str) -> NameReading:
     meaning = tuple(word for word in words if word not in SIDE_WORDS)
     mechanism = any(word in MECHANISM_WORDS for word in meaning)
     other = any(word in OTHER_WORDS for word in meaning)
-    trunk_other = mechanism or any(word in OTHER_WORDS - LIMB_HELPERS for word in meaning)
-    limb_other = mechanism or other
     trunk = _part_scores(meaning, TRUNK_WORDS, MIDDLE)
     limb = _part_scores(meaning, LIMB_WORDS, (*ARM, *LEG))
     of_trunk, of_limb = any(trunk.values()), any(limb.values())
@@ -82,9 +82,9 @@ def read_name(name: str) -> NameReading:
         trunk = dict.fromkeys(MIDDLE, OTHER_PART)
     if of_trunk and not of_limb:
         limb = dict.fromkeys(limb, OTHER_PART)
-    if trunk_other:
+    if mechanism or any(word in OTHER_WORDS - LIMB_HELPERS for word in meaning):
         trunk = dict.fromkeys(MIDDLE, NO_PART)
-    if limb_other:
+    if mechanism or other:
         limb = dict.fromkeys(limb, NO_PART)
     return NameReading(words, side, {**trunk, **limb}, mechanism, other, _unsided(name))
 
@@ -99,42 +99,23 @@ def _words(name: str) -> tuple[str, ...]:
 
 
 def _taken_apart(piece: str) -> list[str]:
-    """A piece as words of the vocabulary, the fewest; itself where that does not work."""
+    """A piece as words of the vocabulary, the fewest; itself where that does not work.
+
+    In scripts without spaces what is no word is left out.
+    """
     if piece in _VOCABULARY:
         return [piece]
-    best: list[list[str] | None] = [[]]
+    best: list[tuple[int, list[str]] | None] = [(0, [])]
     for end in range(1, len(piece) + 1):
-        ways = [
-            [*before, piece[start:end]]
-            for start in range(max(0, end - _LONGEST_WORD), end)
-            if (before := best[start]) is not None and _may_stand(piece, start, end)
-        ]
-        best.append(min(ways, key=len) if ways else None)
-    whole = best[-1]
-    if whole is not None:
-        return whole
-    return [piece] if _LATIN.fullmatch(piece) else _known_inside(piece)
-
-
-def _may_stand(piece: str, start: int, end: int) -> bool:
-    """Whether a part of a compound is a word there; single letters are, as sides, only at its ends."""
-    word = piece[start:end]
-    if word not in _VOCABULARY:
-        return False
-    return len(word) > 1 or not word.isascii() or (word in SIDE_WORDS and (start == 0 or end == len(piece)))
-
-
-def _known_inside(piece: str) -> list[str]:
-    """Known words in a text without spaces, the longest first."""
-    found = []
-    at = 0
-    while at < len(piece):
-        lengths = range(min(_LONGEST_WORD, len(piece) - at), 0, -1)
-        length = next((n for n in lengths if piece[at : at + n] in _VOCABULARY), 0)
-        if length:
-            found.append(piece[at : at + length])
-        at += max(length, 1)
-    return found or [piece]
+        ways = [] if _LATIN.fullmatch(piece) or best[-1] is None else [(best[-1][0] + UNKNOWN, best[-1][1])]
+        for start in range(max(0, end - _LONGEST_WORD), end):
+            before, word = best[start], piece[start:end]
+            at_end = start == 0 or end == len(piece)  # only there single letters are words: those of sides
+            if before is not None and word in _VOCABULARY:
+                if len(word) > 1 or not word.isascii() or (word in SIDE_WORDS and at_end):
+                    ways.append((before[0] + 1, [*before[1], word]))
+        best.append(min(ways, key=lambda way: way[0], default=None))
+    return best[-1][1] if best[-1] is not None and best[-1][1] else [piece]
 
 
 def _part_scores(

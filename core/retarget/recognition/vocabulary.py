@@ -10,109 +10,72 @@ SIDE_WORDS: Mapping[str, str] = {
     **dict.fromkeys(("r", "right", "rgt", "rt", "右", "droite", "rechts", "der", "destra", "dx"), "R"),
 }
 
-TRUNK_WORDS: Mapping[tuple[str, ...], Mapping[str, float]] = {
-    ("hips",): {"hips": 3.0},
-    ("hip",): {"hips": 2.0},
-    ("pelvis",): {"hips": 2.8},
-    ("lower", "body"): {"hips": 2.5},
-    ("lower", "torso"): {"hips": 2.5},
-    ("upper", "torso"): {"spine": 3.0},
-    ("下半身",): {"hips": 2.0},
-    ("腰",): {"hips": 1.5},
-    ("センター",): {"hips": 1.0},
-    ("cog",): {"hips": 1.0},
-    ("骨盤",): {"hips": 3.0},
-    ("root",): {"hips": 0.5},
-    ("torso",): {"spine": 1.5, "hips": 0.5},
-    ("trunk",): {"spine": 1.5, "hips": 0.0},
-    ("body",): {"spine": 0.5, "hips": 0.5},
-    ("spine",): {"spine": 2.5, "hips": 1.5, "neck": 1.5, "head": 0.5},
-    ("chest",): {"spine": 3.0},
-    ("upper", "chest"): {"spine": 3.0},
-    ("upper", "body"): {"spine": 3.0},
-    ("lower", "back"): {"spine": 3.0},
-    ("back",): {"spine": 2.0},
-    ("waist",): {"spine": 2.0, "hips": 0.0},
-    ("abdomen",): {"spine": 3.0},
-    ("stomach",): {"spine": 2.0},
-    ("belly",): {"spine": 1.0},
-    ("thorax",): {"spine": 3.0},
-    ("lumbar",): {"spine": 3.0},
-    ("ribcage",): {"spine": 2.5},
-    ("ribs",): {"spine": 2.0},
-    ("rib", "cage"): {"spine": 2.5},
-    ("上半身",): {"spine": 3.0},
-    ("胸",): {"spine": 2.0},
-    ("neck",): {"neck": 3.0, "head": 0.0},
-    ("cervical",): {"neck": 2.5},
-    ("首",): {"neck": 3.0},
-    ("head",): {"head": 3.0},
-    ("skull",): {"head": 2.5},
-    ("cranium",): {"head": 2.5},
-    ("頭",): {"head": 3.0},
-    ("头",): {"head": 3.0},
-}
+Entries = Mapping[tuple[str, ...], Mapping[str, float]]
+"""By words that stand together the scores of parts."""
+
+
+def _entries(alone: Mapping[str, Mapping[float, str]], shared: Mapping[str, Mapping[str, float]]) -> Entries:
+    """Entries of words that speak for one part, by part and score, and of those that speak for several."""
+    found = {
+        tuple(words.split("+")): {part: score}
+        for part, scores in alone.items()
+        for score, listed in scores.items()
+        for words in listed.split()
+    }
+    return found | {tuple(words.split("+")): scores for words, scores in shared.items()}
+
+
+TRUNK_WORDS = _entries(
+    {
+        "hips": {
+            3.0: "hips 骨盤",
+            2.8: "pelvis",
+            2.5: "lower+body lower+torso",
+            2.0: "hip 下半身",
+            1.5: "腰",
+            1.0: "センター cog",
+            0.5: "root",
+        },
+        "spine": {
+            3.0: "upper+torso chest upper+chest upper+body lower+back abdomen thorax lumbar 上半身",
+            2.5: "ribcage rib+cage",
+            2.0: "back stomach ribs 胸",
+            1.0: "belly",
+        },
+        "neck": {3.0: "首", 2.5: "cervical"},
+        "head": {3.0: "head 頭 头", 2.5: "skull cranium"},
+    },
+    {
+        "torso": {"spine": 1.5, "hips": 0.5},
+        "trunk": {"spine": 1.5, "hips": 0.0},
+        "body": {"spine": 0.5, "hips": 0.5},
+        "spine": {"spine": 2.5, "hips": 1.5, "neck": 1.5, "head": 0.5},
+        "waist": {"spine": 2.0, "hips": 0.0},
+        "neck": {"neck": 3.0, "head": 0.0},
+    },
+)
 """Parts of the trunk by words that stand together; other parts of the trunk are then unlikely."""
 
-LIMB_WORDS: Mapping[tuple[str, ...], Mapping[str, float]] = {
-    ("clavicle",): {"shoulder": 3.0},
-    ("clav",): {"shoulder": 3.0},
-    ("collar",): {"shoulder": 3.0},
-    ("collar", "bone"): {"shoulder": 3.0},
-    ("scapula",): {"shoulder": 1.5},
-    ("girdle",): {"shoulder": 1.5},
-    ("shoulder",): {"shoulder": 2.0, "upper_arm": 1.2},
-    ("肩",): {"shoulder": 3.0},
-    ("shldr",): {"upper_arm": 2.5, "shoulder": 0.5},
-    ("upper", "arm"): {"upper_arm": 3.0},
-    ("up", "arm"): {"upper_arm": 3.0},
-    ("humerus",): {"upper_arm": 3.0},
-    ("bicep",): {"upper_arm": 1.5},
-    ("arm",): {"upper_arm": 2.0, "forearm": 0.5, "shoulder": -0.5, "hand": -0.5},
-    ("腕",): {"upper_arm": 3.0},
-    ("上腕",): {"upper_arm": 3.0},
-    ("fore", "arm"): {"forearm": 3.0},
-    ("lower", "arm"): {"forearm": 3.0},
-    ("low", "arm"): {"forearm": 3.0},
-    ("elbow",): {"forearm": 2.5},
-    ("radius",): {"forearm": 2.0},
-    ("ulna",): {"forearm": 1.5},
-    ("ひじ",): {"forearm": 3.0},
-    ("肘",): {"forearm": 3.0},
-    ("前腕",): {"forearm": 3.0},
-    ("hand",): {"hand": 2.8},
-    ("wrist",): {"hand": 3.0},
-    ("palm",): {"hand": 1.0},
-    ("手首",): {"hand": 3.0},
-    ("手",): {"hand": 2.5},
-    ("thigh",): {"thigh": 3.0},
-    ("upper", "leg"): {"thigh": 3.0},
-    ("up", "leg"): {"thigh": 3.0},
-    ("femur",): {"thigh": 3.0},
-    ("hip",): {"thigh": 2.0},
-    ("leg",): {"thigh": 1.2, "shin": 1.2, "foot": -0.5, "toe": -0.5},
-    ("足",): {"thigh": 2.0, "foot": 0.0},
-    ("太もも",): {"thigh": 3.0},
-    ("shin",): {"shin": 3.0},
-    ("calf",): {"shin": 3.0},
-    ("lower", "leg"): {"shin": 3.0},
-    ("low", "leg"): {"shin": 3.0},
-    ("knee",): {"shin": 2.5},
-    ("tibia",): {"shin": 3.0},
-    ("ひざ",): {"shin": 3.0},
-    ("膝",): {"shin": 3.0},
-    ("すね",): {"shin": 3.0},
-    ("foot",): {"foot": 2.5, "toe": 0.8},
-    ("feet",): {"foot": 2.0},
-    ("ankle",): {"foot": 2.8},
-    ("足首",): {"foot": 3.0},
-    ("toe",): {"toe": 2.8},
-    ("toes",): {"toe": 3.0},
-    ("toe", "base"): {"toe": 3.0},
-    ("ball",): {"toe": 2.5},
-    ("つま先",): {"toe": 3.0},
-    ("足先",): {"toe": 2.0},
-}
+LIMB_WORDS = _entries(
+    {
+        "shoulder": {3.0: "clavicle clav collar collar+bone 肩", 1.5: "scapula girdle"},
+        "upper_arm": {3.0: "upper+arm up+arm humerus 腕 上腕", 1.5: "bicep"},
+        "forearm": {3.0: "fore+arm lower+arm low+arm ひじ 肘 前腕", 2.5: "elbow", 2.0: "radius", 1.5: "ulna"},
+        "hand": {3.0: "wrist 手首", 2.8: "hand", 2.5: "手", 1.0: "palm"},
+        "thigh": {3.0: "thigh upper+leg up+leg femur 太もも", 2.0: "hip"},
+        "shin": {3.0: "shin calf lower+leg low+leg tibia ひざ 膝 すね", 2.5: "knee"},
+        "foot": {3.0: "足首", 2.8: "ankle", 2.0: "feet"},
+        "toe": {3.0: "toes toe+base つま先", 2.8: "toe", 2.5: "ball", 2.0: "足先"},
+    },
+    {
+        "shoulder": {"shoulder": 2.0, "upper_arm": 1.2},
+        "shldr": {"upper_arm": 2.5, "shoulder": 0.5},
+        "arm": {"upper_arm": 2.0, "forearm": 0.5, "shoulder": -0.5, "hand": -0.5},
+        "leg": {"thigh": 1.2, "shin": 1.2, "foot": -0.5, "toe": -0.5},
+        "足": {"thigh": 2.0, "foot": 0.0},
+        "foot": {"foot": 2.5, "toe": 0.8},
+    },
+)
 """Parts of a limb by words that stand together; other parts of limbs are then unlikely."""
 
 MECHANISM_WORDS = frozenset(
