@@ -11,10 +11,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from queue import Empty
 from types import FrameType
-from typing import Protocol
 
 from ....core.errors import ConversionError
 from ....core.shoot.outcomes import CRASH
+from .batch_outcomes import BatchOutcomes
 from .protocol import BUSY, FAILED, Done, Job, Message, Ready, Step
 from .worker_process import START_TIMEOUT_S, Events, WorkerProcess
 
@@ -26,19 +26,6 @@ SHORTEST_BACKOFF_S, LONGEST_BACKOFF_S = 0.5, 10.0
 """Wait before the retry of a job that another process is at work on; it doubles with each retry."""
 LONGEST_WAIT_S = 1.0
 """For the next event: on Windows no signal is handled meanwhile."""
-
-
-class PoolListener(Protocol):
-    """Receives the events of a pool."""
-
-    def job_progressed(self, job: Job, step: Step) -> None:
-        """A worker has progressed with a job."""
-
-    def job_requeued(self, job: Job, reason: str) -> None:
-        """A job goes to the end of the queue, to be retried."""
-
-    def job_finished(self, job: Job, done: Done) -> None:
-        """A job has ended."""
 
 
 @dataclass(eq=False)
@@ -56,7 +43,7 @@ class WorkerPool:
         self,
         jobs: Sequence[Job],
         words: Sequence[str],
-        listener: PoolListener,
+        outcomes: BatchOutcomes,
         heartbeat_timeout_s: float,
         debug: bool,
     ) -> None:
@@ -65,13 +52,13 @@ class WorkerPool:
         Args:
             jobs: In the order in which they are handed out.
             words: The command that starts a worker.
-            listener: Receives progress and results.
+            outcomes: Receives progress and results.
             heartbeat_timeout_s: Longest time between two messages [s].
             debug: Whether the workers' standard error is shown.
         """
         self._queue = deque(_QueuedJob(job) for job in jobs)
         self._words, self._debug = words, debug
-        self._listener = listener
+        self._outcomes = outcomes
         self._heartbeat_timeout_s = heartbeat_timeout_s
         self._events: Events = Events()
         self._workers: dict[WorkerProcess, _QueuedJob | None] = {}
@@ -157,7 +144,7 @@ class WorkerPool:
             self._lose(worker, worker.exit_description())
         elif queued is not None and isinstance(message, Step):
             worker.deadline = time.monotonic() + self._heartbeat_timeout_s
-            self._listener.job_progressed(queued.job, message)
+            self._outcomes.job_progressed(queued.job, message)
         elif queued is not None and isinstance(message, Done):
             worker.rest()
             self._workers[worker] = None
@@ -169,10 +156,10 @@ class WorkerPool:
 
     def _finish(self, queued: _QueuedJob, done: Done) -> None:
         if done.result != BUSY:
-            self._listener.job_finished(queued.job, done)
+            self._outcomes.job_finished(queued.job, done)
             return
         if not queued.busy_answers:
-            self._listener.job_requeued(queued.job, f"{done.error}; it is waited for")
+            self._outcomes.job_requeued(queued.job, f"{done.error}; it is waited for")
         backoff_s = min(SHORTEST_BACKOFF_S * 2.0 ** min(queued.busy_answers, 10), LONGEST_BACKOFF_S)
         queued.not_before = time.monotonic() + backoff_s
         queued.busy_answers += 1
@@ -191,12 +178,12 @@ class WorkerPool:
         queued.lost_workers += 1
         if queued.lost_workers < MOST_ATTEMPTS:
             self._queue.append(queued)
-            self._listener.job_requeued(
+            self._outcomes.job_requeued(
                 queued.job, f"the process that converted it {how}; it is tried once more"
             )
         else:
             error = f"the process that converted it {how}, and so did the one that tried again"
-            self._listener.job_finished(queued.job, Done(FAILED, error=error, kind=CRASH))
+            self._outcomes.job_finished(queued.job, Done(FAILED, error=error, kind=CRASH))
 
     @contextmanager
     def _interruptible(self) -> Iterator[None]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from ..usage import program_name
-from .protocol import LONGEST_BYTES, Job, read_message
+from .protocol import LONGEST_BYTES, Job, Message, read_message
 
 SCRIPT = Path(__file__).with_name("start_worker.py")
 START_TIMEOUT_S = 300.0
@@ -23,9 +23,6 @@ TERMINATION_GRACE_S = 10.0
 """Time that a worker has to clean up after SIGTERM."""
 STDERR_TAIL_BYTES = 2000
 """Read of what a worker has written on standard error, to say why it ended."""
-
-Events = SimpleQueue["tuple[WorkerProcess, Message | None] | None"]
-"""Messages of workers, None for the end of one; None alone where a signal asks the batch to end."""
 
 
 def worker_command_line() -> list[str]:
@@ -42,7 +39,7 @@ def worker_command_line() -> list[str]:
 class WorkerProcess:
     """A running worker; a thread of its own reads its messages."""
 
-    def __init__(self, words: Sequence[str], debug: bool, events: Events) -> None:
+    def __init__(self, words: Sequence[str], debug: bool, events: "Events") -> None:
         """Start a worker.
 
         Raises:
@@ -65,7 +62,7 @@ class WorkerProcess:
         self._reader = threading.Thread(target=self._read, args=(events,), daemon=True)
         self._reader.start()
 
-    def _read(self, events: Events) -> None:
+    def _read(self, events: "Events") -> None:
         stream = self._process.stdout
         assert stream is not None
         with stream:
@@ -134,3 +131,7 @@ class WorkerProcess:
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout_s)
         return self._process.returncode is not None
+
+
+Events = SimpleQueue[tuple[WorkerProcess, Message | None] | None]
+"""Messages of workers, None for the end of one; None alone where a signal asks the batch to end."""
