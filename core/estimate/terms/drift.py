@@ -16,9 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from .term import NormalEquations, student_cost, student_weight
-
-DEGREES = 4.0
+from .term import DEGREES, NormalEquations, student_cost, student_weight
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,9 +13,7 @@ from ...observation.depth_links import DepthLinks
 from ...observation.keypoints import KeypointModel
 from ..clip_state import ClipState
 from .keypoints import KeypointTerm
-from .term import NormalEquations, student_cost, student_weight
-
-DEGREES = 4.0
+from .term import DEGREES, NormalEquations, student_cost, student_weight
 
 
 @dataclass(frozen=True, eq=False)

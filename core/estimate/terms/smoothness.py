@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..clip_state import ClipState
-from .term import NormalEquations, student_cost
+from .term import DEGREES, NormalEquations, student_cost
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 
@@ -22,8 +22,6 @@ class SmoothnessTerm:
 
     std: float
     """Usual size at the clip's own pace."""
-    degrees: float = 4.0
-    """Degrees of freedom of a limb's acceleration; fewer allow more bursts."""
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -34,7 +32,7 @@ class SmoothnessTerm:
         information = np.empty_like(second)
         for limb in state.prior.skeleton.limbs:
             squared = (second[:, limb] ** 2).sum(axis=1, keepdims=True)
-            information[:, limb] = self.degrees / (self.degrees + squared)
+            information[:, limb] = DEGREES / (DEGREES + squared)
         information /= self.std**2
         columns = slice(0, second.shape[1])
         equations.matrix.add_combination(columns, SECOND_DIFFERENCE, information)
@@ -50,5 +48,5 @@ class SmoothnessTerm:
         second = np.diff(state.variation, n=2, axis=0) / self.std
         for limb in state.prior.skeleton.limbs:
             # Weighed by all of a limb's components together, as `add_to` does.
-            cost[1:-1] += student_cost((second[:, limb] ** 2).sum(axis=1), self.degrees, 1)
+            cost[1:-1] += student_cost((second[:, limb] ** 2).sum(axis=1), DEGREES, 1)
         return cost
