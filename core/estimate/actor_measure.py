@@ -40,6 +40,7 @@ from .frame_residuals import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .performer_placement import ground_place
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
+from .terms.term import DEGREES
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
@@ -224,10 +225,10 @@ class _Problem:
     def cost(self, x: Array) -> float:
         """Negative logarithm of the probability of x, up to a constant."""
         rows = self._rows(x)
-        degrees, image = RegionNoise().degrees, 0.0
+        image = 0.0
         for residual, information in rows.groups:
             squared = (residual**2 * information).sum(-1)
-            image += student_cost(squared, degrees, residual.shape[-1]).sum()
+            image += student_cost(squared, DEGREES, residual.shape[-1]).sum()
         return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * rows.height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
@@ -301,7 +302,7 @@ class _Problem:
         normal, gradient = np.zeros((len(x), len(x))), np.zeros(len(x))
         for (residual, information), jacobian in zip(rows.groups, by_x, strict=True):
             squared = (residual**2 * information / temperature).sum(-1)
-            trust = student_weight(squared, RegionNoise().degrees, residual.shape[-1])[:, None]
+            trust = student_weight(squared, DEGREES, residual.shape[-1])[:, None]
             weight = np.broadcast_to(information / temperature * trust, residual.shape)
             flat = jacobian.reshape(-1, len(x))
             normal += (flat.T * weight.ravel()) @ flat

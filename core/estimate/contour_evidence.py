@@ -27,6 +27,7 @@ from .contour_search import NARROW, Edges, SearchRange, find_edges
 from .keyframe_evidence import evenly_spread
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, ContourTerm
 from .terms.limb_axes import AxialTerm
+from .terms.term import DEGREES
 
 APPEARANCE_FRAMES = 32
 CHUNK_FRAMES = 50
@@ -45,7 +46,6 @@ AXIAL_MEMORY_S = 0.3
 toward or away from the camera."""
 LEAST_FRAME_SHARE = 0.1
 """Least share of frames with a picture."""
-DEGREES_OF_FREEDOM = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,10 +248,7 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
         rows, noise = rate[own], variance[own]
         wanted = distance[own] + rows @ model.shape[part]
         scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a meter
-        weight = (
-            student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES_OF_FREEDOM, 1)
-            / noise
-        )
+        weight = student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
     assert shape.shape[1] == SHAPE

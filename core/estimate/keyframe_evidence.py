@@ -32,13 +32,13 @@ from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, 
 from .posing_error import POINT_STD_M, posing_covariance, velocities
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
+from .terms.term import DEGREES
 
 LEAST_TRUSTED = 0.3
 """Least visibility and quality of a region that judges a keyframe."""
 MOST_JUDGED = 60
 """Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters."""
 ITERATIONS = 4
-DEGREES = 4.0
 SCALES = np.geomspace(0.1, 2.5, 17)
 """Sizes of the posing error tried, relative to a person's usual one."""
 SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2

@@ -134,15 +134,14 @@ def keypoint_rows(
     )
 
 
-def place_covariance(names: tuple[str, ...], sources: tuple[str, ...] | None = None) -> Array:
+def place_covariance(names: tuple[str, ...]) -> Array:
     """(3 N, 3 N) prior covariance of the places' departure from the usual ones [m²]."""
     count = len(names)
     std = np.array([USUAL_PLACES[name].place_std_m for name in names])
     shared = np.eye(count)
     for first, name in enumerate(names):
         for second, other in enumerate(names):
-            alike = sources is None or sources[first] == sources[second]
-            if first != second and alike and other == mirrored_point(name):
+            if first != second and other == mirrored_point(name):
                 shared[first, second] = MIRRORED
     shared *= std[:, None] * std
     covariance = np.zeros((count, 3, count, 3))

@@ -5,8 +5,6 @@ is, how the performer and the background look, and where markers are that were l
 and the states follow it.
 """
 
-from dataclasses import dataclass
-
 from ..arrays import BoolArray
 from ..body.posture import Posture
 from ..footage.clips.album import Album
@@ -22,16 +20,6 @@ from .warm_start import changed_gaps
 from .windows import Window
 
 
-@dataclass(frozen=True, eq=False)
-class Refinement:
-    """A clip's problem and the states of its windows, with all that was learned from the footage."""
-
-    problem: ClipProblem
-    states: list[ClipState]
-    contours: ContourEvidence | None = None
-    """The look of performer and background; None where no background can be trusted."""
-
-
 def refine(
     problem: ClipProblem,
     spans: list[Window],
@@ -40,7 +28,7 @@ def refine(
     anew: BoolArray,
     contours: ContourEvidence | None,
     earlier: ClipProblem | None = None,
-) -> Part[Refinement]:
+) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
     """Learn from the footage what the keyframes could not tell.
 
     Args:
@@ -54,6 +42,10 @@ def refine(
 
     Yields:
         The fraction done, from 0 to 1.
+
+    Returns:
+        Problem and states with all that was learned, and the look of performer and background; None where no
+        background can be trusted.
     """
     problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
     problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)
@@ -64,7 +56,7 @@ def refine(
     if contours is not None and len(problem.evidence.model.placements):
         looking = find_lost(problem, spans, states, contours, anew)
         problem = yield from scaled(looking, 0.5, 1.0)
-    return Refinement(problem, states, contours)
+    return problem, states, contours
 
 
 def _learned(

@@ -15,6 +15,7 @@ from ..arrays import Array, BoolArray, IndexArray
 from ..footage.keypoints.body_points import mirror_images
 from ..footage.keypoints.keypoints import Keypoints
 from ..numerics.robust import multivariate_cost
+from .terms.term import DEGREES
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
@@ -33,7 +34,6 @@ ALIKE = 0.5
 """The points of a limb err alike: each counts as half."""
 CHANGE = 1.0 / 60.0
 """Probability that limbs begin or cease to be exchanged, a frame."""
-DEGREES = 4.0
 SLIDING_S = 0.07
 """Before and after a change: a detector that follows limbs slides from one to the other for a while."""
 

@@ -279,8 +279,7 @@ def _solve_windows(
         refining = refine(problem, spans, states, album, anew, contours)
     else:
         refining = refine(problem, spans, states, album, anew, earlier.contours, earlier.problem)
-    refined = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
-    problem, states, contours = refined.problem, refined.states, refined.contours
+    problem, states, contours = yield from scaled(refining, MARKERS_SHARE, REFINED_SHARE)
     dofs = problem.body.skeleton.dof_count
     covariance = np.empty((problem.frames, dofs, dofs)) if earlier is None else earlier.covariance.copy()
     outlined = None if earlier is None or earlier.outlined is None else earlier.outlined.copy()

@@ -9,13 +9,12 @@ from ...arrays import Array, BoolArray
 from ...numerics.robust import student_cost, student_weight
 from ...observation.contours import SHARES, SIDES, ContourModel, ContourPrediction
 from ..clip_state import ClipState
-from .term import NormalEquations
+from .term import DEGREES, NormalEquations
 
 SURFACE_SHARE = 0.2
 """Standard deviation of a part's contour as a whole, of its half-width: clothes, muscles."""
 PIXEL_STD = 0.6
 """The same in pixels of the pictures: blur and light."""
-DEGREES = 4.0
 ALIKE = len(SHARES) * len(SIDES)
 """The samples of a part err together: all of them weigh as much as one."""
 

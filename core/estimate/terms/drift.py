@@ -17,9 +17,7 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...numerics.robust import student_cost, student_weight
-from .term import NormalEquations
-
-DEGREES = 4.0
+from .term import DEGREES, NormalEquations
 
 
 @dataclass(frozen=True, eq=False)

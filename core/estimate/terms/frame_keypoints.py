@@ -14,9 +14,7 @@ from ...observation.depth_links import DepthLinks
 from ...observation.keypoints import KeypointModel
 from ..clip_state import ClipState
 from .keypoints import KeypointTerm
-from .term import NormalEquations
-
-DEGREES = 4.0
+from .term import DEGREES, NormalEquations
 
 
 @dataclass(frozen=True, eq=False)

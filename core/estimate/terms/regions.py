@@ -15,7 +15,7 @@ from ...footage.region_tracks import RegionTracks
 from ...numerics.robust import student_cost, student_weight
 from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
-from .term import NormalEquations
+from .term import DEGREES, NormalEquations
 
 FEATURES = 5
 """Rows of one marker: centroid x, y and three of shape."""
@@ -43,8 +43,6 @@ class RegionNoise:
     bias_centroid_share: float = 0.20
     bias_shape_share: float = 0.14
     bias_time_s: float = 0.67
-    degrees: float = 4.0
-    """Student's t degrees of freedom of a marker's rows."""
     least_visible: float = 0.15
     """Least predicted visibility of a region that is compared."""
 
@@ -225,7 +223,7 @@ class RegionTerm:
         squared = np.nan_to_num(residual) ** 2 * information
         cost = np.zeros(squared.shape[:2])
         for group in GROUPS:
-            cost += student_cost(squared[..., group].sum(-1), self.noise.degrees, group.stop - group.start)
+            cost += student_cost(squared[..., group].sum(-1), DEGREES, group.stop - group.start)
         contradicted = np.isfinite(self.observed.centroid[..., 0]) & (information[..., 0] == 0.0)
         return np.asarray(np.where(contradicted, CONTRADICTED * self.observed.quality, cost).sum(-1))
 
@@ -235,9 +233,7 @@ class RegionTerm:
         squared = np.where(information > 0.0, np.nan_to_num(residual) ** 2 * information, 0.0)
         for group in GROUPS:
             size = group.stop - group.start
-            information[..., group] *= student_weight(squared[..., group].sum(-1), self.noise.degrees, size)[
-                ..., None
-            ]
+            information[..., group] *= student_weight(squared[..., group].sum(-1), DEGREES, size)[..., None]
         return np.asarray(information)
 
     def _information(self, residual: Array, predicted: RegionPrediction) -> Array:

@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import Array
 from ...numerics.robust import student_cost, student_weight
 from ..clip_state import ClipState
-from .term import NormalEquations
+from .term import DEGREES, NormalEquations
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 
@@ -23,8 +23,6 @@ class SmoothnessTerm:
 
     std: float
     """Usual size at the clip's own pace."""
-    degrees: float = 4.0
-    """Degrees of freedom of a limb's acceleration; fewer allow more bursts."""
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -35,7 +33,7 @@ class SmoothnessTerm:
         information = np.empty_like(second)
         for limb in state.prior.skeleton.limbs:
             squared = (second[:, limb] ** 2).sum(axis=1, keepdims=True)
-            information[:, limb] = student_weight(squared, self.degrees, 1)
+            information[:, limb] = student_weight(squared, DEGREES, 1)
         information /= self.std**2
         columns = slice(0, second.shape[1])
         equations.matrix.add_combination(columns, SECOND_DIFFERENCE, information)
@@ -51,5 +49,5 @@ class SmoothnessTerm:
         second = np.diff(state.variation, n=2, axis=0) / self.std
         for limb in state.prior.skeleton.limbs:
             # Weighed by all of a limb's components together, as `add_to` does.
-            cost[1:-1] += student_cost((second[:, limb] ** 2).sum(axis=1), self.degrees, 1)
+            cost[1:-1] += student_cost((second[:, limb] ** 2).sum(axis=1), DEGREES, 1)
         return cost
