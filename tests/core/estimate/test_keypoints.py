@@ -39,12 +39,14 @@ def estimate(
     tracks: RegionTracks = BARE,
     prior: Posture = PRIOR,
     camera: Camera = CAMERA,
-    **more: object,
+    match_scale: np.ndarray | None = None,
+    earlier: WholeClipResult | None = None,
 ) -> WholeClipResult:
     """The estimate of the exercise."""
     worn = SEGMENTS if tracks.names else ()
     seen = Seen(tracks, worn, keypoints)
-    job = estimate_whole_clip(BODY, camera, seen, Believed(prior, POSED), **more)
+    believed = Believed(prior, POSED, match_scale)
+    job = estimate_whole_clip(BODY, camera, seen, believed, earlier=earlier)
     return run(job)
 
 
