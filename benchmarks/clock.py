@@ -16,11 +16,6 @@ def processor_time(work: Callable[[], object]) -> float:
     return time.process_time() - start
 
 
-def least_time(work: Callable[[], object]) -> float:
-    """Shortest processor time of a few runs [s], which other load lengthens least."""
-    return min(processor_time(work) for _ in range(REPEATS))
-
-
 def peak_memory_mb() -> float:
     """Peak resident memory of this process [MB of 2^20 bytes]."""
     if STATUS.is_file():  # elsewhere a process may inherit the peak of the one that started it
