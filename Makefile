@@ -87,7 +87,7 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
 	@echo "== Without Blender: about two minutes on two quiet cores"
-	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
+	@.venv-dev/bin/python -m pytest $(two_at_a_time) $(or $(TESTS),tests/core)
 
 # What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.
 .PHONY: test-faults
