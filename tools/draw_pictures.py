@@ -27,8 +27,6 @@ from pictures.shipped_libraries import draw_libraries  # noqa: E402
 from pictures.table import MADE, MOVING, SCREENSHOTS, SHOWN_WIDTH, Screenshot  # noqa: E402
 from pictures.writing import read_picture, reduced, write_picture  # noqa: E402
 
-MOST_BYTES = 200_000
-
 
 def main(arguments: list[str]) -> int:
     """Draw the pictures that are named."""
@@ -75,7 +73,7 @@ def _makers(results: Results, screenshots: Path) -> dict[str, Callable[[Path], N
 
 
 def _write(draw: Callable[[], Image], path: Path) -> None:
-    write_picture(path, draw(), MOST_BYTES)
+    write_picture(path, draw())
 
 
 def _cut(screenshot: Screenshot, screenshots: Path) -> Image:
