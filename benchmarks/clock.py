@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-REPEATS = 3
 STATUS = Path("/proc/self/status")
 
 
