@@ -7,7 +7,7 @@ OUTPUT ?= out/demo
 TAKE ?= presets/demo/aerobic
 TESTS ?=
 ZIPS ?=
-BENCHMARKS ?= extraction camera accuracy evidence keyframe_economy sensitivity matching posing_all posing_economy frame_poses posing suggestions finishing retargeting again waiting batch check
+BENCHMARKS ?= camera accuracy evidence keyframe_economy sensitivity matching posing_all frame_poses finishing retargeting waiting batch
 
 find_python := sh tools/find_python.sh
 # Variables, because a comma would end an argument of `call`.
@@ -87,7 +87,7 @@ test: .venv-test/ready .venv-test-313/ready ## run the tests in Blender 4.5 and,
 .PHONY: test-core
 test-core: .venv-dev/ready ## run the tests that need no Blender
 	@echo "== Without Blender: about two minutes on two quiet cores"
-	@.venv-dev/bin/python -m pytest $(two_at_a_time) tests/core
+	@.venv-dev/bin/python -m pytest $(two_at_a_time) $(or $(TESTS),tests/core)
 
 # What `make test` does a little of, in earnest: processes are killed, inputs broken, by the hundred.
 .PHONY: test-faults
@@ -136,7 +136,7 @@ package: .venv-test/ready ## build the extension's zips, one a platform and Pyth
 	@.venv-test/bin/python tools/build_package.py $(ZIPS)
 
 .PHONY: bench
-bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, the workflow, waiting and batches
+bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libraries, finishing, waiting and batches
 	@for name in $(BENCHMARKS); do echo "== $$name"; .venv-test/bin/python benchmarks/$$name.py || exit $$?; done
 
 .PHONY: clean

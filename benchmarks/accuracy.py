@@ -5,13 +5,11 @@ Usage: accuracy.py [TAKE ...] [--plot] with names or folders of takes; by defaul
 
 import argparse
 import json
-import re
 import sys
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from charts import COLORS, Curve, Labels, draw_chart
 from takes import chosen_takes, load_project, write_results
 from trials import INTERPOLATIONS, Trial, read_trial
 
@@ -25,8 +23,6 @@ KEYFRAMES = {"exact": "keyframes.json", "by hand": "keyframes_noisy.json"}
 ESTIMATES = ("ekf", "map")
 METHODS = (*INTERPOLATIONS, *ESTIMATES)
 MEASURES = ("mpjpe", "rooted", "depth", "worst_p95", "jitter", "skate", "coverage95")
-DRAWN = {"prior": "interpolation", "ekf": "ekf", "map": "map"}
-"""Methods whose error over time is drawn, with the name of each one's chart color."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +30,6 @@ class Measured:
     """Errors of one method on one take."""
 
     score: Score
-    distance_mm: Array
-    """(F, 13) distance from the true points."""
     points_mm: dict[str, float]
     """Mean distance over the scored frames, by point."""
 
@@ -61,20 +55,7 @@ def _held_against(trial: Trial, points: Array, sigma_m: Array | None = None) -> 
     distance = 1e3 * np.linalg.norm(points - trial.truth, axis=-1)
     free = np.delete(distance, trial.unscored, axis=0)
     by_point = dict(zip(HUMAN.point_names, free.mean(axis=0).round(3).tolist(), strict=True))
-    return Measured(trial.score(points, sigma_m), distance, by_point)
-
-
-def draw(name: str, trial: Trial, found: dict[str, Measured]) -> None:
-    """Draw the error of every frame, with dashed lines at the keyframes."""
-    frame = trial.take.frame_start + np.arange(len(trial.truth), dtype=np.float64)
-    curves = [
-        Curve(method, frame, found[method].distance_mm.mean(axis=1), COLORS[drawn])
-        for method, drawn in DRAWN.items()
-    ]
-    keyframes = [trial.take.frame_start + index for index in trial.take.keyframe_indices]
-    labels = Labels(f"Error over time: {name}", "scene frame; dashed: keyframes", "mean of 13 points [mm]")
-    file = "accuracy_" + re.sub(r"\W+", "_", name)
-    draw_chart(file, labels, curves, marks=keyframes)
+    return Measured(trial.score(points, sigma_m), by_point)
 
 
 def table(results: Results) -> str:
@@ -128,10 +109,9 @@ def point_table(results: Results) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print and write the results; draw them with --plot."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
-    parser.add_argument("--plot", action="store_true", help="draw each take's error over time")
     options = parser.parse_args(arguments)
     results: Results = {}
     for name, folder in chosen_takes(options.takes).items():
@@ -139,10 +119,7 @@ def main(arguments: list[str]) -> int:
         for posed, file in KEYFRAMES.items():
             if (folder / file).is_file():
                 print(f"{name}, keyframes {posed} ...", file=sys.stderr, flush=True)
-                trial = read_trial(folder, folder / file)
-                results[name][posed] = measure(trial)
-                if options.plot:
-                    draw(f"{name}, {posed}", trial, results[name][posed])
+                results[name][posed] = measure(read_trial(folder, folder / file))
     as_dictionaries = {
         name: {posed: {m: one.to_dict() for m, one in found.items()} for posed, found in by_keyframes.items()}
         for name, by_keyframes in results.items()

@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-REPEATS = 3
 STATUS = Path("/proc/self/status")
 
 
@@ -14,11 +13,6 @@ def processor_time(work: Callable[[], object]) -> float:
     start = time.process_time()
     work()
     return time.process_time() - start
-
-
-def least_time(work: Callable[[], object]) -> float:
-    """Shortest processor time of a few runs [s], which other load lengthens least."""
-    return min(processor_time(work) for _ in range(REPEATS))
 
 
 def peak_memory_mb() -> float:

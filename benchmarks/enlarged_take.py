@@ -13,15 +13,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import cv2
 import imageio_ffmpeg
-from long_clip import lengthened
 from takes import load_project
 
 load_project()
 
 from keymark.core.files.json_file import write_json  # noqa: E402
 from keymark.core.footage.camera import Camera  # noqa: E402
+from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.take.evidence_kinds import CONTOURS, MARKERS  # noqa: E402
+from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take, write_take  # noqa: E402
 
 Size = tuple[int, int]
@@ -29,6 +31,38 @@ KEYPOINTS = "keypoints.json"
 ENCODED = ("-pix_fmt", "yuv420p", "-c:v", "libx264", "-preset", "superfast", "-b:v", "17M", "-bf", "0")
 """H.264 of a telephone's bit rate; no picture depends on a later one, so that the stream can be repeated."""
 NOISE = "noise=alls=6:allf=t"
+
+
+def lengthened(folder: Path, repeats: int, place: Path) -> Path:
+    """Make a take that plays `folder`'s clip `repeats` times, forward and backward in turn."""
+    take = read_take(folder)
+    images, capture = [], cv2.VideoCapture(str(take.clip))
+    while True:
+        ok, image = capture.read()
+        if not ok:
+            break
+        images.append(image)
+    count = len(images)
+    place.mkdir()
+    video = cv2.VideoWriter(
+        str(place / "clip.mp4"), cv2.VideoWriter.fourcc(*"mp4v"), take.fps, take.camera.resolution
+    )
+    keyframes = []
+    for turn in range(repeats):
+        backwards = turn % 2 == 1
+        for image in reversed(images) if backwards else images:
+            video.write(image)
+        for keyframe in take.keyframes:
+            index = count - 1 - keyframe.index if backwards else keyframe.index
+            keyframes.append(Keyframe(turn * count + index, keyframe.posture))
+    video.release()
+    keyframes.sort(key=lambda keyframe: keyframe.index)
+    long = Take(
+        place, place / "clip.mp4", take.fps, take.frame_start, count * repeats, take.camera, take.body,
+        take.markers, tuple(keyframes),
+    )  # fmt: skip
+    write_take(long, place)
+    return place
 
 
 def enlarged(folder: Path, size: Size, frames: int, place: Path) -> Path:

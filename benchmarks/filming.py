@@ -28,14 +28,26 @@ from keymark.core.take.evidence import with_evidence  # noqa: E402
 from keymark.core.take.evidence_kinds import CONTOURS, MARKERS  # noqa: E402
 from keymark.core.take.examples import AEROBIC, POSED_BY_HAND, example_folder  # noqa: E402
 from make_takes import make  # noqa: E402
-from pictures.filming_scenes import ALIKE  # noqa: E402
 from studio.catalogue.demonstration import DEMONSTRATION  # noqa: E402
 from studio.described import Described  # noqa: E402
+from studio.look import Look  # noqa: E402
 from studio.viewpoint import look_at  # noqa: E402
 
 DEMO = example_folder(AEROBIC)
 FOLDER = ROOT / "out" / "filming"
 SEED = 5
+ALIKE = Look(
+    colors={
+        "trunk": (150, 120, 92),
+        "forearm.L": (206, 170, 140),
+        "forearm.R": (198, 160, 134),
+        "shin.L": (128, 100, 84),
+        "shin.R": (118, 96, 84),
+    },
+    cloth_m={"trunk": 0.036, "forearm": 0.024, "shin": 0.034},
+    folds=0.2,
+)
+"""Clothes in the colors of skin, floor and each other."""
 SHARP = replace(DEMONSTRATION, side=None, detected=False, moments=1, shutter_frames=0.1, samples=1)
 ABOVE = look_at((0.55, -2.9, 3.4), (0.24, 0.05, 0.95), 47.0, DEMONSTRATION.camera.resolution)
 DIM, NOISE = 0.3, 9.0

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from charts import COLORS, Curve, Labels, draw_chart
 from keyframing import exact_postures, hand_posed, keyed, spread_frames
 from takes import chosen_takes, write_results
 from threshold import needed_for
@@ -108,20 +107,8 @@ def shown(needed: float | None, densities: list[float]) -> str:
     return f"< {needed:.1f}" if needed <= densities[0] else f"{needed:.1f}"
 
 
-def draw(name: str, measured: dict[str, Any], takes: int) -> None:
-    """Draw the mean curves."""
-    x = np.array(measured["densities"])
-    curves = [
-        Curve(f"{method}, {posed}", x, np.array(errors), COLORS[method], points)
-        for posed, points in zip(POSED, ("full", "hollow"), strict=True)
-        for method, errors in measured["mpjpe"][posed].items()
-    ]
-    labels = Labels(f"Mean error of {takes} takes", "keyframes per 100 frames", "mpjpe [mm]")
-    draw_chart(name, labels, curves, level=LIMIT_MM, x_ticks=PER_100_FRAMES)
-
-
 def main(arguments: list[str]) -> int:
-    """Measure, print, write and draw the results."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     parser.add_argument(
@@ -137,7 +124,6 @@ def main(arguments: list[str]) -> int:
     results = {name: add_needed(found) for name, found in takes.items()}
     results["**mean**"] = add_needed(mean_of(takes, methods))
     name = "keyframe_economy_snapped" if options.snap else "keyframe_economy"
-    draw(name, results["**mean**"], len(takes))
     write_results(name, table(results), json.dumps(results, indent=1))
     return 0
 

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from charts import Pair, draw_pairs
 from keyframing import exact_postures, hand_posed, keyed, random_source
 from mistakes import doubled_speed, hidden, mistimed, posed_through_lens, with_lens, with_segments
 from takes import chosen_takes, write_results
@@ -140,7 +139,7 @@ def table(mean: dict[str, Errors], takes: dict[str, dict[str, Errors]]) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Measure, print, write and draw the results."""
+    """Measure, print and write the results."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("takes", nargs="*", metavar="TAKE", help="names or folders of takes with truth")
     takes: dict[str, dict[str, Errors]] = {}
@@ -148,8 +147,6 @@ def main(arguments: list[str]) -> int:
         print(f"{name} ...", file=sys.stderr, flush=True)
         takes[name] = {row.wrong: errors_of(row.trials) for row in rows_of(read_trial(folder))}
     mean = mean_of(takes)
-    pairs = [Pair(row, *errors["mpjpe"].values()) for row, errors in mean.items()]
-    draw_pairs("sensitivity", f"Mean error of {len(takes)} takes [mm]", METHODS, pairs)
     write_results("sensitivity", table(mean, takes), json.dumps({**takes, "**mean**": mean}, indent=1))
     return 0
 

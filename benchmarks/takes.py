@@ -37,13 +37,7 @@ def take_names(plain: bool = False) -> dict[str, Path]:
     """
     named = [Path(place) for place in os.environ.get(NAMED_PLACES, "").split(os.pathsep) if place]
     found: dict[str, Path] = {}
-    for place in (
-        GIVEN_PLACES[0],
-        ROOT / "out" / "takes",
-        *named,
-        PLAIN_PLACE,
-        GIVEN_PLACES[1],
-    ):
+    for place in (GIVEN_PLACES[0], ROOT / "out" / "takes", *named, PLAIN_PLACE, GIVEN_PLACES[1]):
         for truth in sorted(place.glob("*/truth.json")):
             name = truth.parent.name
             if plain or has_markers(truth.parent):

@@ -19,17 +19,13 @@ from _boot import load_package  # noqa: E402
 load_package()
 
 from keymark.core.arrays import Image  # noqa: E402
-from pictures.batch_page import draw_batch_page  # noqa: E402
 from pictures.comparison import draw_comparison  # noqa: E402
-from pictures.filming import draw_filming  # noqa: E402
 from pictures.listing import write_featured, write_icon  # noqa: E402
 from pictures.moving import draw_moving_picture  # noqa: E402
 from pictures.results import Results  # noqa: E402
 from pictures.shipped_libraries import draw_libraries  # noqa: E402
-from pictures.table import ALL, FILMING, MOVING, POINTS, SCREENSHOTS, SHOWN_WIDTH, Screenshot  # noqa: E402
+from pictures.table import MADE, MOVING, SCREENSHOTS, SHOWN_WIDTH, Screenshot  # noqa: E402
 from pictures.writing import read_picture, reduced, write_picture  # noqa: E402
-
-MOST_BYTES, MOST_FILMING_BYTES = 200_000, 80_000
 
 
 def main(arguments: list[str]) -> int:
@@ -39,9 +35,9 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--output", type=Path, default=ROOT / "docs" / "pictures")
     parser.add_argument("--screenshots", type=Path, default=ROOT / "build" / "screenshots")
     chosen = parser.parse_args(arguments)
-    names = [name for name in ALL if name.startswith(tuple(chosen.names) or "")]
+    names = [name for name in MADE if name.startswith(tuple(chosen.names) or "")]
     if not names:
-        parser.error(f"no picture is called {', '.join(chosen.names)}; there are {', '.join(ALL)}")
+        parser.error(f"no picture is called {', '.join(chosen.names)}; there are {', '.join(MADE)}")
     taken = [name for name in names if name in SCREENSHOTS]
     for name in taken:  # before the long work: what is missing is said at once
         SCREENSHOTS[name].file(chosen.screenshots)
@@ -60,7 +56,6 @@ def main(arguments: list[str]) -> int:
 def _makers(results: Results, screenshots: Path) -> dict[str, Callable[[Path], None]]:
     """What draws each picture into a file."""
     drawn: dict[str, Callable[[], Image]] = {
-        "batch_summary.jpg": lambda: draw_batch_page(results.folder),
         "character.jpg": lambda: read_picture(results.character / "report" / "character.png"),
         "comparison.jpg": draw_comparison,
         "libraries.jpg": draw_libraries,
@@ -71,16 +66,14 @@ def _makers(results: Results, screenshots: Path) -> dict[str, Callable[[Path], N
         "listing_featured.jpg": partial(write_featured, results),
     }
     for name, draw in drawn.items():
-        makers[name] = partial(_write, draw, MOST_BYTES)
-    for point in POINTS:
-        makers[f"{FILMING}{point}.jpg"] = partial(_write, partial(draw_filming, point), MOST_FILMING_BYTES)
+        makers[name] = partial(_write, draw)
     for name, screenshot in SCREENSHOTS.items():
-        makers[name] = partial(_write, partial(_cut, screenshot, screenshots), MOST_BYTES)
+        makers[name] = partial(_write, partial(_cut, screenshot, screenshots))
     return makers
 
 
-def _write(draw: Callable[[], Image], most_bytes: int, path: Path) -> None:
-    write_picture(path, draw(), most_bytes)
+def _write(draw: Callable[[], Image], path: Path) -> None:
+    write_picture(path, draw())
 
 
 def _cut(screenshot: Screenshot, screenshots: Path) -> Image:

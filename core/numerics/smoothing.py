@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 
 
 def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
@@ -13,7 +13,7 @@ def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
     return float(np.median(advancing)) if len(advancing) else otherwise
 
 
-def columns_at(at: Array, known: Array, values: Array) -> Array:
+def columns_at(at: Array | IndexArray, known: Array | IndexArray, values: Array) -> Array:
     """Columns (K, N) known at rising places (K,), interpolated linearly at (F,), as (F, N); flat beyond."""
     return np.stack([np.interp(at, known, column) for column in np.asarray(values).T], axis=-1)
 

@@ -1,7 +1,5 @@
 """An anti-aliased picture to draw on, in pixels with fractions."""
 
-from collections.abc import Sequence
-
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -121,16 +119,11 @@ def write_png(path: str, image: Image) -> None:
     Raises:
         OSError: The file cannot be written.
     """
-    _write(path, image, ".png", [cv2.IMWRITE_PNG_COMPRESSION, 4])
-
-
-def write_jpg(path: str, image: Image) -> None:
-    """Write a picture as JPEG; unlike OpenCV's own writer to any path on any system.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    _write(path, image, ".jpg", [cv2.IMWRITE_JPEG_QUALITY, 85])
+    done, data = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, 4])
+    if not done:
+        raise OSError(f"{path}: the picture cannot be encoded")
+    with open(path, "wb") as file:
+        file.write(data.tobytes())
 
 
 def _fixed(points: Array) -> NDArray[np.int32]:
@@ -138,14 +131,6 @@ def _fixed(points: Array) -> NDArray[np.int32]:
     limit = 2.0**14  # far outside every picture; more would overflow
     clipped = np.clip(points * SCALE - 0.5, -limit, limit)
     return np.round(clipped * 2**SUBPIXEL_BITS).astype(np.int32)[:, None]
-
-
-def _write(path: str, image: Image, kind: str, options: Sequence[int]) -> None:
-    done, data = cv2.imencode(kind, image, options)
-    if not done:
-        raise OSError(f"{path}: the picture cannot be encoded")
-    with open(path, "wb") as file:
-        file.write(data.tobytes())
 
 
 def _width(thickness: float) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..review.compared_keypoints import ComparedKeypoints
-from .canvas import GRAY, INK, WHITE, Canvas, Color
+from .canvas import GRAY, WHITE, Canvas, Color
 from .captions import ascii_text, truncated
 
 SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
@@ -57,28 +57,18 @@ def draw_keypoint_legend(
     canvas: Canvas, keypoints: ComparedKeypoints, left: float, right: float, y: float
 ) -> None:
     """Explain the marks on a line with its baseline at `y` that ends at `right`; nothing if it lacks room."""
-    entries: list[tuple[str, str, Color]] = [
-        ("seen", f"keypoint of {truncated(ascii_text(source), LONGEST_SOURCE, 8.0)}", color)
-        for source in dict.fromkeys(keypoints.sources)
-        for color in (source_color(keypoints, source),)
+    names = [
+        truncated(ascii_text(source), LONGEST_SOURCE, 8.0) for source in dict.fromkeys(keypoints.sources)
     ]
-    entries.append(("predicted", "where the motion puts it", INK))
-    if keypoints.thrown_out.any():
-        entries.append(("thrown out", "not believed", THROWN_OUT))
-    if keypoints.swapped.any():
-        entries.append(("swapped", "left and right exchanged", INK))
-    widths = [canvas.text_width(words, 8.0) + 34.0 for _, words, _ in entries]
-    x = right - sum(widths) + 20.0
+    words = [("Cross: keypoint of", GRAY)]
+    words += [(name, SOURCE_COLORS[index % len(SOURCE_COLORS)]) for index, name in enumerate(names)]
+    words.append(("slanting: not believed; boxed: sides exchanged; ring: where the motion puts it", GRAY))
+    x = right - sum(canvas.text_width(word, 8.0) + 8.0 for word, _ in words)
     if x < left:
         return
-    for (kind, words, color), width in zip(entries, widths, strict=True):
-        place = np.array([x, y - 3.5])
-        if kind == "predicted":
-            _ring(canvas, place, color, 1.0)
-        else:
-            _cross(canvas, place, color, 1.0, kind == "thrown out", kind == "swapped")
-        canvas.text(words, x + 9.0, y, 8.0, GRAY)
-        x += width
+    for word, color in words:
+        canvas.text(word, x, y, 8.0, color)
+        x += canvas.text_width(word, 8.0) + 8.0
 
 
 def _size(predicted: Array) -> float:

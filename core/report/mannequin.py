@@ -59,7 +59,7 @@ def draw_mannequin(image: Image, figure: CharacterFigure, view: View) -> Image:
     shadow = np.zeros((height, width), dtype=np.float32)
     fallen = np.clip(view.project(figure.points * [1.0, 1.0, 0.0])[0], -1e4, 1e4).round().astype(np.int32)
     for corners in fallen[figure.triangles]:
-        cv2.fillConvexPoly(shadow, corners, 1.0)
+        cv2.fillConvexPoly(shadow, corners, (1.0,))
     shadow = np.asarray(cv2.GaussianBlur(shadow, (0, 0), SOFTNESS_M * view.scale))
     canvas = Canvas(width, height)
     canvas.paste((image * (1.0 - SHADOW * shadow[..., None])).astype(np.uint8), 0, 0, width, height)

@@ -7,8 +7,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.extremities import segment_ends
-from ..body.kinematics import Body
-from ..body.posture import Posture
 from ..finish.natural_extremities import natural_extremities
 from ..take.motion import Motion
 from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
@@ -42,17 +40,9 @@ class StickFigure:
 
 def stick_figure(motion: Motion) -> StickFigure:
     """The lines of a motion's performer: arms and legs with hands and feet, hips, shoulders and spine."""
-    return _figure(motion.body, motion.posture, motion.time_s, motion.points)
-
-
-def posed_figure(body: Body, posture: Posture, time_s: Array) -> StickFigure:
-    """The lines of a batch of F postures, each of which counts as a frame, at rising times (F,) [s]."""
-    return _figure(body, posture, time_s, body.points(body.pose(posture)))
-
-
-def _figure(body: Body, posture: Posture, time_s: Array, points: Array) -> StickFigure:
-    pose, extremities = body.pose(posture), natural_extremities(body, posture, time_s)
-    by_name = dict(zip(body.skeleton.point_names, np.swapaxes(points, 0, 1), strict=True))
+    body, pose = motion.body, motion.body.pose(motion.posture)
+    extremities = natural_extremities(body, motion.posture, motion.time_s)
+    by_name = dict(zip(body.skeleton.point_names, np.swapaxes(motion.points, 0, 1), strict=True))
     limbs = []
     for side in ("L", "R"):
         for joints, end in ((("shoulder", "elbow", "wrist"), "hand"), (("hip", "knee", "ankle"), "foot")):

@@ -141,12 +141,7 @@ def leap(made: Composer) -> None:
         pelvis=Turn(8.0, 0.0, 6.0),
         waist=Turn(4.0, 0.0, -10.0),
     )
-    names = (
-        "left foot plants",
-        "toes leave the floor",
-        "highest",
-        "right foot lands",
-    )
+    names = ("left foot plants", "toes leave the floor", "highest", "right foot lands")
     moments = (plant, off, thrown(high, flight(start, end, LEAP_S, 0.5)), on)
     times = (0.0, 0.22, 0.22 + 0.5 * LEAP_S, 0.22 + LEAP_S)
     steps = []

@@ -175,12 +175,7 @@ def _place_arm(
     if stretched < distance < stretched + arm.short:
         reach *= stretched / distance
     turn, elbow = _reach(
-        reach,
-        lengths[f"upper_arm.{side}"],
-        lengths[f"forearm.{side}"],
-        chest,
-        out,
-        arm.swivel,
+        reach, lengths[f"upper_arm.{side}"], lengths[f"forearm.{side}"], chest, out, arm.swivel
     )
     rotations[f"shoulder.{side}"] = lifted.T @ turn
     angles[f"elbow.{side}"] = elbow

@@ -36,12 +36,7 @@ RADII: dict[str, tuple[float, float, float]] = {
 """Radii of the body at the head and the tail of a bone [m], and how much wider than deep it is."""
 SHORTENED = {"spine.006": 0.5}
 """Shares of a bone's length that its part reaches, where not all: the head is round."""
-COLORS = {
-    "suit": (222, 104, 46),
-    "pale": (232, 218, 194),
-    "belt": (62, 44, 40),
-    "visor": (30, 32, 42),
-}
+COLORS = {"suit": (222, 104, 46), "pale": (232, 218, 194), "belt": (62, 44, 40), "visor": (30, 32, 42)}
 """sRGB."""
 PALE = ("spine.004", "spine.005", "spine.006", "hand", "forearm.001", "foot", "toe", "shin.001")
 VISOR, VISOR_M = (0.0, -0.14, 1.885), (0.092, 0.085, 0.05)

@@ -11,7 +11,7 @@ from keymark.core.arrays import Array, Image
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
-from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_jpg, write_png
+from keymark.core.report.canvas import INK, WHITE, Canvas, Color, write_png
 from keymark.core.report.mannequin import View, draw_mannequin, mannequin, view_axes
 from keymark.core.report.posture_picture import TILT_RAD, backdrop
 from keymark.core.report.stick_figure import draw_figure, stick_figure
@@ -19,6 +19,7 @@ from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 
 from .results import Results
+from .writing import write_picture
 
 SLOGAN = "one video, a few keyframes, any character"
 
@@ -144,4 +145,4 @@ def write_featured(results: Results, path: Path) -> None:
     """Reconstruct the demonstration and draw the featured image."""
     take = results.take
     done = run(reconstruct(take, "map"))
-    write_jpg(str(path), draw_featured(take, done.motion, done.speed))
+    write_picture(path, draw_featured(take, done.motion, done.speed))

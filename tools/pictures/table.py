@@ -1,25 +1,27 @@
-"""Which picture of the docs comes from where; docs/pictures has these and no others."""
+"""Which picture of the docs comes from where; docs/pictures has these and no others.
+
+The photographs of the guide to filming were rendered once in the studio of tools/studio; they show nothing
+of the program and are not drawn anew.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 MOVING = "keymark.webp"
-FILMING = "filming_"
 POINTS = (
     *("distance", "height", "direction", "still", "light", "shutter"),
     *("clothes", "colors", "whole", "alone", "room", "start"),
 )
-"""Points of the guide to filming that have a picture."""
+KEPT = tuple(f"filming_{point}.jpg" for point in POINTS)
+"""Photographs of the guide to filming, which stay as they are."""
 DRAWN = (
     MOVING,
-    "batch_summary.jpg",
     "character.jpg",
     "comparison.jpg",
     "libraries.jpg",
     "listing_featured.jpg",
     "listing_icon.png",
-    *(f"{FILMING}{point}.jpg" for point in POINTS),
 )
 """Pictures that draw_pictures.py makes itself."""
 
@@ -75,4 +77,5 @@ SCREENSHOTS: Mapping[str, Screenshot] = {
     "libraries_match.jpg": Screenshot("library", "posed_all"),
 }
 """Pictures that show Blender."""
-ALL = (*DRAWN, *SCREENSHOTS)
+MADE = (*DRAWN, *SCREENSHOTS)
+ALL = (*MADE, *KEPT)

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from keymark.core.arrays import Image
 
+MOST_BYTES = 200_000
 BEST, WORST = 88, 48
 """Qualities of JPEG that are tried, the best first."""
 
@@ -30,7 +31,7 @@ def reduced(image: Image, most_width: int) -> Image:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
-def write_picture(path: Path, image: Image, most_bytes: int) -> None:
+def write_picture(path: Path, image: Image, most_bytes: int = MOST_BYTES) -> None:
     """Write a picture as JPEG, at the best quality that is small enough.
 
     Raises:

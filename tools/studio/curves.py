@@ -80,11 +80,7 @@ def shock(times: Array, impacts: list[float], hertz: float = 7.0, decay_s: float
     return np.asarray(np.where(after > 0.0, rings, 0.0).sum(axis=1))
 
 
-def sway(
-    frames: Array,
-    random: np.random.Generator,
-    periods: tuple[float, float] = (19.0, 61.0),
-) -> Array:
+def sway(frames: Array, random: np.random.Generator, periods: tuple[float, float] = (19.0, 61.0)) -> Array:
     """Irregular motion of unit size: three waves of unrelated periods [frames]."""
     lengths = random.uniform(*periods, 3)
     starts = random.uniform(0.0, 2.0 * np.pi, 3)

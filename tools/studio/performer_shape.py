@@ -168,9 +168,7 @@ def _stack(start: Array, along: Array, rings: list[Ring], girth: float = 1.0) ->
     return np.stack(
         [
             _ring(
-                start + share * along + shift * backwards,
-                girth * wide * sideways,
-                girth * deep * backwards,
+                start + share * along + shift * backwards, girth * wide * sideways, girth * deep * backwards
             )
             for share, wide, deep, shift in _denser(rings)
         ]

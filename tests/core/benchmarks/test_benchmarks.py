@@ -1,9 +1,7 @@
 """The computations of the benchmarks."""
 
 import sys
-from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from _boot import ROOT
@@ -11,7 +9,6 @@ from _synthetic_take import write_synthetic_take
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-import charts  # noqa: E402
 from accuracy import measure, point_table  # noqa: E402
 from keyframing import exact_postures, hand_posed, keyed, spread_frames  # noqa: E402
 from mistakes import (  # noqa: E402
@@ -140,17 +137,3 @@ def test_the_mean_of_the_points_errors_is_the_score(trial: Trial) -> None:
         assert np.mean(list(one.points_mm.values())) == pytest.approx(one.score.mpjpe, abs=1e-3)
     assert found["map"].score.coverage95 is not None and found["prior"].score.coverage95 is None
     assert point_table({"take": {"exact": found}}).count("| exact |") == len(found) == 5
-
-
-def test_a_chart_shows_its_curves(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The picture has the curve's color where the values are, on a logarithmic axis."""
-    monkeypatch.setattr(charts, "OUTPUT", tmp_path)
-    x = np.array([2.0, 4.0, 8.0])
-    curve = charts.Curve("map", x, np.array([30.0, 20.0, 10.0]), charts.LEFT, "full")
-    labels = charts.Labels("error", "keyframes", "mm")
-    charts.draw_chart("chart", labels, [curve], level=25.0, x_ticks=(2, 4, 8))
-    image = cv2.imread(str(tmp_path / "chart.png")).astype(int)
-    blue = np.abs(image - charts.LEFT).max(axis=-1) < 30
-    middle = round(0.5 * (72 + 1200 - 24))  # four is halfway from two to eight
-    rows = np.flatnonzero(blue[:, middle])
-    assert len(rows) and 0.3 < rows.mean() / len(blue) < 0.6

@@ -8,8 +8,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
 
-from pictures.filming_scenes import PAIRS, SIZE  # noqa: E402
-from pictures.table import ALL, POINTS, SCREENSHOTS, Screenshot  # noqa: E402
+from pictures.table import ALL, SCREENSHOTS, Screenshot  # noqa: E402
 
 SHOWN = re.compile(r"!\[[^\]]+\]\(((?:\.\./)?[\w./-]*pictures/[\w.-]+)\)")
 LARGEST_BYTES = {"filming_": 80_000, "keymark.webp": 2_500_000, "": 200_000}
@@ -26,7 +25,7 @@ def shown_pictures(repository: Path) -> dict[Path, list[str]]:
 
 
 def test_pages_show_what_the_script_makes(repository: Path) -> None:
-    """No page shows a picture that is made by hand, and none is made that no page shows."""
+    """No page shows a picture that is not in the table, and none is there that no page shows."""
     shown = {file.name for file in shown_pictures(repository)}
     assert len(shown) > 25
     assert shown == set(ALL)
@@ -64,11 +63,3 @@ def test_a_missing_screenshot_is_one_sentence(tmp_path: Path) -> None:
         (tmp_path / "demo").mkdir(exist_ok=True)
         (tmp_path / "demo" / name).touch()
     assert wanted.file(tmp_path).name == "17_review.png"
-
-
-def test_every_point_has_two_photographs() -> None:
-    """Of one size, with words that fit below them."""
-    assert tuple(PAIRS) == POINTS
-    for good, bad in PAIRS.values():
-        assert good.take.camera.resolution == bad.take.camera.resolution == SIZE
-        assert good.words != bad.words

@@ -115,6 +115,17 @@ def test_levenberg_marquardt_finds_what_scipy_finds() -> None:
         np.testing.assert_allclose(found[index], best.x, rtol=1e-5)
     again = levenberg_marquardt(equations, found, np.add, choose, 100, 1e-12)
     np.testing.assert_allclose(again, found, rtol=1e-6)
-    assert (
-        equations(levenberg_marquardt(equations, start, np.add, choose, 3, 1e-12))[0] <= equations(start)[0]
-    ).all()
+    calls: list[float] = []
+
+    def counted(x: Array, factor: float) -> Equations:
+        calls.append(factor)
+        cost, normal, gradient = equations(x)
+        return factor * cost, factor * normal, factor * gradient
+
+    def evaluations(factor: float, converged: float) -> int:
+        calls.clear()
+        levenberg_marquardt(lambda x: counted(x, factor), start, np.add, choose, 100, converged)
+        return len(calls)
+
+    few, many, scaled = evaluations(1.0, 0.5), evaluations(1.0, 1e-6), evaluations(1e3, 1e-6)
+    assert few < many < 60 and abs(scaled - many) <= 5

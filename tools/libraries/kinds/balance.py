@@ -257,10 +257,7 @@ def _swaying_step(work: Composer) -> None:
                 1.05,
             ),
         ),
-        (
-            "caught",
-            on_left(Foot(0.0, -0.98, -5.0), (_out(104, 10, 22), Arm(22, 40, 24, 66)), -6, 8, 16, 1.5),
-        ),
+        ("caught", on_left(Foot(0.0, -0.98, -5.0), (_out(104, 10, 22), Arm(22, 40, 24, 66)), -6, 8, 16, 1.5)),
     ):
         work.pose(f"swaying step: {name}", posed, "beam", "wobble")
     names = ("leg thrown out", "leg across", "caught")

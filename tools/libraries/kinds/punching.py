@@ -128,10 +128,7 @@ def _bent_punches(work: Composer) -> None:
         ("lead hook: swinging", boxing(swinging, turn=6, chest=12, lean=4)),
         ("lead hook", boxing(hooking, turn=-26, chest=-24, feet=lead_pivot(-42, 24))),
         ("rear hook: swinging", boxing(right=swinging, turn=0, chest=-8, feet=rear_pivot(10, 24))),
-        (
-            "rear hook",
-            boxing(right=hooking, turn=46, chest=34, bow=4, forward=0.06, feet=rear_pivot(46, 44)),
-        ),
+        ("rear hook", boxing(right=hooking, turn=46, chest=34, bow=4, forward=0.06, feet=rear_pivot(46, 44))),
         (
             "rear uppercut: loaded",
             boxing(right=loaded, turn=-10, chest=-14, bow=10, lean=-14, bend=46, aside=-0.03),

@@ -2,10 +2,10 @@
 
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import back_spin, dance, furniture, spin
+from ..motions import back_spin, dance, spin
 from ..surroundings import Lamp, Room, Thing
 from ..viewpoint import look_from
-from .sizes import MIDDLE, SMALL
+from .sizes import SMALL
 
 SPIN = Described(
     name="spin",
@@ -76,45 +76,6 @@ DANCE = Described(
     noise=2.0,
 )
 """Red and orange are similar colors, and so are the blues; the light is rosy."""
-
-OAK, STEEL = (0.34, 0.24, 0.14), (0.10, 0.10, 0.11)
-
-FURNITURE = Described(
-    name="furniture",
-    perform=performed(furniture.plan, actor(1.75, forearm=1.03, upper_arm=0.97, trunk=1.02), 92, -6.0),
-    camera=look_from(-14.0, 4.3, 1.45, (0.0, -0.1, 1.02), 40.0, MIDDLE, tilt_deg=-1.5),
-    look=Look(
-        colors={
-            "trunk": (70, 150, 170),
-            "forearm.L": (224, 120, 30),
-            "forearm.R": (150, 60, 180),
-            "shin.L": (200, 50, 60),
-            "shin.R": (60, 150, 70),
-            "cloth": (58, 62, 84),
-            "skin": (214, 168, 140),
-            "hair": (150, 60, 30),
-        },
-        girths={"trunk": 1.1, "upper_arm": 1.05, "thigh": 1.04},
-        cloth_m={"trunk": 0.012, "forearm": 0.008, "shin": 0.012},
-        folds=0.7,
-    ),
-    room=Room(
-        wall=(0.62, 0.60, 0.54),
-        things=(
-            Thing((1.20, 0.55, 0.04), OAK, {0: (0.02, -0.72, 0.74)}),
-            Thing((1.16, 0.03, 0.46), OAK, {0: (0.02, -0.90, 0.49)}),
-            Thing((0.05, 0.50, 0.72), STEEL, {0: (-0.56, -0.72, 0.36)}),
-            Thing((0.05, 0.50, 0.72), STEEL, {0: (0.60, -0.72, 0.36)}),
-            Thing((0.42, 0.42, 0.05), STEEL, {0: (0.96, -0.80, 0.45)}),
-            Thing((0.42, 0.04, 0.52), OAK, {0: (0.96, -1.02, 0.70)}),
-            Thing((0.04, 0.40, 0.44), STEEL, {0: (0.77, -0.80, 0.22)}),
-            Thing((0.04, 0.40, 0.44), STEEL, {0: (1.15, -0.80, 0.22)}),
-        ),
-    ),
-    seed=112,
-    samples=1,
-)
-"""A table and a chair hide the shins and parts of the thighs, after the first steps all the time."""
 
 BACK_SPIN = Described(
     name="back_spin",

@@ -3,10 +3,10 @@
 from ..build import Build
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import box, kick, martial, spin_kick
+from ..motions import box, kick, martial
 from ..surroundings import Lamp, Room
 from ..viewpoint import look_from
-from .sizes import SMALL, WIDE
+from .sizes import SMALL
 
 HARD_SHADOW = (2.0, 1.2, 0.0)
 
@@ -43,33 +43,6 @@ BOX = Described(
     ),
     noise=3.0, seed=103, shadow_per_height=HARD_SHADOW,
 )  # fmt: skip
-
-SPIN_KICK = Described(
-    name="spin_kick",
-    perform=performed(spin_kick.plan, actor(1.77, thigh=1.02, shin=1.02, trunk=0.98), 76, 18.0),
-    camera=look_from(16.0, 5.2, 1.35, (0.0, -0.1, 0.98), 46.0, WIDE, tilt_deg=1.0),
-    look=Look(
-        colors={
-            "trunk": (200, 60, 36),
-            "forearm.L": (48, 168, 96),
-            "forearm.R": (60, 96, 214),
-            "shin.L": (226, 186, 40),
-            "shin.R": (168, 60, 190),
-            "cloth": (206, 202, 192),
-            "skin": (186, 134, 104),
-        },
-        girths={"thigh": 1.08, "trunk": 1.04, "upper_arm": 1.04},
-        cloth_m={"trunk": 0.012, "forearm": 0.007, "shin": 0.010},
-        folds=0.6,
-    ),
-    room=Room(wall=(0.50, 0.53, 0.58)),
-    seed=111,
-    keyframes=(0, 8, 15, 23, 48, 56, 66, 75),
-    moments=7,
-    shutter_frames=0.9,
-    samples=1,
-)
-"""Nearly a full turn between two keyframes, in a long exposure that blurs forearms and the kicking leg."""
 
 MARTIAL = Described(
     name="martial",

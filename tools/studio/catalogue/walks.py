@@ -2,7 +2,7 @@
 
 from ..described import Described, actor, performed
 from ..look import Look
-from ..motions import approach, duck, far_leg, steps, stroll
+from ..motions import approach, duck, steps, stroll
 from ..surroundings import Room, Thing
 from ..viewpoint import look_at, look_from
 from .sizes import SMALL
@@ -34,35 +34,6 @@ STROLL = Described(
     samples=1,
 )
 """The performer walks past behind a pillar and a low table."""
-
-FAR_LEG = Described(
-    name="far_leg",
-    perform=performed(far_leg.plan, actor(1.82, thigh=0.98, shin=1.03, hip_width=0.95), 102),
-    camera=look_from(90.0, 4.6, 1.05, (0.0, 0.0, 0.98), 46.0, SMALL),
-    look=Look(
-        colors={
-            "trunk": (54, 150, 90),
-            "forearm.L": (206, 60, 150),
-            "forearm.R": (214, 160, 40),
-            "shin.L": (60, 80, 200),
-            "shin.R": (206, 84, 40),
-            "cloth": (150, 146, 140),
-            "skin": (142, 98, 74),
-            "hair": (20, 18, 18),
-        },
-        girths={"thigh": 1.02, "trunk": 1.02, "shin": 1.04},
-        cloth_m={"trunk": 0.008, "forearm": 0.005, "shin": 0.012},
-        folds=0.6,
-    ),
-    room=Room(
-        wall=(0.56, 0.52, 0.58),
-        things=(Thing((0.75, 2.0, 0.04), (0.06, 0.06, 0.065), {0: (0.0, 0.0, -0.018)}),),
-    ),
-    seed=113,
-    keyframes=(0, 15, 28, 42, 57, 72, 87, 101),
-    samples=1,
-)
-"""Seen exactly from the side; every keyframe is a heel strike, so that all swings happen between them."""
 
 APPROACH = Described(
     name="approach",
@@ -141,7 +112,7 @@ DUCK = Described(
             Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, -0.95, 0.615)}),
             Thing((0.12, 0.12, 1.23), (0.40, 0.40, 0.42), {0: (-0.15, 0.85, 0.615)}),
             Thing((0.50, 0.04, 0.34), (0.62, 0.60, 0.20), {0: (0.16, -0.97, 1.18)}),
-        ),
+        )
     ),
     seed=117,
     samples=1,

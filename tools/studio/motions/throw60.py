@@ -57,10 +57,7 @@ def plan(body: Body, times: Array, random: np.random.Generator) -> Choreography:
 
 def _feet(times: Array) -> dict[str, tuple[Array, Array]]:
     """The right foot strides; the left one is dragged after the throw."""
-    steps = {
-        "R": [(0.34, PLANT_S, (-0.15, -0.42))],
-        "L": [(RELEASE_S + 0.02, 1.30, (0.16, -0.40))],
-    }
+    steps = {"R": [(0.34, PLANT_S, (-0.15, -0.42))], "L": [(RELEASE_S + 0.02, 1.30, (0.16, -0.40))]}
     yaws = {"R": {0.3: 20, 0.6: 26, PLANT_S: 6}, "L": {0.4: 78, 0.76: 72, 0.96: 20, 1.3: -12}}
     drag = 44.0 * burst(times, PLANT_S - 0.10, RELEASE_S + 0.04, 1.24)
     feet = {}
