@@ -104,7 +104,7 @@ def _tails_tell(character: Character, size: float) -> bool:
         for bone, children in zip(character.bones, character.children, strict=True)
         if children
     ]
-    return len(met) > 0 and sum(met) >= MEETING_TAILS * len(met)
+    return bool(met and sum(met) >= MEETING_TAILS * len(met))
 
 
 def _nearest_parents(

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import Array
 from .figure import Figure
 
 NAMES_WEIGHT, FEET_WEIGHT, KNEES_WEIGHT, ELBOWS_WEIGHT = 3.0, 2.5, 1.0, 0.8
@@ -49,7 +50,7 @@ def find_facing(figure: Figure) -> Facing:
     return Facing(ahead, confidence, ahead * names, ahead * shape)
 
 
-def _bulge(first: np.ndarray, middle: np.ndarray, last: np.ndarray) -> float:
+def _bulge(first: Array, middle: Array, last: Array) -> float:
     """How far, in lengths, the middle joint lies ahead of the line through its neighbors."""
     line = last - first
     reach = max(float(line @ line), 1e-12)

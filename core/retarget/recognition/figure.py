@@ -211,7 +211,7 @@ def _line_fit(frame: Frame, chain: IndexArray) -> float:
         while between not in (int(top), -1):
             off = place[between] - place[top]
             off = off - line * float(np.clip(off @ line / max(float(line @ line), 1e-9), 0.0, 1.0))
-            found -= 0.3 + min(20.0 * _length(off) / max(_length(line), 1e-5), 3.0)
+            found -= 0.3 + min(20.0 * _length(off) / max(float(_length(line)), 1e-5), 3.0)
             found -= 2.0 * same_part(low, between)
             between = int(bones.parent[between])
     top = int(chain[0])
@@ -309,7 +309,7 @@ def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
     found = {}
     for rank, bone in enumerate(reversed(above)):
         away = place[upper_arm] - place[bone]
-        reach = max(_length(away), 1e-9)
+        reach = max(float(_length(away)), 1e-9)
         score = float(near(reach / length, 0.25, 0.15, 5.0)) - 0.3 * rank + float(names[bone])
         found[bone] = score + float(near(min(away[0] / reach, 0.5), 0.5, 0.3, 4.0))
     return found

@@ -134,8 +134,9 @@ def _planes(bones: Bones, named: dict[int, int]) -> list[tuple[Array, float]]:
         weighted.append((np.inf, np.median(heads - others, axis=0), np.median(heads + others, axis=0)))
     centers = np.array([points.mean(axis=0) for points in bones.points])
     count = [len(below) for below in bones.subtree]
-    for siblings in (np.flatnonzero(bones.parent < 0), *bones.children):
-        those = [int(bone) for bone in siblings if len(siblings) <= 60 or count[bone] > 2]
+    roots = tuple(map(int, np.flatnonzero(bones.parent < 0)))
+    for siblings in (roots, *bones.children):
+        those = [bone for bone in siblings if len(siblings) <= 60 or count[bone] > 2]
         for first, a in enumerate(those):
             for b in those[first + 1 :]:
                 small, large = sorted((count[a], count[b]))
