@@ -20,7 +20,7 @@ load_project()
 from keymark.core.library.learning import LibraryMetadata, learn_library  # noqa: E402
 from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
-from keymark.core.posing.match_clip import match_clip  # noqa: E402
+from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
 PAIRS = ("stroll:walk", "walk:stroll", "demo/aerobic:aerobic", "aerobic:demo/aerobic")
@@ -49,7 +49,7 @@ def measure(library: Library, folder: Path) -> dict[str, Any]:
         )
         if count:
             errors["posed"][count] = scored(some)
-        match = run(match_clip(some.take, trial.reading, library))  # keyframes constrain it
+        match = run(pose_clip(some.take, trial.reading, [library]))  # keyframes constrain it
         fit = fit if count else match.fit
         errors["with the library"][count] = scored(replace(some, take=with_found(some.take, match)))
     return {"frames": len(trial.truth), "fit": fit, "errors": errors}

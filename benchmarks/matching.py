@@ -22,7 +22,7 @@ from keymark.core.library.library import Library  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
 from keymark.core.library.registry import SHIPPED  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
-from keymark.core.posing.match_clip import match_clip  # noqa: E402
+from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
@@ -86,15 +86,13 @@ class Measured:
 def matched(name: str, take: Take, reading: Reading, library: Library) -> tuple[FoundPoses, float]:
     """The match, and its process time [ms a frame]."""
     begun = time.process_time()
-    match = run(match_clip(take, reading, library, None if name in RAISED else ON_THE_FLOOR))
+    match = run(pose_clip(take, reading, [library], None if name in RAISED else ON_THE_FLOOR))
     return match, 1e3 * (time.process_time() - begun) / reading.tracks.frame_count
 
 
 def measure(name: str, trial: Trial, library: Library) -> Measured:
     """Measure a take with one library: without posed keyframes, and with the first and the last frame."""
     match, matching_ms = matched(name, trial.take, trial.reading, library)
-    if match.reading is not None:
-        trial = replace(trial, reading=match.reading)
     body = trial.take.body
     unposed = replace(trial, take=with_found(trial.take, match))
     ends = (0, len(trial.truth) - 1)
@@ -103,8 +101,6 @@ def measure(name: str, trial: Trial, library: Library) -> Measured:
     two = replace(trial, take=replace(trial.take, keyframes=posed), unscored=ends)
     known, _ = matched(name, two.take, trial.reading, library)  # posed keyframes constrain the match
     both = replace(two, take=with_found(two.take, known))
-    if known.reading is not None:
-        both = replace(both, reading=known.reading)
     return Measured(
         library.identifier,
         trial.score(body.points(body.pose(match.postures))),
@@ -127,7 +123,7 @@ def compare(name: str, trial: Trial, library: Library) -> dict[str, tuple[Score,
             bare = bare or run(read_footage(take))
             held = replace(trial, take=take, reading=bare)
         match, _ = matched(name, take, held.reading, library)
-        held = replace(held, take=with_found(take, match), reading=match.reading or held.reading)
+        held = replace(held, take=with_found(take, match))
         points = take.body.points(take.body.pose(match.postures))
         found[title] = held.score(points), estimated(held)
     return found

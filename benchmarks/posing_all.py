@@ -109,7 +109,7 @@ def measure(name: str, trial: Trial, libraries: Sequence[Library]) -> Measured:
 
 def estimated(trial: Trial, take: Take, found: FoundPoses) -> tuple[Motion, Score]:
     """The default method's motion from found keyframes, and its score over all frames."""
-    motion = run(reconstruct(with_found(take, found), "map", found.reading or trial.reading)).motion
+    motion = run(reconstruct(with_found(take, found), "map", trial.reading)).motion
     return motion, replace(trial, unscored=()).score(motion.points, motion.sigma_m)
 
 
@@ -129,7 +129,7 @@ def between_seconds(trial: Trial, take: Take, found: FoundPoses, libraries: Sequ
     ends = tuple(int(np.abs(time_s - middle - side * BETWEEN_S).argmin()) for side in (-0.5, 0.5))
     posed = replace(take, keyframes=tuple(Keyframe(index, found.postures[index]) for index in ends))
     begun = time.process_time()
-    run(pose_clip(posed, found.reading or trial.reading, libraries, found.floor_m, between=ends))
+    run(pose_clip(posed, trial.reading, libraries, found.floor_m, between=ends))
     return time.process_time() - begun
 
 

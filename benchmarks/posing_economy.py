@@ -68,7 +68,7 @@ def measure(trial: Trial, libraries: Sequence[Library]) -> Measured:
     found = run(pose_clip(trial.take, trial.reading, libraries))
     finding_s = time.process_time() - begun
     take = with_found(trial.take, found)
-    trial = replace(trial, reading=found.reading or trial.reading, unscored=take.keyframe_indices)
+    trial = replace(trial, unscored=take.keyframe_indices)
     scores, doubtful, correcting_s = [score(trial, take)], [doubtful_in(take)], []
     while any(keyframe.matched is not None for keyframe in take.keyframes):
         index = least_sure(take)

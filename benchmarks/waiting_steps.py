@@ -74,7 +74,7 @@ def read_keypoints(folder: Path) -> Callable[[], object]:
 def match(folder: Path) -> Callable[[], object]:
     """Finding the keyframes with one library, where nothing is posed and the clip is read."""
     bpy = _unposed(folder)
-    return lambda: bpy.ops.keymark.match_library(library=LIBRARY)
+    return lambda: bpy.ops.keymark.pose_all(library=LIBRARY)
 
 
 def pose_all(folder: Path) -> Callable[[], object]:

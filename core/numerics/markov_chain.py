@@ -1,6 +1,6 @@
-"""Paths through the states of a Markov chain: the likeliest one, and each state's probability given all times.
+"""Paths through a Markov chain: the likeliest one, and the probability of each state given all times.
 
-A time has any number of states with costs (negative log likelihoods); steps between two times have costs too.
+States have costs (negative log likelihoods), and so have the steps between those of two times.
 """
 
 from collections.abc import Sequence

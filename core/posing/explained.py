@@ -2,32 +2,29 @@
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray
 from ..body.posture import Posture
-from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.marker_moments import marker_moments
-from ..matching.match_input import MatchInput
-from ..matching.noise_scales import DEGREES_OF_FREEDOM
+from .frame_likelihood import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
+from .posing_input import PosingInput
 
 CONTRADICTING = 3.0
 """A marker or keypoint farther off than this many deviations between performers has not been explained."""
 
 
-def explained_shares(given: MatchInput, frames: IndexArray, posture: Posture) -> tuple[Array, Array]:
+def explained_shares(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
     """How much postures explain.
 
     Args:
         given: The take.
-        frames: (T,) indices of frames.
-        posture: (T,) their postures.
+        posture: (T,) postures of the frames that are looked at.
 
     Returns:
         (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
         (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
     """
     places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
-    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, None, 1.0)
-    shares, off = np.zeros(len(frames)), np.full(places.shape[:2], np.nan)
+    likelihoods = frame_likelihoods(given.camera, given.evidence, given.sampled)
+    shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
     for row, likelihood in enumerate(likelihoods):
         if not likelihood.visible.any():
             continue

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..matching.candidates import PROBABILITY_BOUNDS
+from .candidates import PROBABILITY_BOUNDS
 
 INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.6, 0.45, -0.055
 """Logistic regression, rounded, of being about right, on 184 candidates of 64 frames of four takes with

@@ -16,8 +16,8 @@ from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.single_frame import fit_frame
 from ..library.library import Library
-from ..matching.candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate, distinct_rows
 from ..prior.frame_prior import FramePrior
+from .candidates import ABOUT_RIGHT_M, DISTINCT_M, Candidate, distinct_rows
 from .frame_belief import belief_costs, believed_fit
 from .frame_confidence import frame_confidence
 from .frame_contradictions import unexplained, unworn_marker

@@ -21,13 +21,11 @@ from ..estimate.terms.assembly import free_frame_terms
 from ..estimate.terms.regions import FEATURES, RegionNoise, limb_widths
 from ..estimate.terms.term import total_cost
 from ..library.library import Library
-from ..matching.candidates import distinct_rows
-from ..matching.emissions import EXCHANGED_COST
-from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.noise_scales import NoiseScales
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
-from .compose_clip import FLOOR_STD_M, PART_SCALE, WIDE
+from .candidates import distinct_rows
+from .compose_clip import PART_SCALE, WIDE
 from .composed_states import FrameCosts
+from .frame_likelihood import EXCHANGED_COST, frame_likelihoods
 from .frame_shown import FrameShown
 from .leg_pairs import NO_CONTACT_COST
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
@@ -153,10 +151,8 @@ def _screened(
     is_exchanged: bool = False,
 ) -> Hypotheses:
     evidence = shown.compared.exchanged() if is_exchanged else shown.compared
-    usual = NoiseScales.of(evidence)
-    scales = replace(usual, centroid=usual.centroid * PART_SCALE)
     first = np.zeros(1, dtype=np.intp)
-    likelihood = frame_likelihoods(shown.camera, evidence, first, floor_m, FLOOR_STD_M, scales)[0]
+    likelihood = frame_likelihoods(shown.camera, evidence, first, PART_SCALE)[0]
     placed = place_standing(
         known.pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints
     )

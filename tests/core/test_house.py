@@ -16,6 +16,7 @@ LINES_AT_MOST = 400
 # rooms in one line do not know each other.
 ROOMS = (
     ("core.arrays", "core.text"),
+    ("core.numerics",),
     ("core.errors",),
     ("core.progress", "core.files"),
     ("core.body",),
@@ -23,7 +24,6 @@ ROOMS = (
     ("core.observation", "core.library"),
     ("core.prior",),
     ("core.take",),
-    ("core.matching",),
     ("core.estimate",),
     ("core.posing",),
     ("core.finish", "core.review"),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from ...estimate.reconstruct import check_method
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...matching.match_input import check_followed
+from ...posing.posing_input import check_followed
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings

@@ -6,17 +6,14 @@ from typing import Any
 
 from ....core.estimate.reconstruct import Reconstruction, reconstruct
 from ....core.library.library import Library
-from ....core.library.several_libraries import EVERY_LIBRARY
 from ....core.posing.found_poses import FoundPoses, with_found
-from ....core.posing.match_clip import match_clip
 from ....core.posing.pose_clip import pose_clip
 from ....core.progress import Job, stretch
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 
-PROGRESS_MATCHING, PROGRESS_POSING = (0.3, 0.5), (0.2, 0.7)
-"""Fractions of the whole job after reading the footage and after finding its keyframes: with one library, and
-with all."""
+READ, POSED = 0.2, 0.7
+"""Fractions of the whole job after reading the footage and after finding its keyframes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,14 +28,13 @@ class FoundReconstruction:
 
 
 def find_and_reconstruct(
-    take: Take, library: str | None, libraries: Sequence[Library], method: str, floor_m: float | None = None
+    take: Take, libraries: Sequence[Library] | None, method: str, floor_m: float | None = None
 ) -> Job[FoundReconstruction]:
     """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
 
     Args:
         take: The take, with posed keyframes or, where they are found, without.
-        library: None where all keyframes are posed; `EVERY_LIBRARY`, or the one to match with.
-        libraries: Those that this means.
+        libraries: What is known of postures where keyframes are found; None where all are posed.
         method: As for `reconstruct`.
         floor_m: Height of the floor where it is known [m].
 
@@ -46,19 +42,12 @@ def find_and_reconstruct(
         InputError: The clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    if library is None:
+    if libraries is None:
         return FoundReconstruction(take, (yield from reconstruct(take, method)))
-    every = library == EVERY_LIBRARY
-    read, posed = PROGRESS_POSING if every else PROGRESS_MATCHING
-    reading = yield from stretch(read_footage(take), 0.0, read)
-    job = (
-        pose_clip(take, reading, libraries, floor_m)
-        if every
-        else match_clip(take, reading, libraries[0], floor_m)
-    )
-    found = yield from stretch(job, read, posed)
+    reading = yield from stretch(read_footage(take), 0.0, READ)
+    found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
     take = with_found(take, found)
-    result = yield from stretch(reconstruct(take, method, found.reading or reading), posed, 1.0)
+    result = yield from stretch(reconstruct(take, method, reading), POSED, 1.0)
     return FoundReconstruction(take, result, found)
 
 

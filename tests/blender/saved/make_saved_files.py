@@ -165,7 +165,7 @@ def pose(scene: bpy.types.Scene, poses: Poses) -> None:
         bpy.ops.keymark.store_keyframe()
     matching = active_take(scene).matching
     matching.library, matching.floor = "aerobic", "HEIGHT"
-    bpy.ops.keymark.match_library(library="aerobic", floor="HEIGHT", floor_height=0.0)
+    bpy.ops.keymark.pose_all(library="aerobic", floor="HEIGHT", floor_height=0.0)
     for frame in REMOVED:
         matching = active_take(scene).matching
         matching.active_match = [match.frame for match in matching.matches].index(frame)

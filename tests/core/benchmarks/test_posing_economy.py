@@ -12,7 +12,7 @@ from _synthetic_take import true_postures, write_synthetic_take
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import posing_economy as bench  # noqa: E402
-from keymark.core.matching.candidates import Candidate, MatchedFrame  # noqa: E402
+from keymark.core.posing.candidates import Candidate, MatchedFrame  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402

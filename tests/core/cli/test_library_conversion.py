@@ -12,7 +12,7 @@ import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import library_digest, read_library, write_library
-from keymark.core.matching.candidates import Candidate, MatchedFrame
+from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion_file import read_motion
