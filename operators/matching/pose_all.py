@@ -37,8 +37,8 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
 
     library: bpy.props.StringProperty(
         name="Library",
-        description="Identifier, title or file of the only library to use, or auto for all; the panel's where "
-        "empty",
+        description="Identifier, title or file of the only library to use, auto for all of them; the "
+        "panel's where empty",
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -163,8 +163,8 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
     )
     library: bpy.props.EnumProperty(
         name="Library",
-        description="What is known of postures while keyframes are sought: all libraries, or the one that has "
-        "the performer's motion",
+        description="What is known of postures while keyframes are sought: all libraries, or one with "
+        "the performer's own motion",
         items=_libraries,
         get=_library_number,
         set=_set_library,

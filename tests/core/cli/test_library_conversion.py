@@ -70,7 +70,7 @@ def test_a_take_without_keyframes_is_matched(
     assert (
         [row["frame"] for row in rows] == [match["frame"] for match in said["matches"]] == said["keyframes"]
     )
-    assert {row["matched"]["library"] for row in rows} == {"swaying"}
+    assert {row["matched"]["library"] for row in rows} == {"composed"}
     assert all(0.0 <= match["confidence"] <= 1.0 for match in said["matches"])
     assert said["reason"] in said["notes"] and not any("left aside" in note for note in said["notes"])
     assert cv2.imread(str(out / "report" / "matches.png")) is not None
@@ -101,7 +101,7 @@ def test_posed_and_matched_keyframes_work_together(
     assert convert(take, out, *more) == 0
     rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
     assert [row["frame"] for row in rows if "matched" not in row] == [posed[1]["frame"]]
-    assert {row["matched"]["library"] for row in rows if "matched" in row} == {"swaying"}
+    assert {row["matched"]["library"] for row in rows if "matched" in row} == {"composed"}
     assert not any("left aside" in note for note in said_as_json(capsys)["notes"])
 
 
