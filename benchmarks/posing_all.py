@@ -1,6 +1,6 @@
 """No posing at all: accuracy of the keyframes that are found, and of the motion that follows from them.
 
-Beside it the motion that follows where one library alone is named, the one with the take's own kind of motion, where there is one.
+Beside it the motion by one library alone, the one with the take's own kind of motion, where there is one.
 
 Usage: posing_all.py [TAKE ...] [--keypoints] with names or folders of takes. See README.md.
 """

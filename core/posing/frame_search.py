@@ -7,7 +7,6 @@ balance and joint limits, by how plausible its parts are, and by how well its su
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from .frame_likelihood import EXCHANGED_COST, frame_likelihoods
 from .frame_shown import FrameShown
 from .leg_pairs import NO_CONTACT_COST
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
-from .part_pools import PartPools, content_of, part_pools
+from .part_pools import PartPools, kept, part_pools
 from .plausibility import Plausibility, plausibility
 
 MOST_STARTS = 80
@@ -75,29 +74,13 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     Raises:
         InputError: No library has a posture.
     """
-    usable = tuple(each for each in libraries if each.postures)
-    return _knowledge(_Given(body, usable, content_of(usable, body)))
+    usable = [each for each in libraries if each.postures]
 
+    def learn() -> Knowledge:
+        likely = plausibility(body, usable)
+        return Knowledge(part_pools(usable, body), likely)
 
-@dataclass(frozen=True, eq=False)
-class _Given:
-    """A body and libraries, alike where their contents are."""
-
-    body: Body
-    libraries: tuple[Library, ...]
-    content: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Given) and self.content == other.content
-
-    def __hash__(self) -> int:
-        return hash(self.content)
-
-
-@lru_cache(maxsize=4)
-def _knowledge(given: _Given) -> Knowledge:
-    likely = plausibility(given.body, given.libraries)
-    return Knowledge(part_pools(given.libraries, given.body), likely)
+    return kept(Knowledge, usable, body, learn)
 
 
 def search(

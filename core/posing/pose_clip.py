@@ -25,12 +25,14 @@ from ..take.take import Take
 from ..text import Sentence
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
-from .explained import contradicting, explained_shares
 from .found_poses import FoundPoses
+from .frame_likelihood import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, posing_input, stretch_of, tempering
 
+CONTRADICTING = 3.0
+"""A marker or keypoint farther off than this many deviations between performers has not been explained."""
 LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8
 """Shares of the work after which parts are learned, and postures composed."""
 
@@ -85,7 +87,7 @@ def pose_clip(
         fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
         result = yield from stretch(fitting, COMPOSED_SHARE, 1.0)
         postures = result.posture
-        explained, off = explained_shares(given, postures[given.sampled])
+        explained, off = _explained(given, postures[given.sampled])
         candidates = _candidates(pools, stances, given, composed, postures, explained)
         seen = np.isfinite(off).any(axis=1)
         fit = float(explained[seen].mean()) if seen.any() else 0.0
@@ -133,6 +135,30 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Job[Whole
     )
 
 
+def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
+    """How much postures explain.
+
+    Args:
+        given: The take.
+        posture: (T,) postures of the frames that are looked at.
+
+    Returns:
+        (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
+        (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
+    """
+    places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
+    likelihoods = frame_likelihoods(given.camera, given.evidence, given.sampled)
+    shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
+    for row, likelihood in enumerate(likelihoods):
+        if not likelihood.visible.any():
+            continue
+        residual = np.einsum("aki,ai->ak", likelihood.image_axes, places[row] - likelihood.location)
+        distance = np.linalg.norm(residual * likelihood.weight[:, None], axis=-1)
+        off[row, likelihood.visible] = distance[likelihood.visible]
+        shares[row] = float((1.0 / (1.0 + off[row, likelihood.visible] ** 2 / DEGREES_OF_FREEDOM)).mean())
+    return shares, off
+
+
 def _candidates(
     pools: PartPools,
     stances: StanceFeatures,
@@ -164,7 +190,7 @@ def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, 
     names = (*markers, *given.evidence.keypoints.names)
     found = {}
     for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
-        wrong = tuple(names[column] for column in np.flatnonzero(contradicting(off[row])))
+        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > CONTRADICTING))
         if wrong:
             found[int(given.sampled[row]) + given.first] = wrong
     return found
