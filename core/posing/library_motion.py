@@ -57,8 +57,9 @@ JUMP_RATE = 0.4
 PERFORMERS_M = 0.10
 """Distance of a part's points between performers at the same moment of a motion."""
 
-CERTAINTY = 5.0
-"""How many times likelier parts at a library's own places are than others if it explains half the footage."""
+CERTAINTY = 0.4
+"""How many times likelier parts at a library's own places are than others if it explains half the footage,
+which grows with the square of the explained share's odds."""
 LEAST_SHARE = 1e-3
 
 
@@ -156,7 +157,7 @@ def part_beliefs(
     explained = float(
         np.mean([chance @ each.explained for chance, each in zip(posterior, found, strict=True)])
     )
-    odds = CERTAINTY * explained / max(1.0 - explained, 0.02)
+    odds = CERTAINTY * (explained / max(1.0 - explained, 0.02)) ** 2
     yield 0.9
     return _beliefs(best.motions, pools.body, stances, found, posterior, odds)
 
