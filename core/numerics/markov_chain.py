@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import IndexArray, SingleArray
 
 
 def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:
@@ -57,7 +57,7 @@ def cheapest_pairs(
     return found[:, 0], found[:, 1]
 
 
-def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[Array | SingleArray]:
+def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[SingleArray]:
     """T arrays (K,) of the states' probabilities given all times (forward-backward).
 
     Args:

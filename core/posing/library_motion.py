@@ -280,7 +280,7 @@ def _beliefs(
     body: Body,
     stances: StanceFeatures,
     states: Sequence[_States],
-    posterior: Sequence[Array],
+    posterior: Sequence[SingleArray],
     odds: float,
 ) -> list[PartBelief]:
     """Beliefs in the parts of probable postures, which are `odds` times likelier than parts far away."""

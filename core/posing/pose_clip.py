@@ -20,7 +20,7 @@ from ..library.library import Library
 from ..library.several_libraries import COMPOSED
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
-from ..progress import Job, Progress, stretch, within
+from ..progress import Job, Part, Progress, stretch, within
 from ..take.take import Take
 from ..text import Sentence
 from .candidates import MatchedFrame, composed_candidates
@@ -110,7 +110,7 @@ def pose_clip(
     )
 
 
-def _fitting(take: Take, given: PosingInput, composed: Composition) -> Job[WholeClipResult]:
+def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[WholeClipResult]:
     """The estimate that holds the composed postures against the footage; posed frames stay."""
     sampled = given.sampled
     scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(given.time_s)))  # neighbors err alike
