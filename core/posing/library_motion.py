@@ -128,7 +128,9 @@ def part_beliefs(
 
     def states(whole: _Whole, row: int) -> _States:
         both = [
-            _states(each[row], whole, hips[row], floor_m, velocity[row], EXCHANGED_COST if swap else 0.0)
+            _states(
+                each[row], whole, hips[row], floor_m, velocity[row], float(EXCHANGED_COST) if swap else 0.0
+            )
             for swap, each in enumerate(likelihoods)
         ]
         return both[0] if len(both) == 1 else _merged(*both)
