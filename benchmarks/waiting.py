@@ -60,7 +60,6 @@ ROWS = {
     "read": "**follow the markers**, until keyframes are proposed",
     "read_keypoints": "**read plain clothes** with a file of keypoints, likewise",
     DETECT: "*instead: MediaPipe Pose finds keypoints*",
-    "match": "**match one library**, nothing posed",
     "pose_all": "**pose all**, nothing posed",
     "reconstruct": "**reconstruct** from posed keyframes",
     "filter_motion": "*instead: the paper's filter*",

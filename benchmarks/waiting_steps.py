@@ -21,8 +21,6 @@ from takes import load_project
 CLIP, KEYPOINTS = "clip.mp4", "keypoints.json"
 OPENED, MOVED, READ = "opened.blend", "moved.blend", "read"
 """Scenes as opened and as reconstructed, and the folder of the clip's readings."""
-LIBRARY = "aerobic"
-"""Library of the kind of motion of the demonstration."""
 CHARACTER = "character.blend"
 """In the folder above: Rigify's basic human, once for all takes."""
 Step = Callable[[Path], Callable[[], object]]
@@ -71,14 +69,8 @@ def read_keypoints(folder: Path) -> Callable[[], object]:
     return work
 
 
-def match(folder: Path) -> Callable[[], object]:
-    """Finding the keyframes with one library, where nothing is posed and the clip is read."""
-    bpy = _unposed(folder)
-    return lambda: bpy.ops.keymark.match_library(library=LIBRARY)
-
-
 def pose_all(folder: Path) -> Callable[[], object]:
-    """Finding them with all libraries."""
+    """Finding the keyframes, where nothing is posed and the clip is read."""
     bpy = _unposed(folder)
     return bpy.ops.keymark.pose_all
 
@@ -136,7 +128,6 @@ STEPS: dict[str, Step] = {
         open_take,
         read,
         read_keypoints,
-        match,
         pose_all,
         reconstruct,
         filter_motion,

@@ -120,10 +120,7 @@ def pose_keyframes(scene: bpy.types.Scene) -> None:
 
 def find_keyframes(scene: bpy.types.Scene, library: str) -> None:
     """Step 4 without posing: keyframes found with all libraries or a named one; correct the doubtful ones."""
-    if library == "auto":
-        bpy.ops.keymark.pose_all()
-    else:
-        bpy.ops.keymark.match_library(library=library)
+    bpy.ops.keymark.pose_all(library=library)
     for match in active_take(scene).matching.matches:
         print(f"Frame {match.frame:g}: {match.candidate.name}, {match.confidence:.0%}")
 

@@ -6,7 +6,7 @@ import bpy
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.matching.candidates import Candidate, MatchedFrame
+from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import read_posture

@@ -1,13 +1,13 @@
-"""Paths through the states of a Markov chain: the likeliest one, and each state's probability given all times.
+"""Paths through a Markov chain: the likeliest one, and the probability of each state given all times.
 
-A time has any number of states with costs (negative log likelihoods); steps between two times have costs too.
+States have costs (negative log likelihoods), and so have the steps between those of two times.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import IndexArray, SingleArray
 
 
 def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:
@@ -57,7 +57,7 @@ def cheapest_pairs(
     return found[:, 0], found[:, 1]
 
 
-def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[Array | SingleArray]:
+def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[SingleArray]:
     """T arrays (K,) of the states' probabilities given all times (forward-backward).
 
     Args:

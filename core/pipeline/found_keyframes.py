@@ -6,9 +6,7 @@ from typing import Any
 
 from ..estimate.reconstruct import Reconstruction, reconstruct
 from ..library.library import Library
-from ..library.several_libraries import EVERY_LIBRARY
 from ..posing.found_poses import FoundPoses, with_found
-from ..posing.match_clip import match_clip
 from ..posing.pose_clip import pose_clip
 from ..progress import Job, stretch
 from ..take.conversion_settings import ConversionSettings
@@ -18,9 +16,8 @@ from ..take.take import Take
 from ..take.take_file import read_described
 from ..take.take_to_pose import take_to_pose
 
-PROGRESS_MATCHING, PROGRESS_POSING = (0.3, 0.5), (0.2, 0.7)
-"""Fractions of the whole job after reading the footage and after finding its keyframes: with one library, and
-with all."""
+READ, POSED = 0.2, 0.7
+"""Fractions of the whole job after reading the footage and after finding its keyframes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +43,13 @@ def take_to_convert(description: Description, settings: ConversionSettings) -> T
 
 
 def find_and_reconstruct(
-    take: Take, library: str | None, libraries: Sequence[Library], method: str, floor_m: float | None = None
+    take: Take, libraries: Sequence[Library] | None, method: str, floor_m: float | None = None
 ) -> Job[FoundReconstruction]:
     """Reconstruct a motion, after finding keyframes where that is asked for; the footage is read once.
 
     Args:
         take: The take, with posed keyframes or, where they are found, without.
-        library: None where all keyframes are posed; `EVERY_LIBRARY`, or the one to match with.
-        libraries: Those that this means.
+        libraries: What is known of postures where keyframes are found; None where all are posed.
         method: As for `reconstruct`.
         floor_m: Height of the floor where it is known [m].
 
@@ -61,19 +57,12 @@ def find_and_reconstruct(
         InputError: The clip cannot be used, or there is no library with a posture.
         ConversionError: No motion could be computed.
     """
-    if library is None:
+    if libraries is None:
         return FoundReconstruction(take, (yield from reconstruct(take, method)))
-    every = library == EVERY_LIBRARY
-    read, posed = PROGRESS_POSING if every else PROGRESS_MATCHING
-    reading = yield from stretch(read_footage(take), 0.0, read)
-    job = (
-        pose_clip(take, reading, libraries, floor_m)
-        if every
-        else match_clip(take, reading, libraries[0], floor_m)
-    )
-    found = yield from stretch(job, read, posed)
+    reading = yield from stretch(read_footage(take), 0.0, READ)
+    found = yield from stretch(pose_clip(take, reading, libraries, floor_m), READ, POSED)
     take = with_found(take, found)
-    result = yield from stretch(reconstruct(take, method, found.reading or reading), posed, 1.0)
+    result = yield from stretch(reconstruct(take, method, reading), POSED, 1.0)
     return FoundReconstruction(take, result, found)
 
 

@@ -11,20 +11,17 @@ from ..body.limbs import LIMBS
 from ..body.posture import Posture
 from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
-from ..matching.coarse_pass import FLOOR_COST_MARGIN, WORLD_FLOOR_M
-from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.library_match import tempering
-from ..matching.match_evidence import MatchEvidence
-from ..matching.match_input import MatchInput
-from ..matching.noise_scales import NoiseScales
 from ..progress import Part, scaled
 from .composed_path import ComposedPath, best_path
 from .composed_states import LEGS, FrameCosts, FrameStates
+from .frame_likelihood import frame_likelihoods
 from .library_motion import PartBelief, part_beliefs
+from .match_evidence import MatchEvidence
 from .mean_posture import mean_postures
 from .part_features import StanceFeatures
 from .part_pools import PartPools
 from .posed_costs import PosedCosts
+from .posing_input import PosingInput, tempering
 
 PART_SCALE = 0.4
 """Deviation of a composed body from the performer, relative to that of another performer's posture."""
@@ -40,8 +37,10 @@ SEARCHED_AND_LED = 0.6, 0.7
 """Shares of a round after which the states are found, and the path through them."""
 SMOOTH_S = 0.6
 """Time over which the rough distance is smoothed."""
-FLOOR_STD_M = 0.06
-"""Height of a standing foot where a likelihood has a floor of its own."""
+WORLD_FLOOR_M = 0.25
+"""A floor found this near to z = 0 is taken to be there: sizes are no more exact."""
+FLOOR_COST_MARGIN = 1.5
+"""Mean cost of a frame that putting the floor at z = 0 may add before another height is preferred."""
 MOST_PLACED = 16
 """Frames in which the performer is placed by size."""
 
@@ -59,36 +58,34 @@ class Composition:
 
 
 def compose_frames(
-    given: MatchInput,
-    pools: PartPools,
-    stances: StanceFeatures,
-    sampled: IndexArray,
-    floor_m: float | None,
+    given: PosingInput, pools: PartPools, stances: StanceFeatures, floor_m: float | None
 ) -> Part[Composition]:
-    """Compose the postures of some frames.
+    """Compose the postures of the T frames of a clip that are looked at.
+
+    Whole motions of the libraries are believed in as far as the clip shows them; they are not asked between
+    posed frames that are near each other.
 
     Args:
         given: The take.
         pools: All parts.
         stances: Their stances.
-        sampled: (T,) which frames.
         floor_m: Height of the floor; None where it is not known.
 
     Yields:
         The fraction done.
     """
     evidence, camera = given.evidence, given.camera
-    time_s = evidence.tracks.time_s[sampled]
+    sampled, time_s = given.sampled, given.time_s
     rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
-    if _posed_throughout(given, sampled):  # the place is known, then, and what lies between is soon found
-        known = given.constraints
+    if _posed_throughout(given):  # the place is known, then, and what lies between is soon found
+        known = given.posed
         depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
         rough = np.interp(sampled, known.frames, depths)
         rounds = (BETWEEN_POSED,)
     else:
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
-        floor_m = floor_height_m(given, stances, sampled, rough)
+        floor_m = floor_height_m(given, stances, rough)
     yield 0.1
     beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
     for turn, shares in enumerate(rounds):
@@ -113,7 +110,7 @@ def compose_frames(
             hips = np.stack([np.interp(time_s, time_s[rows], column) for column in path.hips.T], axis=-1)
             hips = np.stack([_smoothed(column, time_s) for column in hips.T], axis=-1)
             rough = np.array([camera.depth(at, int(frame)) for at, frame in zip(hips, sampled, strict=True)])
-            telling = part_beliefs(given, pools, stances, sampled, posture, hips, floor_m)
+            telling = part_beliefs(given, pools, stances, posture, hips, floor_m)
             beliefs = yield from scaled(telling, led, ended)
     return Composition(path, states, posture, floor_m)
 
@@ -123,25 +120,25 @@ def _every_second(count: int) -> IndexArray:
     return np.unique(np.append(np.arange(0, count, 2), count - 1)).astype(np.intp)
 
 
-def _posed_throughout(given: MatchInput, sampled: IndexArray) -> bool:
+def _posed_throughout(given: PosingInput) -> bool:
     """Whether the first and the last frame are posed, and others so often that the place is known."""
-    frames = given.constraints.frames
-    if not {int(sampled[0]), int(sampled[-1])} <= set(map(int, frames)):
+    frames = given.posed.frames
+    if not {int(given.sampled[0]), int(given.sampled[-1])} <= set(map(int, frames)):
         return False
     return bool((np.diff(given.evidence.tracks.time_s[frames]) <= LONGEST_GAP_S).all())
 
 
 def _costs(
-    given: MatchInput,
+    given: PosingInput,
     stances: StanceFeatures,
     frames: IndexArray,
     floor_m: float,
     beliefs: Sequence[PartBelief | None],
     weight: float,
 ) -> list[FrameCosts]:
-    """What some frames say, each of the given weight; posed ones hold."""
+    """What some frames say; where somebody has posed them, that."""
     costs = frame_costs(given, stances, frames, floor_m, beliefs)
-    posed = given.constraints
+    posed = given.posed
     for index, frame in enumerate(posed.frames):
         for row in np.flatnonzero(frames == frame):
             hips, points = posed.hips[index], posed.points[index]
@@ -150,22 +147,21 @@ def _costs(
 
 
 def frame_costs(
-    given: MatchInput,
+    given: PosingInput,
     stances: StanceFeatures,
     frames: IndexArray,
     floor_m: float | None,
     beliefs: Sequence[PartBelief | None] | None = None,
 ) -> list[FrameCosts]:
     """What some frames say of stances and limbs, and what a library's motion tells of them."""
-    unit = NoiseScales.of(given.evidence)
-    scales = replace(unit, centroid=unit.centroid * PART_SCALE)
-    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, floor_m, FLOOR_STD_M, scales)
+    likelihoods = frame_likelihoods(given.camera, given.evidence, frames, PART_SCALE)
     told = [None] * len(likelihoods) if beliefs is None else beliefs
     return [FrameCosts(each, stances, floor_m, own) for each, own in zip(likelihoods, told, strict=True)]
 
 
-def floor_height_m(given: MatchInput, stances: StanceFeatures, sampled: IndexArray, rough: Array) -> float:
+def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) -> float:
     """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
+    sampled = given.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
     free, heights = [], []
     for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):

@@ -12,8 +12,9 @@ import numpy as np
 from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN
 from ..body.limbs import LIMBS
-from ..matching.noise_scales import student_cost
+from ..numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from .composed_states import LEGS, FrameCosts, FrameStates
+from .frame_likelihood import student_cost
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
@@ -134,64 +135,6 @@ def limb_paths(
     for side, limb in enumerate(LEGS):
         found[:, LIMBS.index(limb)] = [own[pick] for own, pick in zip(rows[side], both[side], strict=True)]
     return found, posterior
-
-
-def cheapest_pairs(
-    own: Sequence[SingleArray], first: Sequence[SingleArray], second: Sequence[SingleArray]
-) -> tuple[IndexArray, IndexArray]:
-    """The cheapest path of pairs: rows and columns (T,) of (J, K) costs, with steps of either on its own."""
-    total, sources = own[0], []
-    for one, other, cost in zip(first, second, own[1:], strict=True):
-        through = total[:, None, :] + one[:, :, None]  # (J, J', K)
-        row = through.argmin(axis=0)
-        nearer = through.min(axis=0)[:, :, None] + other  # (J', K, K')
-        column = nearer.argmin(axis=1)
-        sources.append((row, column))
-        total = nearer.min(axis=1) + cost
-    pick = np.unravel_index(int(total.argmin()), total.shape)
-    path = [(int(pick[0]), int(pick[1]))]
-    for row, column in reversed(sources):
-        after, beside = path[-1]
-        before = int(column[after, beside])
-        path.append((int(row[after, before]), before))
-    found = np.array(path[::-1], dtype=np.intp)
-    return found[:, 0], found[:, 1]
-
-
-def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:
-    """(T,) rows of the cheapest path (Viterbi), by costs (K,) of rows and (J, K) of steps between them."""
-    total, sources = own[0], []
-    for step, cost in zip(steps, own[1:], strict=True):
-        through = total[:, None] + step
-        source = through.argmin(axis=0)
-        sources.append(source)
-        total = through[source, np.arange(len(cost))] + cost
-    rows = [int(total.argmin())]
-    for source in reversed(sources):
-        rows.append(int(source[rows[-1]]))
-    return np.array(rows[::-1], dtype=np.intp)
-
-
-def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[SingleArray]:
-    """Probabilities of each frame's rows given all frames."""
-    chance = [np.exp(-step) for step in steps]
-    forward = [_normalized(np.exp(own[0].min() - own[0]))]
-    for step, cost in zip(chance, own[1:], strict=True):
-        forward.append(_normalized((forward[-1] @ step) * np.exp(cost.min() - cost)))
-    backward = np.ones_like(own[-1])
-    found = [forward[-1]]
-    for index in range(len(own) - 2, -1, -1):
-        later = own[index + 1]
-        backward = _normalized(chance[index] @ (backward * np.exp(later.min() - later)))
-        found.append(_normalized(forward[index] * backward))
-    return found[::-1]
-
-
-def _normalized(share: SingleArray) -> SingleArray:
-    total = share.sum()
-    if not total > 0.0:
-        return np.full_like(share, 1.0 / len(share))
-    return np.asarray(share / total)
 
 
 def _step_cost(

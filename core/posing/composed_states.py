@@ -5,7 +5,7 @@ torso and the sum of its limbs' own, so that the best of all compositions is fou
 floor asks both legs: one of them stands on it, or none does.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,9 +15,7 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.center_of_mass import mass_weights
 from ..body.human import HUMAN
 from ..body.limbs import LIMBS
-from ..matching.emissions import EXCHANGED_COST, lowest
-from ..matching.frame_likelihood import FrameLikelihood, square_root
-from ..matching.noise_scales import student_cost
+from .frame_likelihood import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
 from .library_motion import PartBelief
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
@@ -154,14 +152,14 @@ class FrameCosts:
             cost += self.belief.stance[stance]
         for column, observed in enumerate(features.observed):
             at = local[:, column] + places
-            cost += self._point_cost(observed, at @ self.rows[observed].T)
+            cost += self.share * student_cost(((at @ self.rows[observed].T) ** 2).sum(axis=-1), 2)
             depth = self._hint_cost(observed, local[:, column] @ self.sight)
             if depth is not None:
                 cost += depth
             if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[stance, column]
-                entries = [moment @ _products(*pair) for pair in self._pairs(observed)]
-                cost += self._extent_cost(observed, entries, -at @ self.backward)
+                entries = [moment @ products(*pair) for pair in _pairs(self.axes[observed])]
+                cost += extent_cost(self.likelihood, observed, entries, -at @ self.backward)
         nearness = -places @ self.backward
         cost[nearness < 0.3] += np.float32(1e3)
         return cost
@@ -189,12 +187,11 @@ class FrameCosts:
                 cost += guessed
             if observed < self.markers and self.likelihood.unclipped[observed]:
                 moment = features.second_moment[:, column].T  # (6, L)
-                first, second = (axis @ turn for axis in self.axes[observed])
                 entries = [
-                    _products(*pair) @ moment for pair in ((first, first), (first, second), (second, second))
+                    products(*pair) @ moment for pair in _pairs([a @ turn for a in self.axes[observed]])
                 ]
                 away = -((origin + places) @ self.backward)[:, None] - (self.backward @ turn) @ local
-                cost += self._extent_cost(observed, entries, away)
+                cost += extent_cost(self.likelihood, observed, entries, away)
         return cost
 
     def foot_heights(self, limb: str, stance: IndexArray, places: SingleArray) -> SingleArray:
@@ -272,9 +269,6 @@ class FrameCosts:
             pairs = pairs + pair_costs(left, right, mass)
         return left, right, pairs
 
-    def _point_cost(self, observed: int, residual: SingleArray) -> SingleArray:
-        return np.asarray(self.share * student_cost((residual**2).sum(axis=-1), 2))
-
     def _hint_cost(self, observed: int, depth: SingleArray) -> SingleArray | None:
         """Cost of depths behind the hips where one was guessed; None where it was not."""
         guess = observed - self.markers
@@ -284,24 +278,6 @@ class FrameCosts:
             self.likelihood.depth_weight[guess]
         )
         return np.asarray(self.share * student_cost(off * off, 1))
-
-    def _pairs(self, observed: int) -> list[tuple[SingleArray, SingleArray]]:
-        a, b = self.axes[observed]
-        return [(a, a), (a, b), (b, b)]
-
-    def _extent_cost(self, marker: int, entries: Sequence[Any], depth: SingleArray) -> SingleArray:
-        xx, xy, yy = entries
-        predicted = square_root(xx, xy, yy)
-        seen = self.likelihood.extent[marker].astype(np.float32)
-        depth = np.maximum(depth, np.float32(0.1))
-        variance = (
-            np.float32(self.likelihood.extent_std_m[marker] ** 2)
-            + (np.float32(self.likelihood.pixel_size) * depth) ** 2
-        )
-        squared = sum(
-            (predicted[k] - seen[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
-        )
-        return student_cost(np.asarray(squared / variance), 3)
 
 
 def soft_least(cost: SingleArray) -> SingleArray:
@@ -313,8 +289,6 @@ def soft_least(cost: SingleArray) -> SingleArray:
     return np.asarray(least - np.log(np.exp(least[:, None] - cost).sum(axis=1)))
 
 
-def _products(first: SingleArray, second: SingleArray) -> SingleArray:
-    """(..., 6) coefficients of a symmetric matrix's entries in uᵀ S v."""
-    u, v = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
-    mixed = [u[i] * v[j] + u[j] * v[i] for i, j in ((0, 1), (0, 2), (1, 2))]
-    return np.stack([u[0] * v[0], u[1] * v[1], u[2] * v[2], *mixed], axis=-1)
+def _pairs(axes: Any) -> tuple[tuple[Any, Any], ...]:
+    first, second = axes
+    return (first, first), (first, second), (second, second)

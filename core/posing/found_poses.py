@@ -4,11 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from ..body.posture import Posture
-from ..footage.reading import Reading
 from ..library.several_libraries import COMPOSED
-from ..matching.candidates import MatchedFrame
 from ..prior.keyframes import Keyframe, Matched
 from ..take.take import Take
+from .candidates import MatchedFrame
 
 NEAR_FRAMES = 2
 """Found keyframes keep farther than this from posed ones."""
@@ -32,10 +31,7 @@ class FoundPoses:
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED
-    """Identifier of the library that was matched, where only one was."""
-    reading: Reading | None = None
-    """The clip as read again with the postures telling where each marker is; None where the given reading
-    holds."""
+    """Identifier of the library that all was composed of, where only one was asked."""
     between: tuple[int, int] | None = None
     """First and last frame that were looked at; None for the whole clip."""
 
@@ -49,7 +45,7 @@ class FoundPoses:
         chosen = frame.candidates[0]
         at = frame.index if index is None else index
         posture = chosen.posture if at == frame.index else self.postures[at]
-        said = Matched(self.library, chosen.name, chosen.mirrored, chosen.confidence)
+        said = Matched(COMPOSED, chosen.name, chosen.mirrored, chosen.confidence)
         return Keyframe(at, posture, matched=said)
 
     def sought(self, index: int) -> bool:

@@ -7,7 +7,6 @@ balance and joint limits, by how plausible its parts are, and by how well its su
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -21,17 +20,15 @@ from ..estimate.terms.assembly import free_frame_terms
 from ..estimate.terms.regions import FEATURES, RegionNoise, limb_widths
 from ..estimate.terms.term import total_cost
 from ..library.library import Library
-from ..matching.candidates import distinct_rows
-from ..matching.emissions import EXCHANGED_COST
-from ..matching.frame_likelihood import frame_likelihoods
-from ..matching.noise_scales import NoiseScales
 from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
-from .compose_clip import FLOOR_STD_M, PART_SCALE, WIDE
+from .candidates import distinct_rows
+from .compose_clip import PART_SCALE, WIDE
 from .composed_states import FrameCosts
+from .frame_likelihood import EXCHANGED_COST, frame_likelihoods
 from .frame_shown import FrameShown
 from .leg_pairs import NO_CONTACT_COST
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
-from .part_pools import PartPools, content_of, part_pools
+from .part_pools import PartPools, kept, part_pools
 from .plausibility import Plausibility, plausibility
 
 MOST_STARTS = 80
@@ -77,29 +74,13 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
     Raises:
         InputError: No library has a posture.
     """
-    usable = tuple(each for each in libraries if each.postures)
-    return _knowledge(_Given(body, usable, content_of(usable, body)))
+    usable = [each for each in libraries if each.postures]
 
+    def learn() -> Knowledge:
+        likely = plausibility(body, usable)
+        return Knowledge(part_pools(usable, body), likely)
 
-@dataclass(frozen=True, eq=False)
-class _Given:
-    """A body and libraries, alike where their contents are."""
-
-    body: Body
-    libraries: tuple[Library, ...]
-    content: tuple[object, ...]
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Given) and self.content == other.content
-
-    def __hash__(self) -> int:
-        return hash(self.content)
-
-
-@lru_cache(maxsize=4)
-def _knowledge(given: _Given) -> Knowledge:
-    likely = plausibility(given.body, given.libraries)
-    return Knowledge(part_pools(given.libraries, given.body), likely)
+    return kept(Knowledge, usable, body, learn)
 
 
 def search(
@@ -153,10 +134,8 @@ def _screened(
     is_exchanged: bool = False,
 ) -> Hypotheses:
     evidence = shown.compared.exchanged() if is_exchanged else shown.compared
-    usual = NoiseScales.of(evidence)
-    scales = replace(usual, centroid=usual.centroid * PART_SCALE)
     first = np.zeros(1, dtype=np.intp)
-    likelihood = frame_likelihoods(shown.camera, evidence, first, floor_m, FLOOR_STD_M, scales)[0]
+    likelihood = frame_likelihoods(shown.camera, evidence, first, PART_SCALE)[0]
     placed = place_standing(
         known.pools.body, shown.camera, 0, shown.tracks, shown.segments, evidence.keypoints
     )

@@ -15,7 +15,7 @@ from ..estimate.terms.regions import ObservedRegions
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
-from ..matching.match_evidence import MatchEvidence
+from .match_evidence import MatchEvidence
 
 
 @dataclass(frozen=True, eq=False)

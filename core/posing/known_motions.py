@@ -24,7 +24,7 @@ MOST_POSTURES = 450
 
 @dataclass(frozen=True, eq=False)
 class KnownMotions:
-    """S postures; the second half are the mirror images of the first. One in no motion is a motion of its own."""
+    """S postures, the second half the mirror images of the first; one in no motion is a motion of its own."""
 
     posture: Posture
     """(S,) facing -Y, the hips at the origin."""

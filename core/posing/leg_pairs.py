@@ -9,8 +9,8 @@ import numpy as np
 
 from ..arrays import IndexArray, SingleArray
 from ..estimate.terms.balance import STEP_M
-from ..matching.noise_scales import student_cost
 from ..numerics.robust import multivariate_cost
+from .frame_likelihood import student_cost
 
 MOST_PAIRED = 12
 """Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""

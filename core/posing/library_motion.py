@@ -6,7 +6,6 @@ through the clip by a hidden Markov model over whole postures and headings, and 
 probable become likelier. A part that the library has wrong is left to the evidence: the belief is bounded.
 """
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,18 +17,25 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.limbs import LIMBS
 from ..body.posture import Posture
-from ..matching.emissions import EXCHANGED_COST, lowest
-from ..matching.frame_likelihood import FrameLikelihood, frame_likelihoods, square_root
-from ..matching.library_match import tempering
-from ..matching.marker_moments import marker_moments
-from ..matching.match_evidence import MatchEvidence
-from ..matching.match_input import MatchInput
-from ..matching.noise_scales import DEGREES_OF_FREEDOM, student_cost
 from ..numerics.markov_chain import path_posteriors
 from ..progress import Part
+from .frame_likelihood import (
+    DEGREES_OF_FREEDOM,
+    ENTRIES,
+    EXCHANGED_COST,
+    FrameLikelihood,
+    extent_cost,
+    frame_likelihoods,
+    lowest,
+    marker_moments,
+    products,
+    student_cost,
+)
 from .known_motions import KnownMotions
+from .match_evidence import MatchEvidence
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM, PartPools
+from .posing_input import PosingInput, tempering
 
 MOST_COMPARED = 4
 """Libraries whose postures are compared with the footage: those nearest to a first composition."""
@@ -48,11 +54,12 @@ GOING_STD = 0.6
 """Going besides the motion's own [m/s]."""
 JUMP_RATE = 0.4
 """Jumps to another posture per second: one movement lasts a few seconds."""
-PERFORMERS_M = float(os.environ.get('PERF','0.10'))
+PERFORMERS_M = 0.10
 """Distance of a part's points between performers at the same moment of a motion."""
 
-CERTAINTY = float(os.environ.get('CERT','1.5'))
-"""How many times likelier parts at a library's own places are than others if it explains half the footage."""
+CERTAINTY = 0.4
+"""How many times likelier parts at a library's own places are than others if it explains half the footage,
+which grows with the square of the explained share's odds."""
 LEAST_SHARE = 1e-3
 
 
@@ -92,10 +99,9 @@ class _States:
 
 
 def part_beliefs(
-    given: MatchInput,
+    given: PosingInput,
     pools: PartPools,
     stances: StanceFeatures,
-    sampled: IndexArray,
     posture: Posture,
     hips: Array,
     floor_m: float,
@@ -106,7 +112,6 @@ def part_beliefs(
         given: The take.
         pools: The parts of the libraries.
         stances: The stances and limbs of these.
-        sampled: (T,) the frames.
         posture: (N,) a first composition of some frames of the clip.
         hips: (T, 3) its places, smoothed [m].
         floor_m: Height of the floor.
@@ -114,17 +119,18 @@ def part_beliefs(
     Yields:
         The fraction done.
     """
-    evidence = given.evidence
-    time_s = evidence.tracks.time_s[sampled]
+    evidence, sampled, time_s = given.evidence, given.sampled, given.time_s
     likelihoods = [
-        frame_likelihoods(given.camera, each, sampled, None, 1.0)
+        frame_likelihoods(given.camera, each, sampled)
         for each in ((evidence, evidence.exchanged()) if len(evidence.points) else (evidence,))
     ]
     velocity = np.gradient(hips[:, :2], time_s, axis=0) if len(hips) > 1 else np.zeros((1, 2))
 
     def states(whole: _Whole, row: int) -> _States:
         both = [
-            _states(each[row], whole, hips[row], floor_m, velocity[row], EXCHANGED_COST if swap else 0.0)
+            _states(
+                each[row], whole, hips[row], floor_m, velocity[row], float(EXCHANGED_COST) if swap else 0.0
+            )
             for swap, each in enumerate(likelihoods)
         ]
         return both[0] if len(both) == 1 else _merged(*both)
@@ -150,8 +156,10 @@ def part_beliefs(
         for a, b, duration in zip(found, found[1:], np.diff(time_s), strict=False)
     ]
     posterior = path_posteriors(own, steps)
-    explained = float(np.mean([chance @ each.explained for chance, each in zip(posterior, found, strict=True)]))
-    odds = CERTAINTY * explained / max(1.0 - explained, 0.02)
+    explained = float(
+        np.mean([chance @ each.explained for chance, each in zip(posterior, found, strict=True)])
+    )
+    odds = CERTAINTY * (explained / max(1.0 - explained, 0.02)) ** 2
     yield 0.9
     return _beliefs(best.motions, pools.body, stances, found, posterior, odds)
 
@@ -172,8 +180,7 @@ def _whole(motions: KnownMotions, body: Body, evidence: MatchEvidence) -> _Whole
     turn = yaw_rotation(2.0 * np.pi * np.arange(HEADINGS) / HEADINGS)
     places = np.einsum("hij,naj->ainh", turn, moments.centroid)
     second = np.einsum("hia,nmab,hjb->mijnh", turn, moments.second_moment, turn, optimize=True)
-    entries = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
-    rows = np.stack([second[:, i, j] for i, j in entries], axis=1)
+    rows = np.stack([second[:, i, j] for i, j in ENTRIES], axis=1)
     velocity = np.einsum("hij,nj->nhi", turn[:, :2, :2], motions.velocity)
     count = len(motions.names) * HEADINGS
     return _Whole(
@@ -219,31 +226,20 @@ def _states(
     markers = len(seen.unclipped)
     for guess in np.flatnonzero(seen.depth_weight):
         column = 3 * (markers + guess)
-        off = seen.sight.astype(np.float32) @ whole.places[column : column + 3] - np.float32(seen.depth_m[guess])
+        off = seen.sight.astype(np.float32) @ whole.places[column : column + 3] - np.float32(
+            seen.depth_m[guess]
+        )
         cost += share * student_cost((off * np.float32(seen.depth_weight[guess])) ** 2, 1)
     kept = lowest(cost, 4 * MOST_STATES, MARGIN + 6.0)
     cost = cost[kept]
     for marker in np.flatnonzero(seen.unclipped):
         at = place[:, kept] + whole.places[3 * marker : 3 * marker + 3, kept]
-        cost += _extent_cost(seen, whole.second_moment[marker][:, kept], marker, -seen.backward @ at)
+        a, b = seen.image_axes[marker].astype(np.float32)
+        moment = whole.second_moment[marker][:, kept]
+        entries = [products(*pair) @ moment for pair in ((a, a), (a, b), (b, b))]
+        cost += extent_cost(seen, marker, entries, np.asarray(-seen.backward @ at, dtype=np.float32))
     best = lowest(cost, MOST_STATES, MARGIN)
     return _States(kept[best], cost[best], explained[kept[best]] / np.float32(max(len(visible), 1)))
-
-
-def _extent_cost(seen: FrameLikelihood, moment: SingleArray, marker: int, depth: Array) -> SingleArray:
-    a, b = seen.image_axes[marker]
-
-    def product(u: Array, v: Array) -> Array:
-        mixed = [u[i] * v[j] + u[j] * v[i] for i, j in ((0, 1), (0, 2), (1, 2))]
-        return np.array([*(u * v), *mixed]) @ moment
-
-    predicted = square_root(product(a, a), product(a, b), product(b, b))
-    depth = np.maximum(depth, 0.1)
-    variance = seen.extent_std_m[marker] ** 2 + (seen.pixel_size * depth) ** 2
-    squared = sum(
-        (predicted[k] - seen.extent[marker, k] * depth) ** 2 * (2.0 if k == 1 else 1.0) for k in range(3)
-    )
-    return student_cost(np.asarray(squared / variance, dtype=np.float32), 3)
 
 
 def _merged(plain: _States, other: _States) -> _States:
@@ -258,7 +254,9 @@ def _merged(plain: _States, other: _States) -> _States:
     return _States(row[best], cost[best], explained[best])
 
 
-def _step_cost(motions: KnownMotions, before: IndexArray, after: IndexArray, duration_s: float) -> SingleArray:
+def _step_cost(
+    motions: KnownMotions, before: IndexArray, after: IndexArray, duration_s: float
+) -> SingleArray:
     """(J, K) costs of steps: on in the motion at about its speed, or to any other posture."""
     first, second = before // HEADINGS, after // HEADINGS
     gone = motions.time_s[second] - motions.time_s[first][:, None]
@@ -284,7 +282,7 @@ def _beliefs(
     body: Body,
     stances: StanceFeatures,
     states: Sequence[_States],
-    posterior: Sequence[Array],
+    posterior: Sequence[SingleArray],
     odds: float,
 ) -> list[PartBelief]:
     """Beliefs in the parts of probable postures, which are `odds` times likelier than parts far away."""

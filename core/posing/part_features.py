@@ -16,15 +16,13 @@ from ..body.mirror import mirrored
 from ..body.posture import Posture
 from ..body.soles import sole_places
 from ..estimate.ankle_height import standing_ankle_m
-from ..matching.marker_moments import marker_moments
-from ..matching.match_evidence import MatchEvidence
+from .frame_likelihood import ENTRIES, marker_moments
+from .match_evidence import MatchEvidence
 from .part_pools import ARM, PartPool, PartPools
 
 HEADINGS = 24
 TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of(name) == TRUNK]
 """The trunk's among the principal points."""
-ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-"""Entries of a symmetric matrix in the order of `second_moment`."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,10 @@ postures that no library has. Left and right limbs share one pool, mirrored.
 """
 
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from ..body.posture import Posture
 from ..library.library import Library
 from .known_motions import KnownMotions, known_motions
 
+Learned = TypeVar("Learned")
 ARM, LEG, TORSO = "arm", "leg", "torso"
 JOINTS = {
     TORSO: ("pelvis", "waist", "neck"),
@@ -121,30 +123,30 @@ def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
     return balls, hinges
 
 
-_KEPT: OrderedDict[tuple[object, ...], PartPools] = OrderedDict()
-MOST_KEPT = 4
-"""Pools kept for the next question about the same performer."""
+_KEPT: OrderedDict[tuple[object, ...], Any] = OrderedDict()
+MOST_KEPT = 8
+"""What is learned from libraries is kept for so many questions about other performers."""
 
 
 def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     """The parts of all libraries' postures and their mirror images on a body, with samples beside them."""
-    key = content_of(libraries, body)
+    return kept(PartPools, libraries, body, lambda: _part_pools(libraries, body))
+
+
+def kept(
+    kind: type[Learned], libraries: Sequence[Library], body: Body, learn: Callable[[], Learned]
+) -> Learned:
+    """What is learned from libraries for a body: once for their content, however often files are read."""
+    postures = [each.posture for one in libraries for each in one.postures]
+    shapes = [(one.translation.tobytes(), one.rotations.tobytes(), one.angles.tobytes()) for one in postures]
+    named = tuple((tuple(each.name for each in one.postures), one.motions) for one in libraries)
+    key = (kind, *sorted(body.actor.segments_m.items()), *map(hash, shapes), *named)
     if key not in _KEPT:
-        _KEPT[key] = _part_pools(libraries, body)
+        _KEPT[key] = learn()
         while len(_KEPT) > MOST_KEPT:
             _KEPT.popitem(last=False)
-    return _KEPT[key]
-
-
-def content_of(libraries: Sequence[Library], body: Body) -> tuple[object, ...]:
-    """What is learned from libraries depends on this, however often their files are read."""
-    lengths = tuple(sorted(body.actor.segments_m.items()))
-    postures = [each.posture for one in libraries for each in one.postures]
-    shapes = tuple(
-        hash((one.translation.tobytes(), one.rotations.tobytes(), one.angles.tobytes())) for one in postures
-    )
-    named = tuple((tuple(each.name for each in one.postures), one.motions) for one in libraries)
-    return (*lengths, *shapes, *named)
+    found: Learned = _KEPT[key]
+    return found
 
 
 def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:

@@ -5,38 +5,36 @@ that reconstructs motions, with the composed postures for its keyframes (`estima
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array
 from ..body.posture import Posture
 from ..errors import InputError
 from ..estimate.ankle_height import found_ankle_m
-from ..estimate.whole_clip import Believed, Seen, estimate_whole_clip
+from ..estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from ..footage.reading import Reading
 from ..library.library import Library
-from ..matching.candidates import MatchedFrame
-from ..matching.library_match import sampled_frames, tempering
-from ..matching.match_input import MatchInput, match_input
+from ..library.several_libraries import COMPOSED
 from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
-from ..progress import Job, Progress, stretch, within
-from ..take.performer_keypoints import performer_keypoints
+from ..progress import Job, Part, Progress, stretch, within
 from ..take.take import Take
 from ..text import Sentence
+from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
-from .composed_candidates import composed_candidates
-from .explained import contradicting, explained_shares
 from .found_poses import FoundPoses
+from .frame_likelihood import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
-from .posing_input import PosingInput, placed_in_clip, stretch_of
-from .second_reading import is_better, read_again
+from .posing_input import PosingInput, posing_input, stretch_of, tempering
 
-COMPOSED_SHARE, FITTED_SHARE = 0.8, 0.98
-"""Shares of the work after which postures are composed, and fitted to the footage."""
+CONTRADICTING = 3.0
+"""A marker or keypoint farther off than this many deviations between performers has not been explained."""
+LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8
+"""Shares of the work after which parts are learned, and postures composed."""
 
 
 def pose_clip(
@@ -74,86 +72,58 @@ def pose_clip(
     if not usable:
         raise InputError("no keyframe library with a posture is given; at least one is needed to find poses")
     with threadpool_limits(limits=1, user_api="blas"):
-        given = match_input(take, reading, keyframe_count)
-        yield Progress("Learning the parts of postures", 0.0)
-        search = _Search(take, usable, part_pools(usable, take.body), floor_m, between, frames)
-        found = yield from stretch(search.poses(given, reading), 0.05, 1.0)
-        again = None
-        if between is None:
-            again = yield from stretch(read_again(take, reading, found), 0.98, 0.98)
-        if again is not None:
-            repeated = search.poses(match_input(take, again, keyframe_count), again)
-            second = yield from stretch(repeated, 0.05, 1.0)
-            if is_better(second, found):
-                found = replace(second, reading=again)
-    yield Progress("Done", 1.0)
-    return found
-
-
-@dataclass(frozen=True, eq=False)
-class _Search:
-    """What is asked of a clip."""
-
-    take: Take
-    libraries: Sequence[Library]
-    pools: PartPools
-    floor_m: float | None
-    between: tuple[int, int] | None
-    frames: Sequence[int] | None
-
-    def poses(self, given: MatchInput, reading: Reading) -> Job[FoundPoses]:
-        """The postures by one reading of the clip."""
-        take = self.take
-        if self.frames is not None:
-            given = replace(given, keyframes=np.unique(np.array(self.frames, dtype=np.intp)))
-        floor_m = given.constraints.floor_m() if self.floor_m is None else self.floor_m
-        work = PosingInput(given, performer_keypoints(take, None, reading.tracks))
+        given = posing_input(take, reading, keyframe_count)
+        if frames is not None:
+            given = replace(given, keyframes=np.unique(np.array(frames, dtype=np.intp)))
+        floor_m = given.posed.floor_m() if floor_m is None else floor_m
         count = given.evidence.tracks.frame_count
-        if self.between is not None:
-            work = stretch_of(work, *self.between)
-        given = work.given
-        stances = stance_features(self.pools, given.evidence)
-        sampled = sampled_frames(
-            given.evidence.tracks, np.concatenate([given.keyframes, given.constraints.frames])
-        )
-        composing = compose_frames(given, self.pools, stances, sampled, floor_m)
-        composed = yield from within("Composing postures", composing, 0.0, COMPOSED_SHARE)
-        fitting = _fitted(take, work, sampled, composed)
-        postures = yield from stretch(fitting, COMPOSED_SHARE, FITTED_SHARE)
-        explained, off = explained_shares(given, sampled, postures[sampled])
-        found = _candidates(self.pools, stances, work, sampled, composed, postures, explained)
+        if between is not None:
+            given = stretch_of(given, *between)
+        yield Progress("Learning the parts of postures", 0.0)
+        pools = part_pools(usable, take.body)
+        stances = stance_features(pools, given.evidence)
+        composing = compose_frames(given, pools, stances, floor_m)
+        composed = yield from within("Composing postures", composing, LEARNED_SHARE, COMPOSED_SHARE)
+        fitting = within("Fitting the postures", _fitting(take, given, composed), 0.0, 1.0)
+        result = yield from stretch(fitting, COMPOSED_SHARE, 1.0)
+        postures = result.posture
+        explained, off = _explained(given, postures[given.sampled])
+        candidates = _candidates(pools, stances, given, composed, postures, explained)
         seen = np.isfinite(off).any(axis=1)
         fit = float(explained[seen].mean()) if seen.any() else 0.0
-        if self.between is not None:
-            ends = Keyframe(work.first, postures[0]), Keyframe(self.between[1], postures[-1])
+        if between is not None:
+            ends = Keyframe(between[0], postures[0]), Keyframe(between[1], postures[-1])
             elsewhere = interpolate(take.keyframes or ends, count)
-            postures = placed_in_clip(postures, elsewhere, work.first)
-        return FoundPoses(
-            found,
-            postures,
-            fit,
-            composed.floor_m,
-            Sentence("the found poses explain {fit:.0%} of the footage", fit=fit),
-            _contradictions(take, work, sampled, off),
-            between=self.between,
-        )
+            rest = elsewhere[: between[0]], postures, elsewhere[between[1] + 1 :]
+            postures = Posture.concatenate(list(rest))
+    yield Progress("Done", 1.0)
+    one = usable[0].identifier if len(usable) == 1 else COMPOSED
+    return FoundPoses(
+        candidates,
+        postures,
+        fit,
+        composed.floor_m,
+        Sentence("the found poses explain {fit:.0%} of the footage", fit=fit),
+        _contradictions(take, given, off),
+        one,
+        between,
+    )
 
 
-def _fitted(take: Take, work: PosingInput, sampled: IndexArray, composed: Composition) -> Job[Posture]:
-    """(F,) the composed postures held against the footage; posed frames stay."""
-    given = work.given
-    time_s = given.evidence.tracks.time_s[sampled]
-    scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(time_s)))  # neighbors err alike
+def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[WholeClipResult]:
+    """The estimate that holds the composed postures against the footage; posed frames stay."""
+    sampled = given.sampled
+    scale = np.full(len(sampled), 1.0 / np.sqrt(tempering(given.time_s)))  # neighbors err alike
     own = [composed.posture[row] for row in range(len(sampled))]
-    for frame, posture in zip(given.constraints.frames, given.constraints.postures, strict=True):
+    for frame, posture in zip(given.posed.frames, given.posed.postures, strict=True):
         row = int(np.searchsorted(sampled, frame))
         own[row], scale[row] = posture, 0.0
     tracks = given.evidence.tracks
     keyframes = tuple(Keyframe(int(frame), posture) for frame, posture in zip(sampled, own, strict=True))
-    fitting = estimate_whole_clip(
+    return estimate_whole_clip(
         given.body,
         given.camera,
-        Seen(tracks, take.marker_segments, work.keypoints),
+        Seen(tracks, take.marker_segments, given.keypoints),
         Believed(
             interpolate(keyframes, tracks.frame_count),
             tuple(map(int, sampled)),
@@ -161,45 +131,64 @@ def _fitted(take: Take, work: PosingInput, sampled: IndexArray, composed: Compos
             found_ankle_m(given.body, Posture.stack(own), sampled, tracks.frame_count, composed.floor_m),
         ),
     )
-    return (yield from within("Fitting the postures", fitting, 0.0, 1.0)).posture
+
+
+def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
+    """How much postures explain.
+
+    Args:
+        given: The take.
+        posture: (T,) postures of the frames that are looked at.
+
+    Returns:
+        (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
+        (T, A) how far each is off in standard deviations of performers' differences; NaN where not seen.
+    """
+    places = marker_moments(given.body, given.evidence, posture).centroid + posture.translation[:, None]
+    likelihoods = frame_likelihoods(given.camera, given.evidence, given.sampled)
+    shares, off = np.zeros(len(given.sampled)), np.full(places.shape[:2], np.nan)
+    for row, likelihood in enumerate(likelihoods):
+        if not likelihood.visible.any():
+            continue
+        residual = np.einsum("aki,ai->ak", likelihood.image_axes, places[row] - likelihood.location)
+        distance = np.linalg.norm(residual * likelihood.weight[:, None], axis=-1)
+        off[row, likelihood.visible] = distance[likelihood.visible]
+        shares[row] = float((1.0 / (1.0 + off[row, likelihood.visible] ** 2 / DEGREES_OF_FREEDOM)).mean())
+    return shares, off
 
 
 def _candidates(
     pools: PartPools,
     stances: StanceFeatures,
-    work: PosingInput,
-    sampled: IndexArray,
+    given: PosingInput,
     composed: Composition,
     fitted: Posture,
     explained: Array,
 ) -> tuple[MatchedFrame, ...]:
     frames = []
-    for row in map(int, np.searchsorted(sampled, work.given.keyframes)):
-        index = int(sampled[row])
-        torso = int(composed.path.stance[row]) // HEADINGS
+    for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
+        index = int(given.sampled[row])
         found = composed_candidates(
             pools,
             stances,
             composed.states[row],
             composed.path.posterior[row],
-            index + work.first,
+            index + given.first,
             fitted[index],
-            torso,
+            int(composed.path.stance[row]) // HEADINGS,
             float(explained[row]),
         )
         frames.append(found)
     return tuple(frames)
 
 
-def _contradictions(
-    take: Take, work: PosingInput, sampled: IndexArray, off: Array
-) -> Mapping[int, tuple[str, ...]]:
+def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
     """Names of what a proposed frame's posture does not explain, by its index in the clip."""
     markers = tuple(style.name for style in take.markers)
-    names = (*markers, *work.given.evidence.keypoints.names)
+    names = (*markers, *given.evidence.keypoints.names)
     found = {}
-    for row in map(int, np.searchsorted(sampled, work.given.keyframes)):
-        wrong = tuple(names[column] for column in np.flatnonzero(contradicting(off[row])))
+    for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
+        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > CONTRADICTING))
         if wrong:
-            found[int(sampled[row]) + work.first] = wrong
+            found[int(given.sampled[row]) + given.first] = wrong
     return found

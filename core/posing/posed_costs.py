@@ -3,8 +3,8 @@
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..matching.frame_likelihood import FrameLikelihood
 from .composed_states import FrameCosts, FrameStates
+from .frame_likelihood import FrameLikelihood
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
 
 POINT_STD_M = 0.06

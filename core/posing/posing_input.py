@@ -1,66 +1,168 @@
-"""What poses are found from: a clip's evidence with its posed keyframes, or a stretch of it."""
+"""What of a take its poses are found from: evidence, the frames asked for, and what is posed."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 
+from ..arrays import Array, IndexArray
+from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..body.soles import sole_heights_m
+from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
+from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from ..matching.match_evidence import MatchEvidence
-from ..matching.match_input import MatchInput
-from ..matching.posed_constraints import PosedConstraints
+from ..prior.evidence_speed import evidence_speed
+from ..prior.keyframe_proposals import propose_keyframes
+from ..prior.keyframes import Keyframe
+from ..progress import run
+from ..take.performer_keypoints import performer_keypoints
+from ..take.take import Take
+from .match_evidence import MatchEvidence
+
+SAMPLES_PER_S = 15.0
+"""Rate at which a clip is sampled: between samples this near a motion's posture is well known."""
+CORRELATION_S = 0.25
+"""Time over which a performer differs from known postures in the same way: frames nearer count less each."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosedFrames:
+    """K keyframes that a person posed, in order of time."""
+
+    body: Body
+    frames: IndexArray
+    """(K,) indices in the clip."""
+    postures: tuple[Posture, ...]
+
+    @classmethod
+    def of(cls, body: Body, keyframes: Sequence[Keyframe]) -> "PosedFrames":
+        """Those of some keyframes that a person has posed."""
+        posed = sorted((each for each in keyframes if each.matched is None), key=lambda each: each.index)
+        frames = np.array([each.index for each in posed], dtype=np.intp)
+        return cls(body, frames, tuple(each.posture for each in posed))
+
+    @cached_property
+    def hips(self) -> Array:
+        """(K, 3) places of the hips [m]."""
+        return np.array([posture.translation for posture in self.postures]).reshape(-1, 3)
+
+    @cached_property
+    def points(self) -> Array:
+        """(K, P, 3) points relative to the hips [m]."""
+        batch = Posture.stack(list(self.postures))
+        return np.asarray(self.body.points(self.body.pose(batch)) - self.hips[:, None])
+
+    def floor_m(self) -> float | None:
+        """Height of the lowest sole [m]; None where nothing is posed."""
+        if not self.postures:
+            return None
+        batch = Posture.stack(list(self.postures))
+        return float(sole_heights_m(self.body, self.body.pose(batch)).min())
 
 
 @dataclass(frozen=True, eq=False)
 class PosingInput:
-    """A clip, or some frames of it in a row."""
+    """A clip, or some frames of it in a row, from which indices count."""
 
-    given: MatchInput
-    """Evidence, frames proposed for keyframes and posed ones, counted from the first of these frames."""
+    body: Body
+    camera: Camera
+    evidence: MatchEvidence
+    keyframes: IndexArray
+    """(K,) frames whose posture is asked for."""
+    posed: PosedFrames
     keypoints: Keypoints
-    """All the performer's keypoints, in the detector's layout."""
+    """All the performer's, in the detector's layout."""
     first: int = 0
     """Index of the first of these frames in the clip."""
+
+    @cached_property
+    def sampled(self) -> IndexArray:
+        """(T,) the frames that are looked at: evenly spaced ones, the last, and those asked for or posed."""
+        time_s = self.evidence.tracks.time_s
+        duration = float(time_s[-1] - time_s[0]) / max(len(time_s) - 1, 1)
+        stride = max(1, round(1.0 / SAMPLES_PER_S / duration)) if duration > 0.0 else 1
+        even = np.arange(0, len(time_s), stride)
+        every = np.concatenate([even, [len(time_s) - 1], self.keyframes, self.posed.frames])
+        return np.unique(every).astype(np.intp)
+
+    @cached_property
+    def time_s(self) -> Array:
+        """(T,) times of the frames that are looked at."""
+        return self.evidence.tracks.time_s[self.sampled]
+
+
+def tempering(time_s: Array) -> float:
+    """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
+    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+
+
+def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None) -> PosingInput:
+    """Gather what a take has to find its poses by; pictures are not asked.
+
+    Args:
+        take: The take; what was found of it earlier is not used.
+        reading: The clip as `read_footage` has read it.
+        keyframe_count: Number of frames to ask for; 10 per 100 frames where None.
+
+    Raises:
+        InputError: Neither a marker nor a keypoint is seen.
+    """
+    check_followed(take)
+    tracks = reading.tracks
+    keypoints = performer_keypoints(take, None, tracks)
+    if not (tracks.visible.any() or keypoints.seen.any()):
+        given = (("marker", take.markers), ("keypoint", take.keypoints))
+        missing = " and ".join(name for name, has in given if has)
+        raise InputError(f"{take.clip}: no {missing} is seen in the footage, so no posture can be found")
+    speed = run(evidence_speed(tracks, take.marker_segments, keypoints))
+    return PosingInput(
+        take.body,
+        take.camera,
+        MatchEvidence.of(tracks, take.marker_segments, keypoints),
+        propose_keyframes(speed.values, keyframe_count),
+        PosedFrames.of(take.body, take.keyframes),
+        keypoints,
+    )
+
+
+def check_followed(take: Take) -> None:
+    """Refuse a take that has nothing to find postures by.
+
+    Raises:
+        InputError: It has neither markers nor keypoints.
+    """
+    if not (take.markers or take.keypoints):
+        raise InputError(
+            f"{take.file}: the take has neither markers nor keypoints, without which no posture can be "
+            "found; give it one of them, or pose its keyframes"
+        )
 
 
 def stretch_of(whole: PosingInput, first: int, last: int) -> PosingInput:
     """The frames from a first to a last one, both included."""
-    own, given = slice(first, last + 1), whole.given
-    evidence = given.evidence
-    posed = [
-        (int(frame), posture)
-        for frame, posture in zip(given.constraints.frames, given.constraints.postures, strict=True)
-        if first <= frame <= last
-    ]
-    held = [frame for frame, _ in posed]
-    inside = [frame for frame in map(int, given.keyframes) if first <= frame <= last and frame not in held]
-    constraints = PosedConstraints(
-        given.body,
-        np.array([frame - first for frame, _ in posed], dtype=np.intp),
-        tuple(posture for _, posture in posed),
-    )
-    part = replace(
-        given,
-        camera=_camera(given.camera, own),
+    own, posed = slice(first, last + 1), whole.posed
+    rows = np.flatnonzero((posed.frames >= first) & (posed.frames <= last))
+    held = posed.frames[rows]
+    asked = whole.keyframes
+    inside = asked[(asked >= first) & (asked <= last) & ~np.isin(asked, held)]
+    camera, evidence = whole.camera, whole.evidence
+    if camera.is_moving:
+        camera = replace(camera, matrix_world=camera.matrix_world[own])
+    return replace(
+        whole,
+        camera=camera,
         evidence=MatchEvidence(
             _tracks(evidence.tracks, own), evidence.segments, _keypoints(evidence.keypoints, own)
         ),
-        keyframes=np.array(inside, dtype=np.intp) - first,
-        constraints=constraints,
+        keyframes=inside - first,
+        posed=PosedFrames(whole.body, held - first, tuple(posed.postures[row] for row in rows)),
+        keypoints=_keypoints(whole.keypoints, own),
+        first=whole.first + first,
     )
-    return PosingInput(part, _keypoints(whole.keypoints, own), whole.first + first)
-
-
-def placed_in_clip(part: Posture, whole: Posture, first: int) -> Posture:
-    """Postures of a whole clip with those of a stretch in their place."""
-    last = first + part.batch[0]
-    return Posture.concatenate([whole[:first], part, whole[last:]])
-
-
-def _camera(camera: Camera, own: slice) -> Camera:
-    return replace(camera, matrix_world=camera.matrix_world[own]) if camera.is_moving else camera
 
 
 def _tracks(tracks: RegionTracks, own: slice) -> RegionTracks:

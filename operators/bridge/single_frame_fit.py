@@ -27,11 +27,11 @@ from ...core.footage.reading_key import of_same_footage, reading_key
 from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
 from ...core.footage.single_frame_regions import regions_of_frame
 from ...core.library.library import Library
-from ...core.matching.candidates import Candidate
-from ...core.matching.posed_constraints import PosedConstraints
 from ...core.observation.regions import MarkerPlacement, RegionModel
+from ...core.posing.candidates import Candidate
 from ...core.posing.frame_poses import find_frame_poses, near_pose
 from ...core.posing.frame_shown import FrameShown
+from ...core.posing.posing_input import PosedFrames
 from ...core.prior.frame_prior import prior_from_keyframes, prior_from_pose
 from ...core.prior.keyframes import Keyframe
 from .actor_lengths import read_body
@@ -227,7 +227,7 @@ def fit_to_frame(
         found = near_pose(shown, belief)
     else:
         if floor_m is None:
-            floor_m = PosedConstraints.from_keyframes(body, posed).floor_m()
+            floor_m = PosedFrames.of(body, posed).floor_m()
         found = find_frame_poses(shown, libraries, floor_m, belief)
     posture = found.candidates[0].posture
     off = frame_residuals(evidence, shown.regions, here, posture, len(posed))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 if TYPE_CHECKING:
-    from ...core.matching.candidates import Candidate
+    from ...core.posing.candidates import Candidate
 
 
 def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:

@@ -32,6 +32,15 @@ def find_registered(identifier: str) -> Library | None:
     return next((library for library in found if library is not None), None)
 
 
+def named_libraries(name: str) -> Sequence[Library]:
+    """All libraries where `EVERY_LIBRARY` is said, else the one of this identifier, title or file.
+
+    Raises:
+        InputError: There is no such library.
+    """
+    return all_libraries() if name == EVERY_LIBRARY else [load_registered(name)]
+
+
 def registered_identifiers() -> set[str]:
     """Identifiers of all registered libraries, those of unusable files included."""
     return {entry.identifier for entry in registered_libraries(folders())}

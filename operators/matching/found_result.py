@@ -64,7 +64,7 @@ class FoundResult:
             if not has_frame(posed, float(frames[keyframe.index]))
             and not has_frame(decided, float(frames[keyframe.index]))
         ]
-        keep_reading(take, found.reading or self.clip.reading)
+        keep_reading(take, self.clip.reading)
         if self.proposals is not None:
             keep_speed(take, frames, self.proposals.speed)
             take.proposals.clear()

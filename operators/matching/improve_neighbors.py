@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 from ...core.errors import KeymarkError
+from ...core.library.several_libraries import EVERY_LIBRARY
 from ...core.progress import run
 from ..keypoints.evidence import followed_markers
 from ..markers.ignored_regions import ignored_regions
@@ -62,7 +63,7 @@ def _pose_anew(
     from ...core.posing.pose_clip import pose_clip
     from ...core.posing.section import section_around, take_around
     from ..bridge.scene_frames import scene_frames
-    from ..library.registry_files import all_libraries
+    from ..library.registry_files import named_libraries
     from .found_result import write_found
     from .scene_clip import SceneClip, read_known_take
 
@@ -75,8 +76,9 @@ def _pose_anew(
     take = take_around(known, section)
     matching = settings.matching
     floor_m = float(matching.floor_found) if matching.is_property_set("floor_found") else None
+    libraries = named_libraries(matching.library_name or EVERY_LIBRARY)
     between = section.first, section.last
-    job = pose_clip(take, reading, all_libraries(), floor_m, between=between, frames=section.changed)
+    job = pose_clip(take, reading, libraries, floor_m, between=between, frames=section.changed)
     found = run(job)
     keyframes = [found.keyframe(each) for each in found.frames]
     for each in keyframes:

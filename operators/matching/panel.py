@@ -1,4 +1,4 @@
-"""Panels of found keyframes: the list with the candidates of a frame, and matching a named library."""
+"""Panel of found keyframes: the list, the candidates of a frame, and what finding assumes."""
 
 import bpy
 
@@ -6,7 +6,7 @@ from ...core.library.several_libraries import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
 from ..shell.messages import label, pgettext_n
-from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
+from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
@@ -74,6 +74,7 @@ class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
             )
             _draw_jumps(column, take)
             _draw_candidates(column, context, take)
+        column.prop(matching, "library")
         column.prop(matching, "improve_neighbors")
         column.prop(matching, "floor")
         if matching.floor == "HEIGHT":
@@ -130,23 +131,4 @@ def _draw_candidates(
     row.operator("keymark.remove_match", icon="X")
 
 
-class KEYMARK_PT_matching(TakePanel, bpy.types.Panel):
-    """Matching with a library that the animator names."""
-
-    bl_label = "Match a Library"
-    bl_parent_id = "KEYMARK_PT_keyframes"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the library, and the button or the running job."""
-        matching, column = active_take(context.scene).matching, self.column()
-        column.prop(matching, "library")
-        row = column.row()
-        row.scale_y = 1.2
-        if not draw_progress(row, context, "keymark.match_library"):
-            row.operator("keymark.match_library", icon="VIEWZOOM")
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_UL_matches, KEYMARK_PT_found, KEYMARK_PT_matching)
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches, KEYMARK_PT_found))

@@ -21,19 +21,17 @@ FLOORS = (
 )
 
 
-UNCHOSEN = ("", EVERY_LIBRARY)
-"""Names while no library is chosen; earlier versions offered all of them as one entry."""
-
 Entry = tuple[str, str, str, str, int]
 _entries: list[Entry] = []
 """Items of the menu of libraries: Blender keeps no copy of the strings."""
 
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
-    """All registered libraries, and the chosen one even if it is missing."""
-    rows = [item[:4] for item in library_items(matching, context)]
+    """All of them as one entry, each registered library, and the chosen one even if it is missing."""
+    every = (EVERY_LIBRARY, "All Libraries", "Each limb may come from another library", "ASSET_MANAGER")
+    rows = [every, *(item[:4] for item in library_items(matching, context))]
     name = matching.library_name
-    if name not in UNCHOSEN and all(name != row[0] for row in rows):
+    if name and all(name != row[0] for row in rows):
         rows.append((name, name, label("This library is not there any more; import it again"), "ERROR"))
     _entries[:] = [(*row, number) for number, row in enumerate(rows)]
     return _entries
@@ -160,12 +158,13 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
 
     library_name: bpy.props.StringProperty(
         name="Library",
-        description="Identifier of the library to match with; the numbers of menu items may change",
+        description="Identifier of the only library to use; the numbers of menu items may change",
         options={"HIDDEN"},
     )
     library: bpy.props.EnumProperty(
         name="Library",
-        description="Library that the footage is matched with",
+        description="What is known of postures while keyframes are sought: all libraries, or one with "
+        "the performer's own motion",
         items=_libraries,
         get=_library_number,
         set=_set_library,

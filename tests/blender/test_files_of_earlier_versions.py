@@ -217,7 +217,7 @@ def test_footage_is_matched_again_beside_what_is_posed(saved: Saved, scene: bpy.
     """The library is asked for by the name that the file remembers; posed keyframes stay."""
     take = active_take(scene)
     poses = {key.co.x: key.co.y for key in keyed(take) if key.type == "KEYFRAME"}
-    assert bpy.ops.keymark.match_library(library=take.matching.library_name) == {"FINISHED"}
+    assert bpy.ops.keymark.pose_all(library=take.matching.library_name) == {"FINISHED"}
     take = active_take(scene)
     assert {key.co.x: key.co.y for key in keyed(take) if key.type == "KEYFRAME"} == poses
     assert len(poses) == 2 and len(take.matching.matches) > saved.property("matching.matches.len")

@@ -24,7 +24,6 @@ ROOMS = (
     ("core.observation", "core.library"),
     ("core.prior",),
     ("core.take",),
-    ("core.matching",),
     ("core.estimate",),
     ("core.posing",),
     ("core.finish", "core.review"),

@@ -10,9 +10,8 @@ from ...files.fields import Fields
 from ...files.inherited_fields import PLACED, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
-from ...library.several_libraries import EVERY_LIBRARY
-from ...matching.match_input import check_followed
 from ...pipeline.found_keyframes import take_to_convert
+from ...posing.posing_input import check_followed
 from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
 from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
@@ -82,8 +81,6 @@ SECONDS_FOR_CONTOURS, SECONDS_FOR_WIDE_CONTOURS = 0.006, 0.009
 """A frame, with markers and without, where contours are searched far and wide."""
 SECONDS_A_MEGAPIXEL = 0.012
 """Decoding and following the markers."""
-SECONDS_TO_MATCH = 0.02
-"""A frame, with one library."""
 SECONDS_TO_POSE = 0.1
 """A frame, with all libraries."""
 BYTES_A_TAKE = 1_800_000
@@ -113,7 +110,7 @@ def estimate_cost(
         frames: Number of frames of its clip.
         size: Width and height of the clip [px].
         method: One of `METHODS`.
-        library: The library that keyframes are found with, `EVERY_LIBRARY` for all of them, or None.
+        library: The library that keyframes are found with; None where all are posed.
         evidence: Kinds of evidence that it is held against.
     """
     a_frame = SECONDS_A_FRAME[method] + SECONDS_A_MEGAPIXEL * size[0] * size[1] / 1e6
@@ -122,7 +119,7 @@ def estimate_cost(
     if method == "map" and CONTOURS in evidence:
         a_frame += SECONDS_FOR_CONTOURS if MARKERS in evidence else SECONDS_FOR_WIDE_CONTOURS
     if library is not None:
-        a_frame += SECONDS_TO_POSE if library == EVERY_LIBRARY else SECONDS_TO_MATCH
+        a_frame += SECONDS_TO_POSE
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)
 
 

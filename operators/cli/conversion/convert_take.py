@@ -139,7 +139,8 @@ def _convert(prepared: _Prepared, console: Console, debug: bool) -> Conversion:
         console.stage("Opening the character")
         with opened_character(settings.character.file, settings.character.map, debug):
             pass  # what is wrong with it is better known before the work
-    job = find_and_reconstruct(take, settings.library, prepared.libraries, method, settings.floor_m)
+    libraries = None if settings.library is None else prepared.libraries
+    job = find_and_reconstruct(take, libraries, method, settings.floor_m)
     reconstructed = run(job, console.progress)
     take, result = reconstructed.take, reconstructed.reconstruction
     console.stage("Writing the motion")

@@ -204,7 +204,7 @@ def test_what_is_missing_is_said(plain: bpy.types.Scene, keypoint_file: Path) ->
     take = active_take(plain)
     assert contours_label(take) == "Camera stands still"
     with pytest.raises(RuntimeError, match="needs more than contours"):
-        bpy.ops.keymark.match_library()
+        bpy.ops.keymark.pose_all()
     take.follow.use_contours = False
     with pytest.raises(RuntimeError, match="Switch on the contours, load keypoints"):
         bpy.ops.keymark.reconstruct()

@@ -15,13 +15,14 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import posing_all as bench  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.library.library_file import read_library  # noqa: E402
-from keymark.core.matching.candidates import Candidate, MatchedFrame  # noqa: E402
+from keymark.core.posing.candidates import Candidate, MatchedFrame  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from trials import Trial, read_unposed  # noqa: E402
 
 FRAMES = 24
 WALKING = read_library(ROOT / "presets" / "keyframes" / "walking.json")
+WAVING = read_library(ROOT / "presets" / "keyframes" / "waving.json")
 
 
 @pytest.fixture(scope="module")
@@ -65,32 +66,31 @@ def test_a_take_is_posed_as_a_whole_between_two_frames_and_by_its_own_library(
     asked: list[dict[str, Any]] = []
 
     def pose(
-        take: Take, _reading: object, _libraries: object, floor_m: float | None = None, between: Any = None
+        take: Take, _reading: object, libraries: Any, floor_m: float | None = None, between: Any = None
     ) -> Iterator[Any]:
         yield from ()
-        asked.append({"posed": take.keyframe_indices, "between": between, "floor_m": floor_m})
+        names = [library.identifier for library in libraries]
+        asked.append(
+            {"posed": take.keyframe_indices, "between": between, "floor_m": floor_m, "libraries": names}
+        )
         return found()
 
-    def matched(name: str, take: Take, _reading: object, library: Any) -> tuple[FoundPoses, float]:
-        asked.append({"library": library.identifier, "posed": take.keyframe_indices})
-        return found(), 1.0
-
     monkeypatch.setattr(bench, "pose_clip", pose)
-    monkeypatch.setattr(bench, "matched", matched)
     monkeypatch.setitem(bench.FITTING, "sway", "walking")
-    results = {name: bench.measure(name, trial, (WALKING,)) for name in ("sway", "juggling")}
+    results = {name: bench.measure(name, trial, (WALKING, WAVING)) for name in ("sway", "juggling")}
+    every = ["walking", "waving"]
     whole = {"posed": (), "between": None, "floor_m": None}
     ends = asked[2]["between"]
     assert asked[:3] == [
-        whole,
-        {"library": "walking", "posed": ()},
-        {"posed": ends, "between": ends, "floor_m": 0.0},
+        {**whole, "libraries": every},
+        {**whole, "libraries": ["walking"]},
+        {"posed": ends, "between": ends, "floor_m": 0.0, "libraries": every},
     ]
     assert 0 <= ends[0] < ends[1] < FRAMES
     assert len(asked) == 5
     sway, juggling = results["sway"], results["juggling"]
-    assert (sway.matched_rooted, sway.matched) == (sway.rooted, sway.mpjpe)
-    assert juggling.matched is None and juggling.confidence == 0.6
+    assert (sway.by_one_rooted, sway.by_one) == (sway.rooted, sway.mpjpe)
+    assert juggling.by_one is None and juggling.confidence == 0.6
     lines = bench.table(results).splitlines()
     assert len({line.count("|") for line in lines[2:]}) == 1
-    assert lines[-2].endswith("|  |  |") and lines[-1].endswith(f"| {sway.matched:.0f} |")
+    assert lines[-2].endswith("|  |  |") and lines[-1].endswith(f"| {sway.by_one:.0f} |")

@@ -11,8 +11,8 @@ import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
 from keymark.core.library.learning import LibraryMetadata, learn_library
 from keymark.core.library.library_file import library_digest, read_library, write_library
-from keymark.core.matching.candidates import Candidate, MatchedFrame
 from keymark.core.pipeline import found_keyframes
+from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.motion_file import read_motion
@@ -69,7 +69,7 @@ def test_a_take_without_keyframes_is_matched(
     assert (
         [row["frame"] for row in rows] == [match["frame"] for match in said["matches"]] == said["keyframes"]
     )
-    assert {row["matched"]["library"] for row in rows} == {"swaying"}
+    assert {row["matched"]["library"] for row in rows} == {"composed"}
     assert all(0.0 <= match["confidence"] <= 1.0 for match in said["matches"])
     assert said["reason"] in said["notes"] and not any("left aside" in note for note in said["notes"])
     assert str(out / "keyframes.json") in said["files"]
@@ -99,7 +99,7 @@ def test_posed_and_matched_keyframes_work_together(
     assert convert(take, out, *more) == 0
     rows = json.loads((out / "keyframes.json").read_text(encoding="utf-8"))["keyframes"]
     assert [row["frame"] for row in rows if "matched" not in row] == [posed[1]["frame"]]
-    assert {row["matched"]["library"] for row in rows if "matched" in row} == {"swaying"}
+    assert {row["matched"]["library"] for row in rows if "matched" in row} == {"composed"}
     assert not any("left aside" in note for note in said_as_json(capsys)["notes"])
 
 

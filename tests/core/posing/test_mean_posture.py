@@ -9,7 +9,6 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.limbs import LIMBS
 from keymark.core.body.posture import Posture
 from keymark.core.library.library import Library
-from keymark.core.matching.match_input import match_input
 from keymark.core.posing.composed_path import ComposedPath
 from keymark.core.posing.composed_states import FrameStates
 from keymark.core.posing.mean_posture import mean_postures
@@ -20,6 +19,7 @@ from keymark.core.posing.part_features import (
     stance_features,
 )
 from keymark.core.posing.part_pools import PartPools, part_pools
+from keymark.core.posing.posing_input import posing_input
 
 ARM = "arm.L"
 STANCE, HIPS = 3, np.array([0.2, 0.1, 0.9])
@@ -31,7 +31,7 @@ def known(walking: Library) -> Known:
     """The parts of one library, for markers."""
     pools = part_pools([walking], BODY)
     take, reading = filmed(performed(walking, 0.0), camera())
-    return pools, stance_features(pools, match_input(take, reading).evidence)
+    return pools, stance_features(pools, posing_input(take, reading).evidence)
 
 
 def path_of(known: Known, arms: dict[int, float]) -> tuple[list[FrameStates], ComposedPath]:

@@ -10,11 +10,11 @@ OTHER = 1
 
 
 def match(person: Person, library: str) -> Steps[None]:
-    """Match a named library, and think better of it."""
+    """Find poses with a named library alone, and think better of it."""
     frames, matching = keymark("operators.shell.keyed_frames"), person.take.matching
     matching.library = library
     person.step_done("Choose the library")
-    yield from person.undoable("matching", lambda: _match(person))
+    yield from person.undoable("finding poses with it", lambda: job(person, "keymark.pose_all"))
     expect(len(person.take.matching.matches) >= 2, f"{library} gave too few keyframes")
     expect(not frames.posed_frames(person.take), "frames count as posed that nobody posed")
     yield from person.look("matched")
@@ -22,6 +22,8 @@ def match(person: Person, library: str) -> Steps[None]:
         "removing what was found", lambda: person.hands.click_button("keymark.remove_found")
     )
     expect(not frames.keyframes_of(person.take), "found keyframes are left")
+    person.take.matching.library = "auto"
+    person.step_done("Choose all libraries")
 
 
 def pose_all(person: Person) -> Steps[None]:
@@ -63,12 +65,6 @@ def reconstruct(person: Person) -> Steps[None]:
     yield from person.look("unposed")
     points = yield from shown_points(person)
     write_points(person, "motion.json", points)
-
-
-def _match(person: Person) -> Steps[None]:
-    """The button is in a panel that is folded."""
-    yield from person.hands.invoke("keymark.match_library")
-    yield from person.wait_for_job()
 
 
 def _take(person: Person, candidate: int) -> Steps[None]:

@@ -1,4 +1,4 @@
-"""What a clip shows of the performer, as matching compares it: A points of the image, markers and keypoints.
+"""What a clip shows of the performer, to compare postures with: A points of it, markers and keypoints.
 
 A marker's region counts with its centroid and its extent, a keypoint with its place and, where a network has
 guessed it, its depth behind the hips.
@@ -11,10 +11,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
-from ..body.limbs import limb_of
 from ..footage.keypoints.body_points import mirrored_point
 from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.principal_keypoints import performer_size_px, principal_keypoints
+from ..footage.keypoints.principal_keypoints import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 
 CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
@@ -32,15 +31,8 @@ POINT_STD_M = {
 """The same of points: halfway between those of the segments that meet there."""
 KEYPOINT_ERROR_M = 0.04
 """Where detectors put a point beside the joint, and how far they miss it."""
-SIZE_STD = 0.05
-"""Error of all keypoints' size together, as a share: a detector's points lie farther in or out than an
-average body's joints, and an actor's lengths may be average ones."""
-USUAL_SPAN_M = 1.45
-"""From head to ankles of someone who stands; only the weight of `SIZE_STD` follows from it."""
 HINT_ERROR_M = 0.12
 """Error of a network's depths: 6 to 18 cm, alike for many frames."""
-INDEPENDENT_POINTS = 5.0
-"""Number of points in space in which postures differ independently: one for each limb, and the trunk's."""
 INDEPENDENT_KEYPOINTS = 8.0
 """Number of keypoints that say different things of a posture: upper and lower parts of the limbs."""
 LEAST_QUALITY = 0.05
@@ -64,19 +56,9 @@ class MatchEvidence:
         return cls(tracks, segments, _selected(found, known))
 
     @property
-    def is_empty(self) -> bool:
-        """Whether nothing of the performer is seen in any frame."""
-        return not (self.tracks.visible.any() or self.keypoints.seen.any())
-
-    @property
     def marker_count(self) -> int:
         """Number of markers M."""
         return len(self.segments)
-
-    @property
-    def has_hints(self) -> bool:
-        """Whether any keypoint's depth was guessed."""
-        return self.keypoints.has_hints
 
     @cached_property
     def points(self) -> IndexArray:
@@ -112,35 +94,6 @@ class MatchEvidence:
         """(K,) the same of the keypoints' depths as a network guesses them [m]."""
         own = [POINT_STD_M[name.split(".")[0]] for name in self.keypoints.names]
         return np.hypot(own, HINT_ERROR_M)
-
-    @cached_property
-    def size_error_m(self) -> Array:
-        """(F, A, 2) what a usual error of the size moves each keypoint by, to the right and upwards [m].
-
-        About the hips, or the middle of what is seen; zero for markers.
-        """
-        names = self.keypoints.names
-        pixel = np.where(self.visible[..., None], self.pixel, np.nan)[:, self.marker_count :]
-        own = [index for index, name in enumerate(names) if name.startswith("hip.")]
-        shift = np.zeros((*self.visible.shape, 2))
-        if not names:
-            return shift
-        middle = _mean_seen(pixel)
-        if len(own) == 2:
-            hips = pixel[:, own].mean(axis=1)
-            middle = np.where(np.isfinite(hips), hips, middle)
-        meters = USUAL_SPAN_M / np.maximum(performer_size_px(self.keypoints), 1.0)[:, None, None]
-        away = meters * (pixel - middle[:, None]) * np.array([1.0, -1.0])
-        shift[:, self.marker_count :] = np.nan_to_num(SIZE_STD * away)
-        return shift
-
-    @cached_property
-    def groups(self) -> tuple[IndexArray, ...]:
-        """Indices of what performers may hold otherwise together: single markers, or limbs with keypoints."""
-        if not len(self.points):
-            return tuple(np.array([marker]) for marker in range(self.marker_count))
-        limbs = [limb_of(name) for name in (*self.segments, *self.keypoints.names)]
-        return tuple(np.flatnonzero([own == limb for own in limbs]) for limb in dict.fromkeys(limbs))
 
     @cached_property
     def share(self) -> float:
@@ -179,13 +132,6 @@ def _selected(keypoints: Keypoints, index: IndexArray) -> Keypoints:
         keypoints.score[:, index],
         keypoints.hint_m[:, index],
     )
-
-
-def _mean_seen(pixel: Array) -> Array:
-    """(F, 2) mean of the pixels (F, K, 2) that are seen; NaN without any."""
-    seen = np.isfinite(pixel)
-    count = seen.sum(axis=1)
-    return np.where(count > 0, np.where(seen, pixel, 0.0).sum(axis=1) / np.maximum(count, 1), np.nan)
 
 
 def _marker_deviation(segment: str) -> float:

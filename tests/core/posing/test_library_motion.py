@@ -9,9 +9,7 @@ from keymark.core.body.heading import yawed_at
 from keymark.core.body.limbs import LIMBS
 from keymark.core.library.library import Library
 from keymark.core.library.library_file import read_library
-from keymark.core.matching.library_match import sampled_frames
-from keymark.core.matching.match_input import match_input
-from keymark.core.posing.library_belief import nearest_libraries, part_beliefs
+from keymark.core.posing.library_motion import nearest_libraries, part_beliefs
 from keymark.core.posing.part_features import (
     HEADINGS,
     TRUNK_POINTS,
@@ -20,6 +18,7 @@ from keymark.core.posing.part_features import (
     stance_features,
 )
 from keymark.core.posing.part_pools import part_pools
+from keymark.core.posing.posing_input import posing_input
 from keymark.core.progress import run
 
 HEADING = np.radians(30.0)
@@ -47,14 +46,12 @@ def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, wavi
     """The most believed parts are about the truth's; those that face the other way less so."""
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
-    given = match_input(take, reading)
-    libraries = [waving, walking]
-    pools = part_pools(libraries, BODY)
+    given = posing_input(take, reading)
+    pools = part_pools([waving, walking], BODY)
     stances = stance_features(pools, given.evidence)
-    sampled = sampled_frames(given.evidence.tracks, given.keyframes)
-    beliefs = run(part_beliefs(given, libraries, pools, stances, sampled, truth, 0.0))
-    assert len(beliefs) == len(sampled)
-    for belief, frame in zip(beliefs, sampled, strict=True):
+    beliefs = run(part_beliefs(given, pools, stances, truth, truth.translation[given.sampled], 0.0))
+    assert len(beliefs) == len(given.sampled)
+    for belief, frame in zip(beliefs, given.sampled, strict=True):
         points = BODY.points(BODY.pose(truth[frame])) - truth.translation[frame]
         likeliest = int(belief.stance.argmin())
         trunk = stances.features.points[likeliest, TRUNK_POINTS]
@@ -72,13 +69,13 @@ def test_a_motion_that_fits_badly_is_believed_little(walking: Library, waving: L
     """How much likelier parts are follows from how sure the match is."""
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
-    given = match_input(take, reading)
-    sampled = sampled_frames(given.evidence.tracks, given.keyframes)
+    given = posing_input(take, reading)
+    hips = truth.translation[given.sampled]
     most = []
     for library in (walking, waving):
         pools = part_pools([library], BODY)
         stances = stance_features(pools, given.evidence)
-        beliefs = run(part_beliefs(given, [library], pools, stances, sampled, truth, 0.0))
+        beliefs = run(part_beliefs(given, pools, stances, truth, hips, 0.0))
         most.append(np.mean([belief.limbs["leg.L"].min() for belief in beliefs]))
     assert most[0] < 1.5 * most[1] < 0.0
 

@@ -3,7 +3,7 @@
 from itertools import product
 
 import numpy as np
-from keymark.core.posing.composed_path import cheapest_pairs, cheapest_path, path_posteriors
+from keymark.core.numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 
 FRAMES, ROWS = 4, 3
 

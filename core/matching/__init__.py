@@ -1,1 +1,0 @@
-"""Finding a library's postures in footage: a hidden Markov model over postures and headings."""
