@@ -211,7 +211,7 @@ def _line_fit(frame: Frame, chain: IndexArray) -> float:
         while between not in (int(top), -1):
             off = place[between] - place[top]
             off = off - line * float(np.clip(off @ line / max(float(line @ line), 1e-9), 0.0, 1.0))
-            found -= 0.3 + min(20.0 * _length(off) / max(float(_length(line)), 1e-5), 3.0)
+            found -= 0.3 + min(20.0 * float(_length(off)) / max(float(_length(line)), 1e-5), 3.0)
             found -= 2.0 * same_part(low, between)
             between = int(bones.parent[between])
     top = int(chain[0])
