@@ -8,11 +8,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 from ..errors import InputError
 from ..files.fields import is_number
 from ..files.json_file import shown
+from ..files.records import ByName, Number, Record
 from .skeleton import SIDES
 
 SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
@@ -40,14 +41,17 @@ SHORTEST_M, LONGEST_M = 0.02, 2.0
 
 
 @dataclass(frozen=True)
-class Actor:
+class Actor(Record):
     """Segment lengths of one performer.
 
     Raises:
         InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
     """
 
-    segments_m: Mapping[str, float] = field(hash=False)
+    segments_m: Annotated[
+        Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m", decimals=9)]],
+        ByName("lengths in meters", names=tuple(SHARES_OF_STATURE), needs=REQUIRED),
+    ] = field(hash=False)
     """Length of every segment [m]; hands and feet follow from the stature where not given."""
 
     def __post_init__(self) -> None:

@@ -1,10 +1,10 @@
 """The character that a take's motion is put onto: its file, its map, and how, in the words of files."""
 
 import re
-from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 from ..errors import InputError
 from ..files.control_characters import is_control_character
@@ -12,6 +12,7 @@ from ..files.fields import Fields, listed
 from ..files.inherited_fields import child_location
 from ..files.json_file import shown
 from ..files.json_folder import ENDING
+from ..files.records import Choice, Number, Record, read_record
 from ..files.safe_path import safe_path
 from .character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
 
@@ -66,21 +67,26 @@ class CharacterFile:
 
 
 @dataclass(frozen=True)
-class CharacterOptions:
+class CharacterOptions(Record):
     """How a motion is put onto a character, as `core/retarget/options.RetargetOptions` explains."""
 
-    root_motion: str = ROOT_MOTIONS[0]
-    place: str = PLACEMENTS[0]
-    arms: str = LIMB_KEYS[2]
-    legs: str = LIMB_KEYS[2]
-    plant_feet: bool = True
-    reach_hands: bool = True
-    tolerance_mm: float = 5.0
-    """0 for a key on every frame."""
+    SPARSE = False
 
-    def to_json(self) -> dict[str, Any]:
-        """By name, as files have them."""
-        return asdict(self)
+    root_motion: Annotated[str, Choice(ROOT_MOTIONS)] = ROOT_MOTIONS[0]
+    """Where the way over the ground goes; the default is as-filmed."""
+    place: Annotated[str, Choice(PLACEMENTS)] = PLACEMENTS[0]
+    """Where the character performs: where the performer stood, which is the default, or where it stands."""
+    arms: Annotated[str, Choice(LIMB_KEYS)] = LIMB_KEYS[2]
+    """Controls of the arms that are keyed; the default is both."""
+    legs: Annotated[str, Choice(LIMB_KEYS)] = LIMB_KEYS[2]
+    """Controls of the legs that are keyed; the default is both."""
+    plant_feet: bool = True
+    """Whether resting feet stay where they are; the default is true."""
+    reach_hands: bool = True
+    """Whether hands reach what the performer's reached; the default is true."""
+    tolerance_mm: Annotated[float, Number(0.0, LARGEST_TOLERANCE_MM, "mm")] = 5.0
+    """Largest distance of any joint from the motion [mm], for few keys; 0 for a key on every frame; the
+    default is 5."""
 
 
 @dataclass(frozen=True)
@@ -126,49 +132,8 @@ def read_character_settings(
             file, _line(fields, "object", "the name of an armature") if fields.has("object") else None
         ),
         _map(fields, bases) if fields.has("map") else AUTO,
-        read_character_options(fields),
+        read_record(CharacterOptions, fields),
     )
-
-
-def read_character_options(fields: Fields) -> CharacterOptions:
-    """The options among some fields; those that are missing have their defaults.
-
-    Raises:
-        InputError: A field has no valid value.
-    """
-    usual = CharacterOptions()
-    tolerance_mm = usual.tolerance_mm
-    if fields.has("tolerance_mm"):
-        tolerance_mm = fields.number("tolerance_mm", 0.0, LARGEST_TOLERANCE_MM, "mm")
-    return CharacterOptions(
-        root_motion=_choice(fields, "root_motion", ROOT_MOTIONS, usual.root_motion),
-        place=_choice(fields, "place", PLACEMENTS, usual.place),
-        arms=_choice(fields, "arms", LIMB_KEYS, usual.arms),
-        legs=_choice(fields, "legs", LIMB_KEYS, usual.legs),
-        plant_feet=_flag(fields, "plant_feet", usual.plant_feet),
-        reach_hands=_flag(fields, "reach_hands", usual.reach_hands),
-        tolerance_mm=tolerance_mm,
-    )
-
-
-def _choice(fields: Fields, name: str, choices: Collection[str], usual: str) -> str:
-    if not fields.has(name):
-        return usual
-    value = fields.text(name, f"one of {listed(choices)}")
-    if value not in choices:
-        raise InputError(
-            f"{fields.source_of(name)}: {name} is {shown(value)}; it must be one of {listed(choices)}"
-        )
-    return value
-
-
-def _flag(fields: Fields, name: str, usual: bool) -> bool:
-    value = fields.values.get(name)
-    if value is None:
-        return usual
-    if not isinstance(value, bool):
-        raise InputError(f"{fields.source_of(name)}: {name} is {shown(value)}; it must be true or false")
-    return value
 
 
 def _line(fields: Fields, name: str, valid: str) -> str:

@@ -9,10 +9,10 @@ import numpy as np
 from ..arrays import Array, chunks
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.posture_fields import FARTHEST_M, posture_to_json, read_posture, rounded
+from ..body.posture_fields import FARTHEST_M, PostureValues, posture_to_json, rounded
 from ..body.posture_fit import fit_posture
 from ..errors import InputError
-from ..files.fields import Fields, listed
+from ..files.fields import Fields
 from ..files.json_file import read_json, shown, write_json
 from ..prior.keyframes import Keyframe, Matched
 
@@ -113,8 +113,7 @@ def _keyframes(rows: Sequence[Fields], frames: Sequence[int], body: Body) -> lis
     postures: dict[int, Posture] = {}
     for index, row in enumerate(rows):
         if row.has("posture"):
-            valid = f"an object with {listed(body.skeleton.dof_names, 3)}"
-            postures[index] = read_posture(row.child("posture", valid), body.skeleton)
+            postures[index] = PostureValues(body.skeleton).read(row.values["posture"], row.where, "posture")
         elif not row.has("points"):
             raise InputError(f"{row.where} has neither points nor posture; it must have one of them")
         if row.has("points"):

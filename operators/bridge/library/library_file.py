@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.library.library import Library
-from ....core.library.library_file import library_from_json, library_to_json, read_library, write_library
+from ....core.library.library_file import read_library, write_library
 from .library_blend import read_library_blend, write_library_blend
 from .pose_assets import present_motions
 
@@ -59,7 +59,7 @@ def with_postures(library: Library, names: Iterable[str]) -> Library:
         raise InputError(
             "no posture of '{library}' is selected; select some, or take all", library=library.title
         )
-    document = library_to_json(replace(library, postures=kept))
+    document = replace(library, postures=kept).to_json()
     document["motions"] = present_motions(document.get("motions", []), wanted)
-    motions = library_from_json(document, f"library '{library.title}'").motions
+    motions = Library.from_json(document, f"library '{library.title}'").motions
     return replace(library, postures=kept, motions=motions)

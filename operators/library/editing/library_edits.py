@@ -12,8 +12,7 @@ from ....core.body.human import HUMAN
 from ....core.body.kinematics import Body
 from ....core.body.posture import Posture
 from ....core.errors import InputError
-from ....core.library.library import LibraryMotion, LibraryPosture, MotionStep
-from ....core.library.library_fields import MOST_POSTURES
+from ....core.library.library import MOST_POSTURES, LibraryMotion, LibraryPosture, MotionStep
 from ....core.library.mirroring import with_mirrored
 from ....core.library.text_fields import LONGEST_TAG
 from ....core.library.texts import LONGEST_NAME, text_fault, unique_name

@@ -11,7 +11,6 @@ from ....core.body.actor import Actor
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
 from ....core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from ....core.library.library_file import library_from_json, library_to_json
 from ....core.library.texts import unique_name
 from ...bridge.library.pose_assets import read_asset
 from .scene_libraries import TAG_SEPARATOR
@@ -36,7 +35,7 @@ def library_from_scene(group: bpy.types.PropertyGroup) -> Library:
             "library '{library}' has no postures yet; pose the actor and add one", library=group.name
         )
     library = unchecked_library(group, there)
-    library_from_json(library_to_json(library), f"library '{group.name}'")  # checks it
+    Library.from_json(library.to_json(), f"library '{group.name}'")  # checks it
     return library
 
 

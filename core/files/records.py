@@ -1,0 +1,453 @@
+"""Records: JSON objects declared once, as dataclasses whose annotations say what each field may hold.
+
+A field's annotation is `bool`, a `Record`, or `Annotated[type, kind]` with one of the kinds here; the
+docstring below it is its description in the JSON Schema, which `tools/make_schemas.py` writes. A field that
+may be missing has a default; null counts as missing. `Record.from_json` checks an object and makes the
+record, `to_json` is its inverse.
+"""
+
+import dataclasses
+import re
+import types
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    NoReturn,
+    Self,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+from ..errors import InputError
+from .control_characters import is_control_character
+from .fields import Fields, is_number, listed
+from .inherited_fields import child_location
+from .json_file import shown
+
+MISSING = dataclasses.MISSING
+
+
+def refuse(where: str, name: str, value: Any, valid: str) -> NoReturn:
+    """Say in one sentence that a value is not what it must be."""
+    raise InputError(f"{where}: {name} is {shown(value)}; it must be {valid}")
+
+
+class Kind:
+    """What a value of JSON may be."""
+
+    valid: str
+    """Follows "it must be" in sentences."""
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """Check a value and convert it; `where` is the object's location and `name` the field's name.
+
+        Raises:
+            InputError: It is not what it must be.
+        """
+        raise NotImplementedError
+
+    def write(self, value: Any) -> Any:
+        """The value as JSON; the inverse of `read`."""
+        return value
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A number from `low` to `high`, both included."""
+
+    low: float
+    high: float
+    unit: str = ""
+    decimals: int | None = None
+    """Decimals that are written; None for all."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"a number from {self.low:g} to {self.high:g}{self.unit and ' ' + self.unit}"
+
+    def read(self, value: Any, where: str, name: str) -> float:
+        """See `Kind`."""
+        if not is_number(value) or not self.low <= value <= self.high:
+            refuse(where, name, value, self.valid)
+        return float(value)
+
+    def write(self, value: float) -> float:
+        """See `Kind`; there is no negative zero."""
+        return value if self.decimals is None else round(float(value), self.decimals) + 0.0
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number from `low` to `high`; 3.0 is one too."""
+
+    low: int
+    high: int
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"a whole number from {self.low} to {self.high}"
+
+    def read(self, value: Any, where: str, name: str) -> int:
+        """See `Kind`."""
+        if not is_number(value) or value != int(value) or not self.low <= value <= self.high:
+            refuse(where, name, value, self.valid)
+        return int(value)
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """True or false."""
+
+    valid: str = "true or false"
+
+    def read(self, value: Any, where: str, name: str) -> bool:
+        """See `Kind`."""
+        if not isinstance(value, bool):
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """A text that is not blank."""
+
+    longest: int
+    valid: str = ""
+    pattern: str = r"\S"
+    """A regular expression, of Python and JavaScript, that is found in it."""
+    one_line: bool = False
+    """Whether control characters are refused."""
+    fault: Callable[[str], str] = lambda text: ""
+    """What else is wrong with it, to follow "it"; empty for nothing."""
+    empty: bool = False
+    """Whether it may be empty."""
+
+    def __post_init__(self) -> None:
+        """Say the usual where nothing else is said."""
+        object.__setattr__(self, "valid", self.valid or f"a text of at most {self.longest} characters")
+
+    def read(self, value: Any, where: str, name: str) -> str:
+        """See `Kind`."""
+        if self.empty and value == "":
+            return ""
+        if not isinstance(value, str) or len(value) > self.longest:
+            refuse(where, name, value, self.valid)
+        fault = self.fault(value)
+        if fault:
+            raise InputError(f"{where}: {name} is {shown(value)}; it {fault}")
+        odd = self.one_line and any(map(is_control_character, value))
+        if odd or not value.strip() or not re.search(self.pattern, value):
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Choice(Kind):
+    """One of some texts."""
+
+    names: tuple[str, ...]
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"one of {listed(self.names)}"
+
+    def read(self, value: Any, where: str, name: str) -> str:
+        """See `Kind`."""
+        if not isinstance(value, str) or value not in self.names:
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Nullable(Kind):
+    """Something, or null."""
+
+    item: Kind
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"{self.item.valid}, or null"
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """See `Kind`."""
+        return None if value is None else self.item.read(value, where, name)
+
+    def write(self, value: Any) -> Any:
+        """See `Kind`."""
+        return None if value is None else self.item.write(value)
+
+
+@dataclass(frozen=True)
+class Never(Kind):
+    """A field of other records of the kind, which must be left out."""
+
+    valid: str
+    """The sentence that says so."""
+
+    def read(self, value: Any, where: str, name: str) -> NoReturn:
+        """See `Kind`."""
+        raise InputError(f"{where}: {self.valid}")
+
+
+@dataclass(frozen=True)
+class Items(Kind):
+    """A list of `least` to `most` items, a tuple once it is read."""
+
+    of_what: str
+    """The items, in the plural."""
+    least: int
+    most: int
+    said: str = ""
+    """What the whole list must be; else a sentence names the item that is wrong."""
+    unique: str = ""
+    """What an item is, in the singular, where each may stand only once."""
+    item: Kind = dataclasses.field(default_factory=Kind)
+    """By default that of the annotated type."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        number = f"{self.least} to {self.most}" if self.least else f"at most {self.most}"
+        return self.said or f"a list of {number} {self.of_what}"
+
+    def read(self, value: Any, where: str, name: str) -> tuple[Any, ...]:
+        """See `Kind`."""
+        if not isinstance(value, list):
+            refuse(where, name, value, self.valid)
+        if not self.least <= len(value) <= self.most:
+            if self.said:
+                refuse(where, name, value, self.valid)
+            raise InputError(f"{where}: {name} has {len(value)} of them; it must be {self.valid}")
+        try:
+            items = [self.item.read(item, where, f"{name}[{index}]") for index, item in enumerate(value)]
+        except InputError:
+            if self.said:
+                refuse(where, name, value, self.valid)
+            raise
+        if self.unique:
+            twice = first_twice(items, name, self.unique)
+            if twice:
+                raise InputError(f"{where}: {twice}")
+        return tuple(items)
+
+    def write(self, value: Sequence[Any]) -> list[Any]:
+        """See `Kind`."""
+        return [self.item.write(item) for item in value]
+
+
+@dataclass(frozen=True)
+class ByName(Kind):
+    """An object of items of one kind, by name."""
+
+    of_what: str
+    """The items, in the plural."""
+    most: int = 0
+    """Most items; of no meaning where the names are known."""
+    names: tuple[str, ...] = ()
+    """All valid names, in their order; () for any."""
+    empty: str = ""
+    """What an empty object lacks; "" where it may be empty."""
+    needs: tuple[str, ...] = ()
+    """Names that must be there."""
+    key: Kind | None = None
+    """What a name must be."""
+    item: Kind = dataclasses.field(default_factory=Kind)
+    """By default that of the annotated type."""
+    others: Mapping[str, Kind] = dataclasses.field(default_factory=dict)
+    """Kinds of the names that differ."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"an object of {self.of_what}"
+
+    def read(self, value: Any, where: str, name: str) -> dict[str, Any]:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        child = Fields(value, child_location(where, name))
+        if self.names:
+            child.refuse_others(self.names)
+        elif len(value) > self.most:
+            raise InputError(f"{child.where} has {len(value)} {self.of_what}; at most {self.most} are read")
+        if self.empty and not value:
+            raise InputError(f"{child.where} is empty; {self.empty}")
+        for key in self.needs:
+            child.required(key, self.item.valid)
+        for key in value if self.key else ():
+            self.key.read(key, child.where, "a name")
+        return {
+            key: self.others.get(key, self.item).read(value[key], child.source_of(key), key)
+            for key in self.names or value
+            if key in value
+        }
+
+    def write(self, value: Mapping[str, Any]) -> dict[str, Any]:
+        """See `Kind`."""
+        return {key: self.item.write(value[key]) for key in self.names or value if key in value}
+
+
+class Record:
+    """Base of the dataclasses that are records."""
+
+    STRICT: ClassVar[bool] = False
+    """Whether unknown fields are refused: what they mean would be lost."""
+    SCHEMA: ClassVar[str] = ""
+    """The field `schema` of a file; empty where it has none."""
+    VERSION: ClassVar[int] = 0
+    """Newest `schema_version` that is read; 0 for objects that have none."""
+    SPARSE: ClassVar[bool] = True
+    """Whether fields that hold nothing are not written."""
+    TITLE: ClassVar[str] = ""
+    """What people call the file."""
+    ORDER: ClassVar[tuple[str, ...]] = ()
+    """The fields in the order of files; () for that of the class."""
+    REQUIRED: ClassVar[tuple[str, ...]] = ()
+    """Fields that files must have although they have a default."""
+
+    def mistake(self) -> str:
+        """What is wrong with the fields together, as a clause; empty for nothing."""
+        return ""
+
+    def to_json(self) -> dict[str, Any]:
+        """The record as a JSON object."""
+        value: dict[str, Any] = {"schema": self.SCHEMA} if self.SCHEMA else {}
+        value |= {"schema_version": self.VERSION} if self.VERSION else {}
+        for name, one in declared(type(self)).items():
+            item = one.kind.write(getattr(self, name))
+            if one.required or not self.SPARSE or item not in (None, "", [], {}):
+                value[name] = item
+        return value
+
+    @classmethod
+    def from_json(cls, value: Any, where: str) -> Self:
+        """Read a record from JSON that is not trusted; `where` begins sentences.
+
+        Raises:
+            InputError: It is not what it must be.
+        """
+        return read_record(cls, Fields.of(value, where))
+
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass(frozen=True)
+class Object(Kind):
+    """A record in a field."""
+
+    record: type[Record]
+    makes: type[Record] | None = None
+    """The class that is made of the fields; by default `record`."""
+    strict: bool = False
+    """Whether unknown fields are refused although they are not in other objects of the class."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        required = [name for name, one in declared(self.record).items() if one.required]
+        return f"an object with {listed(required, 5)}" if required else "an object"
+
+    def read(self, value: Any, where: str, name: str) -> Record:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        return read_record(self.record, Fields(value, child_location(where, name)), self.makes, self.strict)
+
+    def write(self, value: Record) -> dict[str, Any]:
+        """See `Kind`."""
+        return value.to_json()
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A declared field of a record."""
+
+    kind: Kind
+    required: bool
+    default: Any
+
+
+@cache
+def declared(record: type[Record]) -> Mapping[str, Declared]:
+    """The fields of a record by name."""
+    hints = get_type_hints(record, include_extras=True)
+    found: dict[str, Declared] = {}
+    given = {field.name: field for field in dataclasses.fields(record)}  # type: ignore[arg-type]
+    for field in [given[name] for name in record.ORDER or given]:
+        kind = kind_of(hints[field.name])
+        default = field.default if field.default_factory is MISSING else field.default_factory()
+        required = field.name in record.REQUIRED or (default is MISSING and not isinstance(kind, Nullable))
+        found[field.name] = Declared(kind, required, None if default is MISSING else default)
+    return found
+
+
+def kind_of(hint: Any) -> Kind:
+    """The kind of an annotation."""
+    if get_origin(hint) is Annotated:
+        base, *marks = get_args(hint)
+        (kind,) = (mark for mark in marks if isinstance(mark, Kind))
+        if isinstance(kind, Items | ByName) and type(kind.item) is Kind:
+            items = get_args(base)
+            return replace(kind, item=kind_of(items[1] if isinstance(kind, ByName) else items[0]))
+        return kind
+    if get_origin(hint) in (Union, types.UnionType):
+        (item,) = (one for one in get_args(hint) if one is not types.NoneType)
+        return Nullable(kind_of(item))
+    return Flag() if hint is bool else Object(hint)
+
+
+def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:
+    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`.
+
+    Raises:
+        InputError: A field is missing, unknown or not what it must be.
+    """
+    known = declared(record)
+    if record.SCHEMA and fields.values.get("schema") != record.SCHEMA:
+        raise InputError(
+            f"{fields.where}: schema is {shown(fields.values.get('schema'))}; "
+            f'a {record.TITLE} has "{record.SCHEMA}" there'
+        )
+    if record.VERSION:
+        fields.check_version(record.VERSION)
+    if strict or record.STRICT:
+        header = [
+            name for name, given in (("schema", record.SCHEMA), ("schema_version", record.VERSION)) if given
+        ]
+        fields.refuse_others([*header, *known])
+    values = {}
+    for name, one in known.items():
+        if fields.has(name):
+            values[name] = one.kind.read(fields.values[name], fields.source_of(name), name)
+        else:
+            values[name] = fields.required(name, one.kind.valid) if one.required else one.default
+    try:
+        made: R = (makes or record)(**values)
+    except InputError as error:
+        raise InputError(f"{fields.where}: {error}") from error
+    mistake = record.mistake(made)
+    if mistake:
+        raise InputError(f"{fields.where}: {mistake}")
+    return made
+
+
+def first_twice(items: Sequence[Any], name: str, what: str) -> str:
+    """What of a list stands twice in it, as a clause that begins with the list's name; empty for nothing."""
+    seen: set[Any] = set()
+    for item in items:
+        if item in seen:
+            return f"{name} names the {what} {shown(item)} twice; each must stand once"
+        seen.add(item)
+    return ""
