@@ -260,6 +260,8 @@ class ByName(Kind):
     """What an empty object lacks; "" where it may be empty."""
     needs: tuple[str, ...] = ()
     """Names that must be there."""
+    strict: bool = True
+    """Whether other than the known names are refused."""
     key: Kind | None = None
     """What a name must be."""
     item: Kind = dataclasses.field(default_factory=Kind)
@@ -277,9 +279,9 @@ class ByName(Kind):
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
         child = Fields(value, child_location(where, name))
-        if self.names:
+        if self.names and self.strict:
             child.refuse_others(self.names)
-        elif len(value) > self.most:
+        if not self.names and len(value) > self.most:
             raise InputError(f"{child.where} has {len(value)} {self.of_what}; at most {self.most} are read")
         if self.empty and not value:
             raise InputError(f"{child.where} is empty; {self.empty}")

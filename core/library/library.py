@@ -49,12 +49,12 @@ class TravelFields(Record):
 class TravelKind(Kind):
     """A cycle's displacement and turn; null for none."""
 
-    fields = Object(TravelFields)
+    like = Object(TravelFields)
     valid = "an object with x_m, y_m and heading_rad"
 
     def read(self, value: Any, where: str, name: str) -> Travel:
         """See `Kind`."""
-        travel = self.fields.read(value, where, name)
+        travel = self.like.read(value, where, name)
         return (travel.x_m, travel.y_m, travel.heading_rad)
 
     def write(self, value: Travel) -> dict[str, Any] | None:

@@ -68,7 +68,7 @@ class CharacterFile:
 
 @dataclass(frozen=True)
 class CharacterOptions(Record):
-    """How a motion is put onto a character, as `core/retarget/options.RetargetOptions` explains."""
+    """How a motion is put onto a character."""
 
     SPARSE = False
 

@@ -53,7 +53,7 @@ class ConversionRecord(Record):
     method: Line
     """`map`, `ekf` or `interpolation`."""
     library: Line | None
-    """Identifier of the library that was matched, `COMPOSED` where all took part; None where all keyframes
+    """Identifier of the library that was matched, `composed` where all took part; None where all keyframes
     are posed."""
     frames: FrameCount
     """Number of frames."""

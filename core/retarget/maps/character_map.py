@@ -44,13 +44,13 @@ class Turn(Kind):
     """A quaternion, which is made to have the length 1."""
 
     valid = "a turn as a quaternion [w, x, y, z] of length 1"
-    numbers = Items(
+    like = Items(
         "numbers", 4, 4, valid, item=Number(-1.0 - ROUGH_LENGTH, 1.0 + ROUGH_LENGTH, decimals=DECIMALS)
     )
 
     def read(self, value: Any, where: str, name: str) -> tuple[float, ...]:
         """See `Kind`."""
-        turn = self.numbers.read(value, where, name)
+        turn = self.like.read(value, where, name)
         length = hypot(*turn)
         if abs(length - 1.0) > ROUGH_LENGTH:
             refuse(where, name, value, self.valid)
@@ -58,12 +58,13 @@ class Turn(Kind):
 
     def write(self, value: Any) -> list[float]:
         """See `Kind`."""
-        return self.numbers.write(value)
+        return self.like.write(value)
 
 
 class PropertyValue(Kind):
     """A number or a truth value, which stays of its kind: a property of Blender has a type."""
 
+    farthest = FARTHEST
     valid = f"a number from {-FARTHEST:g} to {FARTHEST:g}, true or false"
 
     def read(self, value: Any, where: str, name: str) -> float | int | bool:
@@ -231,15 +232,15 @@ class CharacterMap(Record):
     title: Annotated[str, line(LONGEST_NAME)]
     """Name for people, of the character or the convention."""
     roles: Roles
-    """By role, of `roles.ROLES`; missing roles are not there."""
+    """Bones by role; roles that the character lacks are left out."""
     fk: Annotated[
         Mapping[str, Annotated[tuple[BoneName | None, ...], Items("bones or null", 1, MOST_BONES)]],
         ByName("keyed bones by role", names=ROLES),
     ] = field(default_factory=lambda: MappingProxyType({}))
-    """By role the bones that are keyed so that the role's bones turn as wanted, one for each of them; None
+    """By role the bones that are keyed so that the role's bones turn as wanted, one for each of them; null
     where one is not keyed (its share lies on others). A role that is not listed is keyed on its own bones."""
     ik: Ik = field(default_factory=lambda: MappingProxyType({}))
-    """By limb of `roles.LIMBS`, where the rig has inverse kinematics of its own."""
+    """Controls by limb, where the rig has inverse kinematics of its own."""
     settings: Annotated[tuple[Setting, ...], Items("settings", 0, MOST_SETTINGS)] = ()
     """Custom properties that are keyed with the motion."""
     root: BoneName | None = None
