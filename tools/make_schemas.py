@@ -21,11 +21,14 @@ load_package()
 from keymark.core.body.posture_fields import PostureValues  # noqa: E402
 from keymark.core.files import records  # noqa: E402
 from keymark.core.files.json_layout import format_json  # noqa: E402
+from keymark.core.files.number_lists import NumberArray  # noqa: E402
 from keymark.core.files.records import Kind, Record, declared  # noqa: E402
 from keymark.core.library.library import Library, LibraryMotion, TravelKind  # noqa: E402
 from keymark.core.retarget.maps.character_map import CharacterMap, PropertyValue, Turn  # noqa: E402
 from keymark.core.retarget.retarget_record import RetargetRecord  # noqa: E402
 from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
+from keymark.core.take.keyframe_file import KeyframeFile, KeyframeRow  # noqa: E402
+from keymark.core.take.motion_file import Diagnostic, MotionFile  # noqa: E402
 
 FOLDER = ROOT / "presets" / "schemas"
 RECORDS: dict[str, tuple[type[Record], str]] = {
@@ -34,17 +37,32 @@ RECORDS: dict[str, tuple[type[Record], str]] = {
         CharacterMap,
         "Which bones and controls of a character play which role; see docs/character_map_format.md.",
     ),
+    "keyframes": (
+        KeyframeFile,
+        "keyframes.json: posed frames, or frames whose posture was found in the footage.",
+    ),
+    "motion": (
+        MotionFile,
+        "motion.json: the motion of one take, for other programs. Lists run over the frames of the clip; "
+        "world axes, meters, Z up.",
+    ),
     "conversion": (
         ConversionRecord,
-        "conversion.json: the record of a finished conversion, its input and its results. It is the last file "
-        "written and the first removed.",
+        "conversion.json: the record of a finished conversion, its input and its results. It is the last "
+        "file written and the first removed.",
     ),
     "retarget": (
         RetargetRecord,
-        "retarget.json: the record of a motion on a character: what was recognized, and how good it came out.",
+        "retarget.json: the record of a motion on a character: what was recognized, and how good "
+        "it came out.",
     ),
 }
 RULES: dict[type[Record], dict[str, Any]] = {
+    KeyframeRow: {
+        "anyOf": [
+            {"required": [name], "properties": {name: {"type": "object"}}} for name in ("posture", "points")
+        ]
+    },
     LibraryMotion: {
         "if": {"properties": {"cyclic": {"const": False}}},
         "then": {"properties": {"travel": {"type": "null"}}},
@@ -168,7 +186,8 @@ def _(kind: records.ByName, defs: dict[str, Schema]) -> Schema:
     if kind.names:
         if "$ref" not in item and len(kind.names) > 4:  # once, not for every name
             name = kind.of_what.replace(" ", "_")
-            defs[name] = item
+            while defs.setdefault(name, item) != item:
+                name += "_"
             item = {"$ref": f"#/$defs/{name}"}
         others = {name: kind_schema(other, defs) for name, other in kind.others.items()}
         named: Schema = {name: others.get(name, item) for name in kind.names}
@@ -196,6 +215,22 @@ def _(kind: PostureValues, defs: dict[str, Schema]) -> Schema:
     named = {name: kind_schema(number, defs) for name, number in numbers.items()}
     needs = {} if kind.zeros_left_out else {"required": list(numbers)}
     return {"type": "object", "properties": named, "additionalProperties": False} | needs
+
+
+@kind_schema.register
+def _(kind: NumberArray, defs: dict[str, Schema]) -> Schema:
+    item: Schema = {"type": "number", "minimum": -kind.limit, "maximum": kind.limit}
+    for length in reversed(kind.shape):
+        counts = {"minItems": 1} if length < 0 else {"minItems": length, "maxItems": length}
+        item = {"type": "array"} | counts | {"items": item}
+    return item
+
+
+@kind_schema.register
+def _(kind: Diagnostic, defs: dict[str, Schema]) -> Schema:
+    ref = {"$ref": "#/$defs/diagnostic"}
+    defs["diagnostic"] = {"type": ["number", "null", "array"], "items": ref}
+    return ref
 
 
 @kind_schema.register

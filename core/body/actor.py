@@ -49,7 +49,7 @@ class Actor(Record):
     """
 
     segments_m: Annotated[
-        Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m", decimals=9)]],
+        Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m")]],
         ByName("lengths in meters", names=tuple(SHARES_OF_STATURE), needs=REQUIRED),
     ] = field(hash=False)
     """Length of every segment [m]; hands and feet follow from the stature where not given."""

@@ -266,7 +266,7 @@ class ByName(Kind):
     """What a name must be."""
     item: Kind = dataclasses.field(default_factory=Kind)
     """By default that of the annotated type."""
-    others: Mapping[str, Kind] = dataclasses.field(default_factory=dict)
+    others: Mapping[str, Kind] = dataclasses.field(default_factory=dict, hash=False)
     """Kinds of the names that differ."""
 
     @property
@@ -290,7 +290,9 @@ class ByName(Kind):
         for key in value if self.key else ():
             self.key.read(key, child.where, "a name")
         return {
-            key: self.others.get(key, self.item).read(value[key], child.source_of(key), key)
+            key: self.others.get(key, self.item).read(
+                value[key], child.source_of(key), key if self.names else shown(key)
+            )
             for key in self.names or value
             if key in value
         }

@@ -32,6 +32,14 @@ Travel = tuple[float, float, float]
 Name = Annotated[str, line(LONGEST_NAME)]
 
 
+class ActorFields(Object):
+    """An actor, whose lengths are written to the nanometer."""
+
+    def write(self, value: Any) -> dict[str, Any]:
+        """See `Kind`."""
+        return {"segments_m": {name: round(m, DECIMALS) + 0.0 for name, m in value.segments_m.items()}}
+
+
 @dataclass(frozen=True)
 class TravelFields(Record):
     """Displacement and turn of a cycle, as files have them."""
@@ -157,7 +165,7 @@ class Library(Record):
     """Who made it."""
     license: Annotated[str, SPDX]
     """SPDX expression such as `CC0-1.0`."""
-    actor: Annotated[Actor, Object(Actor, strict=True)]
+    actor: Annotated[Actor, ActorFields(Actor, strict=True)]
     """The proportions of the postures' performer."""
     postures: Annotated[tuple[LibraryPosture, ...], Items("postures", 1, MOST_POSTURES)]
     """Postures in the order shown to people."""
