@@ -32,6 +32,8 @@ from .inherited_fields import child_location
 from .json_file import shown
 
 MISSING = dataclasses.MISSING
+_PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)
+"""A name that stands in sentences without quotation marks."""
 
 
 def refuse(where: str, name: str, value: Any, valid: str) -> NoReturn:
@@ -291,7 +293,7 @@ class ByName(Kind):
             self.key.read(key, child.where, "a name")
         return {
             key: self.others.get(key, self.item).read(
-                value[key], child.source_of(key), key if self.names else shown(key)
+                value[key], child.source_of(key), key if _PLAIN.fullmatch(key) else shown(key)
             )
             for key in self.names or value
             if key in value

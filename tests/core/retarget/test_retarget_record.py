@@ -44,7 +44,7 @@ def test_figures_have_five_digits(tmp_path: Path) -> None:
         (("fps",), 0, "fps is 0"),
         (("options", "legs"), "both feet", "one of fk, ik, both"),
         (("limbs", "tail"), "fk", "unknown field 'tail'"),
-        (("quality", "skate_mm_per_frame"), "low", "quality: 'skate_mm_per_frame' is 'low'"),
+        (("quality", "skate_mm_per_frame"), "low", "quality: skate_mm_per_frame is 'low'"),
         (("quality",), {f"f{n}": 0 for n in range(201)}, "at most 200"),
         (("doubts",), "none", "doubts is 'none'; it must be a list"),
         (("files", "../x"), "ab" * 32, "a file of this folder"),

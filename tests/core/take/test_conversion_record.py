@@ -106,7 +106,7 @@ MISTAKES: list[tuple[Callable[[dict[str, Any]], object], str]] = [
     (lambda v: v.update(doubtful="5"), "doubtful is '5'; it must be a list of"),
     (lambda v: v.update(libraries=["walking"]), r"libraries is \['walking'\]; it must be an object"),
     (lambda v: v.update(doubtful=["5"]), r"doubtful\[0\] is '5'; it must be a whole number from"),
-    (lambda v: v.update(libraries={"walking": 7}), "libraries: 'walking' is 7; it must be a text"),
+    (lambda v: v.update(libraries={"walking": 7}), "libraries: walking is 7; it must be a text"),
     (lambda v: v.update(evidence=[]), "evidence is .*; it must be an object"),
     (
         lambda v: v["evidence"].update(markers=["x" * 300]),
