@@ -38,6 +38,10 @@ SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
 )
 REQUIRED = tuple(name for name in SHARES_OF_STATURE if not name.startswith(("hand", "foot")))
 SHORTEST_M, LONGEST_M = 0.02, 2.0
+Segments = Annotated[
+    Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m")]],
+    ByName("lengths in meters", names=tuple(SHARES_OF_STATURE), needs=REQUIRED),
+]
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,7 @@ class Actor(Record):
         InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
     """
 
-    segments_m: Annotated[
-        Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m")]],
-        ByName("lengths in meters", names=tuple(SHARES_OF_STATURE), needs=REQUIRED),
-    ] = field(hash=False)
+    segments_m: Segments = field(hash=False)
     """Length of every segment [m]; hands and feet follow from the stature where not given."""
 
     def __post_init__(self) -> None:

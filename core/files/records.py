@@ -38,7 +38,7 @@ _PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)
 
 def refuse(where: str, name: str, value: Any, valid: str) -> NoReturn:
     """Say in one sentence that a value is not what it must be."""
-    raise InputError(f"{where}: {name} is {shown(value)}; it must be {valid}")
+    raise InputError(f"{where}: {name} is {'null' if value is None else shown(value)}; it must be {valid}")
 
 
 class Kind:

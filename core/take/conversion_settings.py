@@ -137,11 +137,11 @@ class SettingsFields(Record):
 
     keyframes: Annotated[str, relative_path(KEYFRAMES_VALID)] | None = None
     """The keyframe file, relative to the take's folder and inside it; the default is keyframes.json if it
-    exists. Or auto: keyframes are found in the footage with all libraries, beside those in keyframes.json."""
+    exists. Or auto: keyframes are found in the footage with all libraries, beside those in the file."""
     keypoints: Annotated[tuple[str, ...], KeypointFiles()] | None = None
     """Keypoints seen in the clip: a file of Keymark's or of a detector, the folder of a detector that writes
-    a file a frame, or a list of several; relative to the take's folder and inside it. In shoot.json a name that
-    every take has. The default is keypoints.json if it exists."""
+    a file a frame, or a list of several; relative to the take's folder and inside it. In shoot.json a name
+    that every take has. The default is keypoints.json if it exists."""
     evidence: Annotated[tuple[str, ...], EvidenceKinds()] | None = None
     """What the motion is held against; the default is whatever the take has. Hints of depth come with
     keypoints."""
