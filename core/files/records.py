@@ -153,6 +153,17 @@ class Text(Kind):
 
 
 @dataclass(frozen=True)
+class Anything(Kind):
+    """Any value, which is checked later."""
+
+    valid: str
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """See `Kind`."""
+        return value
+
+
+@dataclass(frozen=True)
 class Choice(Kind):
     """One of some texts."""
 
@@ -427,7 +438,7 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
             f'a {record.TITLE} has "{record.SCHEMA}" there'
         )
     if record.VERSION:
-        fields.check_version(record.VERSION)
+        check_version(fields, record.VERSION)
     if strict or record.STRICT:
         header = [
             name for name, given in (("schema", record.SCHEMA), ("schema_version", record.VERSION)) if given
@@ -435,10 +446,9 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
         fields.refuse_others([*header, *known])
     values = {}
     for name, one in known.items():
-        if fields.has(name):
-            values[name] = one.kind.read(fields.values[name], fields.source_of(name), name)
-        else:
-            values[name] = fields.required(name, one.kind.valid) if one.required else one.default
+        if one.required:
+            fields.required(name, one.kind.valid)
+        values[name] = read_field(fields, name, one.kind, one.default)
     try:
         made: R = (makes or record)(**values)
     except InputError as error:
@@ -447,6 +457,33 @@ def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None,
     if mistake:
         raise InputError(f"{fields.where}: {mistake}")
     return made
+
+
+def check_version(fields: Fields, newest: int) -> None:
+    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read.
+
+    Raises:
+        InputError: It is newer, missing, or no version.
+    """
+    kind = Whole(1, 10**6)
+    fields.required("schema_version", kind.valid)
+    version = read_field(fields, "schema_version", kind, None)
+    if version > newest:
+        source = fields.source_of("schema_version")
+        raise InputError(
+            f"{source}: schema_version is {version}, made by a newer Keymark; this one reads up to {newest}"
+        )
+
+
+def read_field(fields: Fields, name: str, kind: Kind, otherwise: Any) -> Any:
+    """The value of one field; `otherwise` where it is missing.
+
+    Raises:
+        InputError: It is not what it must be.
+    """
+    if not fields.has(name):
+        return otherwise
+    return kind.read(fields.values[name], fields.source_of(name), name)
 
 
 def first_twice(items: Sequence[Any], name: str, what: str) -> str:

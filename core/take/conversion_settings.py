@@ -177,7 +177,7 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
     if library is not None and library.lower().endswith(".json"):
         library = str(inside("library") / library)
     if said.character is not None:
-        fields = description.child("character", "an object")
+        fields = Fields(description.values["character"], "")
         bases = {child_location(location, "character"): folder for location, folder in folders.items()}
         character = said.character.settings(
             bases[fields.source_of("file")], bases.get(fields.source_of("map"), Path())

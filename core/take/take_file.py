@@ -59,6 +59,10 @@ MISTYPED = 0.85
 """Likeness of an object's name from which on it is `markers` with one letter wrong."""
 
 
+FRAME_RATE = Number(1.0, 1000.0, "frames per second")
+FRAME_START = Whole(-(10**6), 10**6)
+
+
 class CameraKind(Kind):
     """A camera."""
 
@@ -119,9 +123,9 @@ class ActorFields(Record):
 class TakeFields(Record):
     """The fields of a take that say what it shows."""
 
-    fps: Annotated[float, Number(1.0, 1000.0, "frames per second")]
+    fps: Annotated[float, FRAME_RATE]
     """Frames per second. Below a shoot.json the default is the video's own."""
-    frame_start: Annotated[int, Whole(-(10**6), 10**6)]
+    frame_start: Annotated[int, FRAME_START]
     """Scene frame of the clip's first frame. Below a shoot.json the default is 1."""
     camera: Annotated[Camera, CameraKind()]
     """The camera that saw the performance."""

@@ -5,12 +5,13 @@ Each failure is a file of its own, so that several machines can write at a time.
 
 import hashlib
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 from ...errors import InputError
-from ...files.fields import Fields
 from ...files.json_file import read_json, write_json
+from ...files.records import Record, Text
 from ...take.description import clip_name
 from ..discovery.take_names import RESERVED, take_name
 from ..shoot import Shoot
@@ -22,15 +23,18 @@ DIGITS = 16
 INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
 
 
+Words = Annotated[str, Text(LARGEST_BYTES)]
+
+
 @dataclass(frozen=True)
-class Failure:
+class Failure(Record):
     """Why a take did not convert."""
 
-    take: str
+    take: Words
     """Its name in the shoot."""
-    error: str
+    error: Words
     """The reason, in a sentence."""
-    kind: str
+    kind: Words
     """`input`, `conversion`, or `crash` where the process itself died."""
 
 
@@ -44,7 +48,7 @@ def write_failure(output: Path, failure: Failure) -> None:
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_json(_file(output, failure.take), asdict(failure), indent=1)
+    write_json(_file(output, failure.take), failure.to_json(), indent=1)
 
 
 def remove_failure(output: Path, take: str) -> None:
@@ -97,8 +101,7 @@ def _is_deleted(folder: Path, take: str) -> bool:
 
 def _read(path: Path) -> Failure | None:
     with suppress(InputError):
-        fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-        return Failure(*(fields.text(name, "a text") for name in ("take", "error", "kind")))
+        return Failure.from_json(read_json(path, LARGEST_BYTES), str(path))
     return None
 
 
