@@ -13,7 +13,8 @@ from typing import Annotated, Any
 from ..errors import InputError
 from ..files.fields import is_number
 from ..files.json_file import shown
-from ..files.records import ByName, Number, Record
+from ..files.kinds import ByName, Number
+from ..files.records import Record
 from .skeleton import SIDES
 
 SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..files.fields import Fields, listed
 from ..files.inherited_fields import child_location
 from ..files.json_file import shown
-from ..files.records import Kind, Number, refuse
+from ..files.kinds import Kind, Number, refuse
 from .posture import Posture
 from .skeleton import Skeleton
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from .records import Kind, refuse
+from .kinds import Kind, refuse
 
 
 def number_array(value: Any, *, nulls: bool = False) -> Array | None:

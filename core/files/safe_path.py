@@ -6,7 +6,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from ..errors import InputError
 from .fields import Fields
-from .records import Text
+from .kinds import Text
 
 LONGEST_PATH, LONGEST_NAME_BYTES = 1000, 255
 """Characters of a path, and bytes of each name in it, as file systems have it."""

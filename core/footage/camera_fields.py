@@ -10,8 +10,9 @@ from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.inherited_fields import PLACED
+from ..files.kinds import Items, Kind, Number, Whole, refuse
 from ..files.number_lists import number_array
-from ..files.records import Items, Kind, Number, Record, Whole, read_record, refuse
+from ..files.records import Record, read_record
 from .camera_placement import CameraPlacement
 
 LENGTHS_MM = (0.1, 100_000.0)

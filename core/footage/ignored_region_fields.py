@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from ..files.json_file import shown
-from ..files.records import Items, Number, Record, Whole, refuse
+from ..files.kinds import Items, Number, Whole, refuse
+from ..files.records import Record
 from .camera_fields import LARGEST_SIDE_PX
 from .ignored_regions import IgnoredRegion
 

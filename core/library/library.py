@@ -13,7 +13,8 @@ from ..body.human import HUMAN
 from ..body.posture import Posture
 from ..body.posture_fields import LARGEST_ANGLE_RAD, PostureValues
 from ..files.json_file import shown
-from ..files.records import Items, Kind, Number, Object, Record, Text, Whole
+from ..files.kinds import Items, Kind, Number, Text, Whole
+from ..files.records import Object, Record
 from ..text import pluralize
 from .text_fields import IDENTIFIER, LONGEST_LINE, LONGEST_TEXT, SPDX, Tags, line
 from .texts import LONGEST_NAME, name_key

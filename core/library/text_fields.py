@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Annotated
 
-from ..files.records import Items, Text
+from ..files.kinds import Items, Text
 from .texts import IDENTIFIER_RULE, LONGEST_IDENTIFIER, is_identifier, text_fault
 
 MOST_TAGS = 30

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ..body.posture import Posture
-from ..files.records import Number, Record, Text
+from ..files.kinds import Number, Text
+from ..files.records import Record
 from ..library.several_libraries import COMPOSED
 
 DOUBTFUL = 0.5

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 from ..files.json_file import read_json
 from ..files.json_layout import write_readable_json
-from ..files.records import ByName, Choice, Number, Record, Text
+from ..files.kinds import ByName, Choice, Number, Text
+from ..files.records import Record
 from ..take.character_settings import CharacterOptions
 from ..take.record_fields import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
 from .maps.character_map import Roles, roles_mistake

@@ -8,7 +8,8 @@ from typing import Annotated
 from ..errors import InputError
 from ..files.fields import listed
 from ..files.json_folder import ENDING
-from ..files.records import Choice, Number, Record, Text, declared
+from ..files.kinds import Choice, Number, Text
+from ..files.records import Record, declared
 from ..files.safe_path import INSIDE, relative_path
 from .character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
 

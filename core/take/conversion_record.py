@@ -12,7 +12,8 @@ from typing import Annotated
 
 from ..errors import InputError
 from ..files.json_file import read_json, write_json
-from ..files.records import ByName, Items, Number, Record, Whole
+from ..files.kinds import ByName, Items, Number, Whole
+from ..files.records import Record
 from .record_fields import (
     FARTHEST_FRAME,
     MOST_FRAMES,

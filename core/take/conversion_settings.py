@@ -9,7 +9,8 @@ from ..errors import InputError
 from ..files.fields import Fields
 from ..files.inherited_fields import child_location
 from ..files.json_file import shown
-from ..files.records import Choice, Items, Kind, Number, Record, Text, read_record
+from ..files.kinds import Choice, Items, Kind, Number, Text
+from ..files.records import Record, read_record
 from ..files.safe_path import LONGEST_PATH, relative_path
 from ..library.several_libraries import EVERY_LIBRARY
 from .character_settings import CharacterFields, CharacterSettings

@@ -15,7 +15,8 @@ from ..body.posture_fields import FARTHEST_M, PostureValues, rounded
 from ..body.posture_fit import fit_posture
 from ..errors import InputError
 from ..files.json_file import read_json, write_json
-from ..files.records import ByName, Items, Number, Record
+from ..files.kinds import ByName, Items, Number
+from ..files.records import Record
 from ..prior.keyframes import Keyframe, Matched
 from .record_fields import Frame
 

@@ -16,8 +16,9 @@ from ..body.posture import Posture
 from ..body.posture_fields import posture_to_json, rounded
 from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
+from ..files.kinds import ByName, Items, Kind, Whole, refuse
 from ..files.number_lists import NumberArray, number_array
-from ..files.records import ByName, Items, Kind, Record, Whole, refuse
+from ..files.records import Record
 from .motion import Motion
 from .record_fields import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from ..files.records import ByName, Items, Number, Text, Whole
+from ..files.kinds import ByName, Items, Number, Text, Whole
 from ..files.safe_path import relative_path
 
 LONGEST_LINE, LONGEST_NOTE = 1000, 10_000

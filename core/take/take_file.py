@@ -17,19 +17,8 @@ from ..errors import InputError
 from ..files.fields import Fields, listed
 from ..files.inherited_fields import InheritedFields, child_location
 from ..files.json_file import shown, write_atomically, write_json
-from ..files.records import (
-    ByName,
-    Choice,
-    Items,
-    Kind,
-    Number,
-    Object,
-    Record,
-    Text,
-    Whole,
-    read_record,
-    refuse,
-)
+from ..files.kinds import ByName, Choice, Items, Kind, Number, Text, Whole, refuse
+from ..files.records import Object, Record, read_record
 from ..footage.camera import Camera
 from ..footage.camera_fields import CameraFields
 from ..footage.ignored_region_fields import (

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from ..files.records import Choice, Items, Number, Record, Text
+from ..files.kinds import Choice, Items, Number, Text
+from ..files.records import Record
 from ..footage.keypoints.body_points import BODY_POINTS
 from ..text import pluralize
 from .record_fields import Line

@@ -11,7 +11,8 @@ from ...arrays import Array
 from ...errors import InputError
 from ...files.fields import Fields
 from ...files.json_file import shown, write_json
-from ...files.records import Anything, Choice, Items, Number, Record, Text, Whole, read_record
+from ...files.kinds import Anything, Choice, Items, Number, Text, Whole
+from ...files.records import Record, read_record
 from .body_points import BODY_POINTS
 from .detected_frames import (
     FARTHEST_M,

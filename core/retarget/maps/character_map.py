@@ -11,19 +11,8 @@ from typing import Annotated, Any
 
 from ...files.fields import is_number, listed
 from ...files.json_file import shown
-from ...files.records import (
-    ByName,
-    Choice,
-    Items,
-    Kind,
-    Never,
-    Number,
-    Object,
-    Record,
-    Text,
-    first_twice,
-    refuse,
-)
+from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
+from ...files.records import Object, Record
 from ...library.text_fields import LONGEST_LINE, LONGEST_TEXT, SPDX, Tags, line
 from ...library.texts import LONGEST_NAME
 from ..roles import CHAINS, LIMBS, ROLES, SOURCES

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 from ...files.json_file import read_json
 from ...files.json_folder import json_files
-from ...files.records import Never, declared
+from ...files.kinds import Never
+from ...files.records import declared
 from ..character import Character
 from .character_map import Bones, CharacterMap, IkControls, RoleBones
 

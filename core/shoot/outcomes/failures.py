@@ -11,7 +11,8 @@ from typing import Annotated
 
 from ...errors import InputError
 from ...files.json_file import read_json, write_json
-from ...files.records import Record, Text
+from ...files.kinds import Text
+from ...files.records import Record
 from ...take.description import clip_name
 from ..discovery.take_names import RESERVED, take_name
 from ..shoot import Shoot

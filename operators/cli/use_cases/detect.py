@@ -9,7 +9,7 @@ from typing import Any
 
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
 from ....core.files.fields import listed
-from ....core.files.records import read_field
+from ....core.files.kinds import read_field
 from ....core.footage.clips.image_sequence import find_images
 from ....core.footage.keypoints.keypoint_file import write_keypoints
 from ....core.progress import run, stretch

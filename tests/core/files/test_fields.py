@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
-from keymark.core.files.records import Items, Number, Whole
+from keymark.core.files.kinds import Items, Number, Whole
 
 NO_FLOAT_HOLDS_IT = 10**400
 
