@@ -279,8 +279,9 @@ class ByName(Kind):
             raise InputError(f"{child.where} is empty; {self.empty}")
         for key in self.needs:
             child.required(key, self.item.valid)
-        for key in value if self.key else ():
-            self.key.read(key, child.where, "a name")
+        if self.key is not None:
+            for key in value:
+                self.key.read(key, child.where, "a name")
         return {
             key: self.others.get(key, self.item).read(
                 value[key], child.source_of(key), key if _PLAIN.fullmatch(key) else shown(key)

@@ -83,7 +83,7 @@ class Object(Kind):
         required = [name for name, one in declared(self.record).items() if one.required]
         return f"an object with {listed(required, 5)}" if required else "an object"
 
-    def read(self, value: Any, where: str, name: str) -> Record:
+    def read(self, value: Any, where: str, name: str) -> Any:
         """See `Kind`."""
         if not isinstance(value, Mapping):
             refuse(where, name, value, self.valid)
@@ -104,8 +104,8 @@ class Declared:
 
 
 @cache
-def declared(record: type[Record]) -> Mapping[str, Declared]:
-    """The fields of a record by name."""
+def declared(record: Any) -> Mapping[str, Declared]:
+    """The fields of a record, a class, by name."""
     hints = get_type_hints(record, include_extras=True)
     found: dict[str, Declared] = {}
     given = {field.name: field for field in dataclasses.fields(record)}  # type: ignore[arg-type]

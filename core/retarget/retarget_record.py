@@ -31,7 +31,7 @@ class Figure(Number):
     def read(self, value: Any, where: str, name: str) -> float:
         """See `Kind`."""
         super().read(value, where, name)
-        return value  # type: ignore[no-any-return]
+        return value
 
     def write(self, value: float) -> float:
         """See `Kind`."""

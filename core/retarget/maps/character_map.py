@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import hypot
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from ...files.fields import is_number, listed
 from ...files.json_file import shown
@@ -60,7 +60,7 @@ class PropertyValue(Kind):
         """See `Kind`."""
         if not isinstance(value, bool) and not (is_number(value) and abs(value) <= FARTHEST):
             refuse(where, name, value, self.valid)
-        return value  # type: ignore[no-any-return]
+        return value
 
     def write(self, value: float | int | bool) -> float | int | bool:
         """See `Kind`."""
@@ -213,7 +213,7 @@ class CharacterMap(Record):
 
     STRICT = True
     SCHEMA, VERSION, TITLE = "keymark-character", 1, "character map"
-    ORDER = (
+    ORDER: ClassVar[tuple[str, ...]] = (
         *("title", "preset", "author", "license", "description", "tags"),
         *("roles", "fk", "ik", "settings", "root", "soles", "rest_corrections", "left_alone"),
     )
