@@ -103,12 +103,16 @@ class Declared:
     default: Any
 
 
-@cache
 def declared(record: Any) -> Mapping[str, Declared]:
     """The fields of a record, a class, by name."""
+    return _declared(record)
+
+
+@cache
+def _declared(record: Any) -> Mapping[str, Declared]:
     hints = get_type_hints(record, include_extras=True)
     found: dict[str, Declared] = {}
-    given = {field.name: field for field in dataclasses.fields(record)}  # type: ignore[arg-type]
+    given = {field.name: field for field in dataclasses.fields(record)}
     for field in [given[name] for name in record.ORDER or given]:
         kind = kind_of(hints[field.name])
         default = field.default if field.default_factory is MISSING else field.default_factory()
