@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from _characters import plain_character, plain_map
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
-from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord
+from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord, UsedCharacter, UsedMap
 from keymark.core.take.character_settings import CharacterOptions
 
 
@@ -45,12 +45,8 @@ def full_record() -> RetargetRecord:
     return RetargetRecord(
         keymark="1.0.0",
         take="walk",
-        character_file="anna.blend",
-        character_object="rig",
-        character_sha256="ef" * 32,
-        map_title="Anna",
-        map_origin=RECOGNIZED,
-        preset="rigify",
+        character=UsedCharacter("anna.blend", "rig", "ef" * 32),
+        map=UsedMap("Anna", RECOGNIZED, "rigify"),
         action="walk on rig",
         frames=8,
         frame_start=1,

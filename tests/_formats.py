@@ -20,9 +20,9 @@ from _synthetic_take import (
 )
 from keymark.core.body.posture_fields import posture_to_json
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
-from keymark.core.library.library_file import library_to_json, read_library
-from keymark.core.retarget.maps.character_map_file import map_to_json, read_character_map
-from keymark.core.retarget.retarget_record import read_retarget_record, record_to_json
+from keymark.core.library.library_file import read_library
+from keymark.core.retarget.maps.character_map_file import read_character_map
+from keymark.core.retarget.retarget_record import read_retarget_record
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery import read_take_list
 from keymark.core.take.clip_check import check_in_front
@@ -73,15 +73,15 @@ def formats(folder: Path) -> dict[str, Format]:
         Format("keyframes", _keyframes(take), _keyframe_file(folder)),
         Format("shoot", _shoot(said), _in_shoot(folder, take)),
         Format("takes", _line(said), _listed(folder, take)),
-        Format("library", library_to_json(small_library()), _plain(folder, "library.json", read_library)),
-        Format("character", map_to_json(full_map()), _plain(folder, "map.json", read_character_map)),
+        Format("library", small_library().to_json(), _plain(folder, "library.json", read_library)),
+        Format("character", full_map().to_json(), _plain(folder, "map.json", read_character_map)),
         Format("motion", _motion(folder), _plain(folder, "motion.json", read_motion)),
         Format(
             "conversion", _record(), _plain(folder, "conversion.json", lambda path: read_record(path.parent))
         ),
         Format(
             "retarget",
-            record_to_json(full_record()),
+            full_record().to_json(),
             _plain(folder, "retarget.json", lambda path: read_retarget_record(path.parent)),
         ),
         Format("keypoints", _keypoints(), _plain(folder, "keypoints.json", _read_keypoints)),

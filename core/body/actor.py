@@ -8,11 +8,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 from ..errors import InputError
 from ..files.fields import is_number
 from ..files.json_file import shown
+from ..files.kinds import ByName, Number
+from ..files.records import Record
 from .skeleton import SIDES
 
 SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
@@ -37,17 +39,21 @@ SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
 )
 REQUIRED = tuple(name for name in SHARES_OF_STATURE if not name.startswith(("hand", "foot")))
 SHORTEST_M, LONGEST_M = 0.02, 2.0
+Segments = Annotated[
+    Mapping[str, Annotated[float, Number(SHORTEST_M, LONGEST_M, "m")]],
+    ByName("lengths in meters", names=tuple(SHARES_OF_STATURE), needs=REQUIRED),
+]
 
 
 @dataclass(frozen=True)
-class Actor:
+class Actor(Record):
     """Segment lengths of one performer.
 
     Raises:
         InputError: A length is missing, unknown, not a number or outside 0.02 to 2 m.
     """
 
-    segments_m: Mapping[str, float] = field(hash=False)
+    segments_m: Segments = field(hash=False)
     """Length of every segment [m]; hands and feet follow from the stature where not given."""
 
     def __post_init__(self) -> None:

@@ -1,6 +1,7 @@
 """Postures as JSON fields: values by name of degree of freedom, in meters and radians."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields, listed
+from ..files.inherited_fields import child_location
 from ..files.json_file import shown
+from ..files.kinds import Kind, Number, refuse
 from .posture import Posture
 from .skeleton import Skeleton
 
@@ -21,7 +24,7 @@ DECIMALS = 6
 def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
     """A posture, or a batch along the first axis, by name of degree of freedom [m, rad].
 
-    `read_posture` gives the same numbers back.
+    `PostureValues` gives the same numbers back.
     """
     vector = posture.to_vector()  # (..., D)
     # Rounded up past π, half a turn would be read as half a turn the other way.
@@ -37,33 +40,51 @@ def rounded(values: Array, decimals: int = DECIMALS) -> Any:
     return (np.round(values, decimals) + 0.0).tolist()
 
 
-def read_posture(
-    fields: Fields, skeleton: Skeleton, farthest_m: float = FARTHEST_M, *, zeros_left_out: bool = False
-) -> Posture:
-    """Read the single posture that `posture_to_json` wrote.
+@dataclass(frozen=True)
+class PostureValues(Kind):
+    """A single posture: its values by name of degree of freedom, in meters and radians."""
 
-    Args:
-        fields: The values by name of degree of freedom.
-        skeleton: The skeleton with these degrees of freedom.
-        farthest_m: Largest distance from the origin along an axis [m].
-        zeros_left_out: Whether an absent degree of freedom counts as zero; else it is an error.
+    skeleton: Skeleton
+    farthest_m: float = FARTHEST_M
+    """Largest distance from the origin along an axis [m]."""
+    zeros_left_out: bool = False
+    """Whether an absent degree of freedom is zero; else it is an error."""
+    decimals: int = DECIMALS
 
-    Raises:
-        InputError: A degree of freedom is missing, unknown or out of range.
-    """
-    unknown = [name for name in fields.values if name not in skeleton.dof_names]
-    if unknown:
-        names = listed(skeleton.dof_names)
-        raise InputError(
-            f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are {names}"
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"an object with {listed(self.skeleton.dof_names, 3)}"
+
+    @property
+    def numbers(self) -> Mapping[str, Number]:
+        """The values by name: meters for locations, radians for angles."""
+        place, angle = (
+            Number(-self.farthest_m, self.farthest_m),
+            Number(-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD),
         )
-    vector = [
-        0.0 if zeros_left_out and name not in fields.values else fields.number(name, -limit, limit)
-        for name, limit in _bounds(skeleton, farthest_m).items()
-    ]
-    return Posture.from_vector(skeleton, np.asarray(vector))
+        return {name: place if ".location_" in name else angle for name in self.skeleton.dof_names}
 
+    def read(self, value: Any, where: str, name: str) -> Posture:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        fields, numbers = Fields(value, child_location(where, name)), self.numbers
+        unknown = [one for one in value if one not in numbers]
+        if unknown:
+            raise InputError(
+                f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are "
+                f"{listed(numbers)}"
+            )
+        vector = [
+            0.0
+            if self.zeros_left_out and dof not in value
+            else number.read(fields.required(dof, number.valid), fields.where, dof)
+            for dof, number in numbers.items()
+        ]
+        return Posture.from_vector(self.skeleton, np.asarray(vector))
 
-def _bounds(skeleton: Skeleton, farthest_m: float) -> Mapping[str, float]:
-    """Largest absolute value of each degree of freedom: meters for locations, radians for angles."""
-    return {name: farthest_m if ".location_" in name else LARGEST_ANGLE_RAD for name in skeleton.dof_names}
+    def write(self, value: Posture) -> dict[str, float]:
+        """See `Kind`."""
+        values = posture_to_json(value, self.decimals)
+        return {name: one for name, one in values.items() if one or not self.zeros_left_out}

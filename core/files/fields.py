@@ -8,7 +8,7 @@ from math import isfinite
 from typing import Any
 
 from ..errors import InputError
-from .inherited_fields import InheritedFields, child_location
+from .inherited_fields import InheritedFields
 from .json_file import shown
 
 
@@ -70,54 +70,6 @@ class Fields:
     def _first_names(self) -> list[str]:
         """The first hundred names, to find a mistyped one among; comparing thousands takes long."""
         return [name for name in islice(self.values, 100) if isinstance(name, str)]
-
-    def child(self, name: str, valid: str) -> "Fields":
-        """The object in a field."""
-        value = self.required(name, valid)
-        if not isinstance(value, Mapping):
-            raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
-        return Fields(value, child_location(self.source_of(name), name))
-
-    def number(self, name: str, low: float, high: float, unit: str = "") -> float:
-        """A number from `low` to `high`."""
-        valid = f"a number from {low:g} to {high:g}{unit and ' ' + unit}"
-        value = self.required(name, valid)
-        if not is_number(value) or not low <= value <= high:
-            raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
-        return float(value)
-
-    def integer(self, name: str, low: int, high: int) -> int:
-        """A whole number from `low` to `high`; 3.0 is one too."""
-        valid = f"a whole number from {low} to {high}"
-        value = self.required(name, valid)
-        if not is_number(value) or value != int(value) or not low <= value <= high:
-            raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
-        return int(value)
-
-    def check_version(self, newest: int) -> None:
-        """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read."""
-        version = self.integer("schema_version", 1, 10**6)
-        if version > newest:
-            source = self.source_of("schema_version")
-            raise InputError(
-                f"{source}: schema_version is {version}, made by a newer Keymark; "
-                f"this one reads up to {newest}"
-            )
-
-    def text(self, name: str, valid: str) -> str:
-        """A text that is not empty."""
-        value = self.required(name, valid)
-        if not isinstance(value, str) or not value.strip():
-            raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
-        return value
-
-    def numbers(self, name: str, count: int, low: float, high: float, valid: str) -> tuple[float, ...]:
-        """`count` numbers from `low` to `high`."""
-        value = self.required(name, valid)
-        usable = isinstance(value, list) and len(value) == count
-        if not usable or not all(is_number(item) and low <= item <= high for item in value):
-            raise InputError(f"{self.source_of(name)}: {name} is {shown(value)}; it must be {valid}")
-        return tuple(float(item) for item in value)
 
 
 def is_number(value: Any) -> bool:

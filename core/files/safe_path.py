@@ -5,12 +5,13 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from ..errors import InputError
-from .control_characters import is_control_character
 from .fields import Fields
-from .json_file import shown
+from .kinds import Text
 
 LONGEST_PATH, LONGEST_NAME_BYTES = 1000, 255
 """Characters of a path, and bytes of each name in it, as file systems have it."""
+INSIDE = r"^(?![\\/])(?![A-Za-z]:)(?!(.*[\\/])?\.\.([\\/]|$)).*\S"
+"""What schemas can say of a path that stays inside its folder."""
 
 
 def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
@@ -25,22 +26,19 @@ def safe_path(fields: Fields, name: str, folder: Path, valid: str) -> Path:
     Raises:
         InputError: It is no text, absolute, too long, or climbs out of the folder.
     """
-    text = fields.text(name, valid)
-    outside = PurePosixPath(text).is_absolute() or PureWindowsPath(text).anchor
-    climbs = ".." in PureWindowsPath(text).parts  # it reads both kinds of slash
-    named = all(
-        len(part.encode("utf-8", "surrogatepass")) <= LONGEST_NAME_BYTES
-        for part in PureWindowsPath(text).parts
-    )
-    odd = (
-        len(text) > LONGEST_PATH
-        or any(map(is_control_character, text))
-        or PureWindowsPath(text).name == ""
-        or not named
-    )
-    if outside or climbs or odd:
-        raise InputError(f"{fields.source_of(name)}: {name} is {shown(text)}; it must be {valid}")
-    return folder / text
+    return folder / relative_path(valid).read(fields.required(name, valid), fields.source_of(name), name)
+
+
+def relative_path(valid: str) -> Text:
+    """The kind of a field that holds a path inside a folder; `valid` is what it must be, for the sentence."""
+
+    def fault(text: str) -> str:
+        path = PureWindowsPath(text)  # it reads both kinds of slash
+        outside = PurePosixPath(text).is_absolute() or path.anchor or ".." in path.parts or path.name == ""
+        longest = max((len(part.encode("utf-8", "surrogatepass")) for part in path.parts), default=0)
+        return f"must be {valid}" if outside or longest > LONGEST_NAME_BYTES else ""
+
+    return Text(LONGEST_PATH, valid, pattern=INSIDE, one_line=True, fault=fault)
 
 
 def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:

@@ -14,12 +14,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..files.fields import Fields
-from .camera_fields import read_distortion, read_poses, read_resolution
-
-LENGTHS_MM = (0.1, 100_000.0)
-"""A focal length or a sensor's width lies between these [mm]."""
-MOST_SHIFT = 100.0
-"""Largest shift [image widths]."""
+from .camera_fields import CameraFields
 
 NEWTON_STEPS = 20
 NEWTON_TOLERANCE = 1e-12
@@ -58,27 +53,22 @@ class Camera:
         """Read a camera from the fields of `take.json`.
 
         Args:
-            fields: `lens_mm`, `sensor_width_mm`, `resolution`, one of `matrix_world`, `matrix_world_frames`
-                and `height_m` with `tilt_deg`, `roll_deg`, `distance_m`, and optionally `shift_x`, `shift_y`,
-                `distortion`.
+            fields: Those of `CameraFields`.
             where: Location in the file as messages name it, for instance "take.json: camera".
 
         Raises:
             InputError: A field is missing or invalid; the sentence names it.
         """
-        entry = Fields(fields, where)
-
-        def shift(name: str) -> float:
-            return entry.number(name, -MOST_SHIFT, MOST_SHIFT) if entry.has(name) else 0.0
-
+        read = CameraFields.of(Fields(fields, where))
+        width, height = read.resolution
         return cls(
-            lens_mm=entry.number("lens_mm", *LENGTHS_MM, "mm"),
-            sensor_width_mm=entry.number("sensor_width_mm", *LENGTHS_MM, "mm"),
-            resolution=read_resolution(entry),
-            matrix_world=read_poses(entry),
-            shift_x=shift("shift_x"),
-            shift_y=shift("shift_y"),
-            distortion=read_distortion(entry),
+            lens_mm=read.lens_mm,
+            sensor_width_mm=read.sensor_width_mm,
+            resolution=(width, height),
+            matrix_world=read.pose,
+            shift_x=read.shift_x,
+            shift_y=read.shift_y,
+            distortion=read.distortion,
         )
 
     def to_dict(self) -> dict[str, Any]:

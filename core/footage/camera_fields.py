@@ -1,7 +1,8 @@
 """Validation of a camera's fields in a take: each mistake is an `InputError` of one sentence."""
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -9,10 +10,15 @@ from ..arrays import Array
 from ..errors import InputError
 from ..files.fields import Fields
 from ..files.inherited_fields import PLACED
-from ..files.json_file import shown
+from ..files.kinds import Items, Kind, Number, Whole, refuse
 from ..files.number_lists import number_array
+from ..files.records import Record, read_record
 from .camera_placement import CameraPlacement
 
+LENGTHS_MM = (0.1, 100_000.0)
+"""A focal length or a sensor's width lies between these [mm]."""
+MOST_SHIFT = 100.0
+"""Largest shift [image widths]."""
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0
 """Largest coefficient; those of real lenses are below 1."""
@@ -28,100 +34,124 @@ ROTATION_TOLERANCE = 1e-3
 """Files written by hand or in single precision have errors of about 1e-6."""
 
 
-def read_resolution(fields: Fields) -> tuple[int, int]:
-    """Read the image's width and height in pixels.
+class Pose(Kind):
+    """A pose (4, 4), or several (F, 4, 4).
 
-    Raises:
-        InputError: The field is absent or not two whole numbers from 1 to 65536.
+    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image.
     """
-    valid = f"two whole numbers from 1 to {LARGEST_SIDE_PX}, width and height in pixels"
-    numbers = number_array(fields.required("resolution", valid))
-    fits = numbers is not None and numbers.shape == (2,) and not np.any(numbers % 1)
-    if numbers is None or not fits or numbers.min() < 1 or numbers.max() > LARGEST_SIDE_PX:
-        shown_value = shown(fields.values["resolution"])
-        raise InputError(f"{fields.source_of('resolution')}: resolution is {shown_value}; it must be {valid}")
-    return int(numbers[0]), int(numbers[1])
+
+    def __init__(self, *, several: bool) -> None:
+        self.several = several
+        self.valid = "one 4 by 4 matrix a frame" if several else "a 4 by 4 matrix of finite numbers"
+
+    def read(self, value: Any, where: str, name: str) -> Array:
+        """See `Kind`."""
+        matrices = number_array(value)
+        if matrices is None or matrices.ndim != 2 + self.several:
+            raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
+        if matrices.shape[-2:] != (4, 4) or not matrices.size:
+            raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
+        stacked = matrices.reshape(-1, 4, 4).copy()
+        fault = _first_fault(stacked)
+        if fault is not None:
+            index, what = fault
+            raise InputError(f"{where}: {name}" + (f"[{index}]" if self.several else "") + f" {what}")
+        left, _, right = np.linalg.svd(_scaled(stacked))
+        stacked[:, :3, :3] = left @ right
+        return stacked.reshape(matrices.shape)
 
 
-def read_distortion(fields: Fields) -> tuple[float, float, float]:
-    """Read k1, k2, k3 of the polynomial distortion; without the field there is none, missing ones are 0.
+class Distortion(Kind):
+    """K1, k2, k3 of the polynomial distortion, in a list or by name; missing ones are 0."""
 
-    Raises:
-        InputError: The field is neither a list of at most three numbers nor an object with k1, k2, k3, or a
-            coefficient is out of range.
+    valid = f"up to three numbers [k1, k2, k3], each within {MOST_DISTORTION:g}"
+    names = ("k1", "k2", "k3")
+
+    def read(self, value: Any, where: str, name: str) -> tuple[float, float, float]:
+        """See `Kind`."""
+        listed: Any = value
+        if isinstance(value, Mapping) and set(value) <= set(self.names):
+            listed = [value.get(each, 0.0) for each in self.names]
+        numbers = number_array(listed)
+        usable = numbers is not None and numbers.ndim == 1 and numbers.size <= 3
+        if numbers is None or not usable or np.any(np.abs(numbers) > MOST_DISTORTION):
+            refuse(where, name, value, self.valid)
+        k1, k2, k3 = [*numbers.tolist(), 0.0, 0.0, 0.0][:3]
+        return k1, k2, k3
+
+
+LensNumber = Annotated[float, Number(*LENGTHS_MM, "mm")]
+Shift = Annotated[float, Number(-MOST_SHIFT, MOST_SHIFT)]
+
+
+@dataclass(frozen=True, eq=False)
+class CameraFields(Record):
+    """The camera that saw the performance.
+
+    Blender's conventions: looking along its local -Z with +Y up, sensor fit horizontal, square pixels.
     """
-    value = fields.values.get("distortion")
-    if value is None:
-        return (0.0, 0.0, 0.0)
-    listed: Any = value
-    if isinstance(value, Mapping) and set(value) <= {"k1", "k2", "k3"}:
-        listed = [value.get(name, 0.0) for name in ("k1", "k2", "k3")]
-    numbers = number_array(listed)
-    if numbers is None or numbers.ndim != 1 or numbers.size > 3 or np.any(np.abs(numbers) > MOST_DISTORTION):
-        raise InputError(
-            f"{fields.source_of('distortion')}: distortion is {shown(value)}; "
-            f"it must be up to three numbers [k1, k2, k3], each within {MOST_DISTORTION:g}"
-        )
-    padded = np.zeros(3)
-    padded[: numbers.size] = numbers
-    return float(padded[0]), float(padded[1]), float(padded[2])
 
+    lens_mm: LensNumber
+    """Focal length [mm]."""
+    sensor_width_mm: LensNumber
+    """Width of the sensor [mm]; it spans the picture's width."""
+    resolution: Annotated[
+        tuple[Annotated[int, Whole(1, LARGEST_SIDE_PX)], ...],
+        Items("numbers", 2, 2, f"two whole numbers from 1 to {LARGEST_SIDE_PX}, width and height in pixels"),
+    ]
+    """Width and height of the clip's pictures [px]. Takes below a shoot.json may omit it."""
+    shift_x: Shift = 0.0
+    """Shift of the view to the right [picture widths]."""
+    shift_y: Shift = 0.0
+    """Shift of the view upward [picture widths]."""
+    height_m: Annotated[float, Number(*HEIGHTS_M, "m")] | None = None
+    """Height of a still camera above the floor [m]; with tilt_deg and roll_deg instead of a matrix."""
+    tilt_deg: Annotated[float, Number(-90.0, 90.0, "degrees")] | None = None
+    """Angle of the viewing direction above the horizon [degrees]; negative where the camera looks down; the
+    default is 0."""
+    roll_deg: Annotated[float, Number(-180.0, 180.0, "degrees")] | None = None
+    """Turn about the viewing direction, counterclockwise as the camera's operator sees it [degrees]; the
+    default is 0."""
+    distance_m: Annotated[float, Number(0.0, FARTHEST_M, "m")] | None = None
+    """Distance over the floor at which the camera faces the world's origin, along +Y [m]; the default is 0,
+    above it."""
+    matrix_world: Annotated[Array, Pose(several=False)] | None = None
+    """Pose of a static camera. Four rows of four numbers, camera to world: a rotation, a position in meters,
+    the last row [0, 0, 0, 1]. A uniform scale is removed."""
+    matrix_world_frames: Annotated[Array, Pose(several=True)] | None = None
+    """Poses of a moving camera, one a frame of the clip; takes precedence over matrix_world."""
+    distortion: Annotated[tuple[float, float, float], Distortion()] = (0.0, 0.0, 0.0)
+    """Polynomial radial distortion, k1, k2, k3: a point at the radius r from the axis (at unit depth) is seen
+    at r (1 + k1 r² + k2 r⁴ + k3 r⁶)."""
 
-def read_poses(fields: Fields) -> Array:
-    """Read the camera's pose (4, 4), or (F, 4, 4) where `matrix_world_frames` gives one a frame.
+    @classmethod
+    def of(cls, fields: Fields) -> "CameraFields":
+        """Read them, of which `matrix_world` or `height_m` must be there.
 
-    A uniform scale, as Blender's camera objects may have, is removed: it does not change the image. Instead
-    of a matrix a still camera may have its height, tilt and roll.
-
-    Raises:
-        InputError: A matrix is absent, of the wrong shape, or not a rotation with a translation; a number is
-            out of range, or there are both.
-    """
-    placed = [name for name in PLACED if fields.has(name) and name != FACING]
-    if placed:
-        return _read_placement(fields, placed[0])
-    if not any(fields.has(name) for name in MATRICES):
-        fields.required("matrix_world", "a 4 by 4 matrix of finite numbers; height_m and tilt_deg do as well")
-    moving = fields.has("matrix_world_frames")
-    poses = _read_poses(fields, "matrix_world_frames", "one 4 by 4 matrix a frame", 3) if moving else None
-    if poses is not None and not fields.has("matrix_world"):
-        return poses
-    fixed = _read_poses(fields, "matrix_world", "a 4 by 4 matrix of finite numbers", 2)
-    return fixed if poses is None else poses
-
-
-def _read_placement(fields: Fields, given: str) -> Array:
-    """Pose (4, 4) of a camera that looks along +Y at the world's origin, or stands above it."""
-    for matrix in MATRICES:
-        if fields.has(matrix):
+        Raises:
+            InputError: A field is missing or invalid, or there are both.
+        """
+        placed = [name for name in PLACED if fields.has(name) and name != FACING]
+        posed = [name for name in MATRICES if fields.has(name)]
+        if placed and posed:
             raise InputError(
-                f"{fields.source_of(given)}: there are both {given} and {matrix}; give height_m, tilt_deg "
-                "and roll_deg, or a matrix"
+                f"{fields.source_of(placed[0])}: there are both {placed[0]} and {posed[0]}; give height_m, "
+                "tilt_deg and roll_deg, or a matrix"
             )
+        if placed:
+            fields.required("height_m", f"a number from {HEIGHTS_M[0]:g} to {HEIGHTS_M[1]:g} m")
+        elif not posed:
+            valid = "a 4 by 4 matrix of finite numbers; height_m and tilt_deg do as well"
+            fields.required("matrix_world", valid)
+        return read_record(cls, fields)
 
-    def degrees(name: str, most: float) -> float:
-        return float(np.radians(fields.number(name, -most, most, "degrees"))) if fields.has(name) else 0.0
-
-    height_m = fields.number("height_m", *HEIGHTS_M, "m")
-    distance_m = fields.number("distance_m", 0.0, FARTHEST_M, "m") if fields.has("distance_m") else 0.0
-    placement = CameraPlacement(height_m, degrees("tilt_deg", 90.0), degrees("roll_deg", 180.0))
-    return placement.matrix((0.0, -distance_m))
-
-
-def _read_poses(fields: Fields, name: str, valid: str, ndim: int) -> Array:
-    matrices = number_array(fields.required(name, valid))
-    if matrices is None or matrices.ndim != ndim or matrices.shape[-2:] != (4, 4) or not matrices.size:
-        raise InputError(f"{fields.source_of(name)}: {name} has the wrong form; it must be {valid}")
-    stacked = matrices.reshape(-1, 4, 4).copy()
-    fault = _first_fault(stacked)
-    if fault is not None:
-        index, what = fault
-        raise InputError(
-            f"{fields.source_of(name)}: {name}" + (f"[{index}]" if ndim == 3 else "") + f" {what}"
-        )
-    left, _, right = np.linalg.svd(_scaled(stacked))
-    stacked[:, :3, :3] = left @ right
-    return stacked.reshape(matrices.shape)
+    @property
+    def pose(self) -> Array:
+        """The pose (4, 4), or (F, 4, 4) where there is one a frame."""
+        if self.height_m is None:
+            return self.matrix_world if self.matrix_world_frames is None else self.matrix_world_frames  # type: ignore[return-value]
+        turns = (float(np.radians(degrees or 0.0)) for degrees in (self.tilt_deg, self.roll_deg))
+        return CameraPlacement(self.height_m, *turns).matrix((0.0, -(self.distance_m or 0.0)))
 
 
 def _first_fault(matrices: Array) -> tuple[int, str] | None:

@@ -12,7 +12,6 @@ from ..errors import InputError
 from ..files.fields import listed
 from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
-from .library_file import library_to_json
 from .texts import checked_identifier, name_key, unique_name
 from .transfer import transferred
 
@@ -65,7 +64,7 @@ def merge_versions(mine: Library, theirs: Library, replaces: bool | None = None)
         head, actor=mine.actor, postures=tuple(postures), motions=tuple(_respelled(motions, spelled))
     )
     for one in (mine, theirs):
-        if library_to_json(replace(whole, version=one.version)) == library_to_json(one):
+        if replace(whole, version=one.version).to_json() == one.to_json():
             return one
     return replace(whole, version=max(mine.version, theirs.version) + 1)
 
@@ -128,7 +127,7 @@ def _fitted(library: Library, other: Library) -> Library:
 
 def _rows(library: Library) -> dict[tuple[str, str], tuple[str, Any]]:
     """Name and JSON content of every posture and motion, by kind and `name_key`."""
-    value = library_to_json(library)
+    value = library.to_json()
     rows: dict[tuple[str, str], tuple[str, Any]] = {}
     for kind in ("posture", "motion"):
         for row in value.get(f"{kind}s", []):

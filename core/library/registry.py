@@ -11,7 +11,7 @@ from ..files.fields import listed
 from ..files.json_file import read_json, shown
 from ..files.json_folder import ENDING, is_other_format, is_path, json_files
 from .library import Library
-from .library_file import LARGEST_BYTES, SCHEMA, library_from_json, read_library
+from .library_file import LARGEST_BYTES, read_library
 from .several_libraries import EVERY_LIBRARY
 from .texts import checked_identifier
 
@@ -120,8 +120,8 @@ def _read(path: Path) -> RegisteredLibrary | None:
     """The library of a file; None for a file of another of Keymark's formats."""
     try:
         value = read_json(path, LARGEST_BYTES)
-        if is_other_format(value, SCHEMA):
+        if is_other_format(value, Library.SCHEMA):
             return None
-        return RegisteredLibrary(path, library_from_json(value, str(path)))
+        return RegisteredLibrary(path, Library.from_json(value, str(path)))
     except InputError as error:
         return RegisteredLibrary(path, None, str(error))

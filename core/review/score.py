@@ -4,9 +4,10 @@ MPJPE, the mean per joint position error: Ionescu et al. (2014), *Human3.6M*, eq
 across the line of sight matters with a single camera: across it the image helps, along it not.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -14,9 +15,10 @@ from ..arrays import Array
 from ..body.human import HUMAN
 from ..body.posture_fields import FARTHEST_M
 from ..errors import InputError
-from ..files.fields import Fields
 from ..files.json_file import read_json, shown
-from ..files.number_lists import number_array
+from ..files.kinds import ByName, Items, Whole
+from ..files.number_lists import NumberArray
+from ..files.records import Record
 from ..footage.camera import Camera
 
 STANDING_M = 0.004
@@ -102,6 +104,27 @@ def score_points(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class TruthFile(Record):
+    """The fields of `truth.json`."""
+
+    TITLE = "truth"
+
+    frames: Annotated[tuple[Annotated[int, Whole(-(10**8), 10**8)], ...], Items("frames", 1, 10**6)]
+    """Every scene frame of the clip, in order."""
+    points: Annotated[
+        Mapping[str, Array],
+        ByName(
+            "13 points",
+            names=HUMAN.point_names,
+            needs=HUMAN.point_names,
+            strict=False,
+            item=NumberArray((-1, 3), FARTHEST_M),
+        ),
+    ]
+    """Positions by point: one [x, y, z] a frame [m], world axes."""
+
+
 def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     """Read a take's `truth.json` for the clip's frames.
 
@@ -116,22 +139,16 @@ def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
     Raises:
         InputError: The file is unusable or lacks a frame of the clip.
     """
-    fields = Fields(read_json(path), str(path))
-    frames = fields.required("frames", "a list of frames")
-    wanted = list(range(frame_start, frame_start + frame_count))
-    if frames != wanted:
+    truth = TruthFile.from_json(read_json(path), str(path))
+    wanted = tuple(range(frame_start, frame_start + frame_count))
+    if truth.frames != wanted:
         raise InputError(
-            f"{path}: frames is {shown(frames)}; it must list {wanted[0]} to {wanted[-1]} in order"
+            f"{path}: frames is {shown(list(truth.frames))}; it must list {wanted[0]} to "
+            f"{wanted[-1]} in order"
         )
-    points = fields.child("points", "an object of 13 points")
-    places = [points.required(name, "a list of [x, y, z]") for name in HUMAN.point_names]
-    truth = number_array(places)
-    usable = truth is not None and truth.shape == (len(places), frame_count, 3)
-    if truth is None or not usable or np.abs(truth).max(initial=0.0) > FARTHEST_M:
-        raise InputError(
-            f"{points.where}: each point needs {frame_count} [x, y, z] in m, within {FARTHEST_M:g} m"
-        )
-    return np.swapaxes(truth, 0, 1)
+    if any(len(places) != frame_count for places in truth.points.values()):
+        raise InputError(f"{path}: points: each point needs {frame_count} [x, y, z] in m")
+    return np.stack(list(truth.points.values()), axis=1)
 
 
 def _along_and_across(error: Array, truth: Array, camera: Camera) -> tuple[Array, Array]:

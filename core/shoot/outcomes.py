@@ -3,14 +3,16 @@
 import hashlib
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import Annotated
 
 from ..errors import InputError
-from ..files.fields import Fields
 from ..files.json_file import read_json, write_json
+from ..files.kinds import Text
 from ..files.paths import absolute_path
+from ..files.records import Record
 from ..take.conversion_record import RECORD_FILE, ConversionRecord, find_record, read_record
 from ..take.description import clip_name
 from .discovery import RESERVED, take_name
@@ -23,15 +25,18 @@ DIGITS = 16
 INPUT, CONVERSION, CRASH = "input", "conversion", "crash"
 
 
+Words = Annotated[str, Text(LARGEST_BYTES)]
+
+
 @dataclass(frozen=True)
-class Failure:
+class Failure(Record):
     """Why a take did not convert."""
 
-    take: str
+    take: Words
     """Its name in the shoot."""
-    error: str
+    error: Words
     """The reason, in a sentence."""
-    kind: str
+    kind: Words
     """`input`, `conversion`, or `crash` where the process itself died."""
 
 
@@ -41,7 +46,7 @@ def write_failure(output: Path, failure: Failure) -> None:
     Raises:
         ConversionError: The file cannot be written.
     """
-    write_json(_file(output, failure.take), asdict(failure), indent=1)
+    write_json(_file(output, failure.take), failure.to_json(), indent=1)
 
 
 def remove_failure(output: Path, take: str) -> None:
@@ -90,8 +95,7 @@ def _is_deleted(folder: Path, take: str) -> bool:
 
 def _read(path: Path) -> Failure | None:
     with suppress(InputError):
-        fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-        return Failure(*(fields.text(name, "a text") for name in ("take", "error", "kind")))
+        return Failure.from_json(read_json(path, LARGEST_BYTES), str(path))
     return None
 
 
@@ -115,7 +119,7 @@ class Status(StrEnum):
 class Outcome:
     """The outcome of one take."""
 
-    take: str
+    take: Words
     """Its name in the shoot."""
     folder: Path
     """The folder of its results, which may not exist."""

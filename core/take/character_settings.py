@@ -1,18 +1,16 @@
 """The character that a take's motion is put onto: its file, its map, and how, in the words of files."""
 
 import re
-from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 from ..errors import InputError
-from ..files.control_characters import is_control_character
-from ..files.fields import Fields, listed
-from ..files.inherited_fields import child_location
-from ..files.json_file import shown
+from ..files.fields import listed
 from ..files.json_folder import ENDING
-from ..files.safe_path import safe_path
+from ..files.kinds import Choice, Number, Text
+from ..files.records import Record, declared
+from ..files.safe_path import INSIDE, relative_path
 from .character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
 
 CHARACTER_ENDINGS = (".blend", ".fbx", ".glb", ".gltf", ".vrm")
@@ -27,10 +25,6 @@ FILE_VALID = (
 )
 MAP_VALID = (
     "a character map's title, auto, none, or the path of a map file inside the folder, as in anna.json"
-)
-FIELDS = (
-    *("file", "object", "map", "root_motion", "place", "arms", "legs", "plant_feet", "reach_hands"),
-    "tolerance_mm",
 )
 _FILE = re.compile(
     rf"(.*?(?:{'|'.join(map(re.escape, CHARACTER_ENDINGS))}))(?::(.*))?", re.IGNORECASE | re.DOTALL
@@ -66,21 +60,26 @@ class CharacterFile:
 
 
 @dataclass(frozen=True)
-class CharacterOptions:
-    """How a motion is put onto a character, as `core/retarget/options.RetargetOptions` explains."""
+class CharacterOptions(Record):
+    """How a motion is put onto a character."""
 
-    root_motion: str = ROOT_MOTIONS[0]
-    place: str = PLACEMENTS[0]
-    arms: str = LIMB_KEYS[2]
-    legs: str = LIMB_KEYS[2]
+    SPARSE = False
+
+    root_motion: Annotated[str, Choice(ROOT_MOTIONS)] = ROOT_MOTIONS[0]
+    """Where the way over the ground goes; the default is as-filmed."""
+    place: Annotated[str, Choice(PLACEMENTS)] = PLACEMENTS[0]
+    """Where the character performs: where the performer stood, which is the default, or where it stands."""
+    arms: Annotated[str, Choice(LIMB_KEYS)] = LIMB_KEYS[2]
+    """Controls of the arms that are keyed; the default is both."""
+    legs: Annotated[str, Choice(LIMB_KEYS)] = LIMB_KEYS[2]
+    """Controls of the legs that are keyed; the default is both."""
     plant_feet: bool = True
+    """Whether resting feet stay where they are; the default is true."""
     reach_hands: bool = True
-    tolerance_mm: float = 5.0
-    """0 for a key on every frame."""
-
-    def to_json(self) -> dict[str, Any]:
-        """By name, as files have them."""
-        return asdict(self)
+    """Whether hands reach what the performer's reached; the default is true."""
+    tolerance_mm: Annotated[float, Number(0.0, LARGEST_TOLERANCE_MM, "mm")] = 5.0
+    """Largest distance of any joint from the motion [mm], for few keys; 0 for a key on every frame; the
+    default is 5."""
 
 
 @dataclass(frozen=True)
@@ -98,90 +97,36 @@ class CharacterSettings:
         return Path(self.map) if self.map.lower().endswith(ENDING) else None
 
 
-def read_character_settings(
-    description: Fields, folders: Mapping[str, Path], name: str = "character"
-) -> CharacterSettings | None:
-    """The character in a take's description; None where there is none.
-
-    Args:
-        description: The fields of the take, inherited ones included.
-        folders: For each source of fields, the folder that its paths are relative to.
-        name: The field.
-
-    Raises:
-        InputError: A field has no valid value, or a path leaves its folder.
-    """
-    if not description.has(name):
-        return None
-    fields = description.child(name, "an object with file")
-    fields.refuse_others(FIELDS)
-    bases = {child_location(location, name): folder for location, folder in folders.items()}
-    file = safe_path(fields, "file", bases[fields.source_of("file")], FILE_VALID)
-    if file.suffix.lower() not in CHARACTER_ENDINGS:
-        raise InputError(
-            f"{fields.source_of('file')}: file is {shown(fields.values['file'])}; it must be {FILE_VALID}"
-        )
-    return CharacterSettings(
-        CharacterFile(
-            file, _line(fields, "object", "the name of an armature") if fields.has("object") else None
-        ),
-        _map(fields, bases) if fields.has("map") else AUTO,
-        read_character_options(fields),
-    )
-
-
-def read_character_options(fields: Fields) -> CharacterOptions:
-    """The options among some fields; those that are missing have their defaults.
-
-    Raises:
-        InputError: A field has no valid value.
-    """
-    usual = CharacterOptions()
-    tolerance_mm = usual.tolerance_mm
-    if fields.has("tolerance_mm"):
-        tolerance_mm = fields.number("tolerance_mm", 0.0, LARGEST_TOLERANCE_MM, "mm")
-    return CharacterOptions(
-        root_motion=_choice(fields, "root_motion", ROOT_MOTIONS, usual.root_motion),
-        place=_choice(fields, "place", PLACEMENTS, usual.place),
-        arms=_choice(fields, "arms", LIMB_KEYS, usual.arms),
-        legs=_choice(fields, "legs", LIMB_KEYS, usual.legs),
-        plant_feet=_flag(fields, "plant_feet", usual.plant_feet),
-        reach_hands=_flag(fields, "reach_hands", usual.reach_hands),
-        tolerance_mm=tolerance_mm,
-    )
-
-
-def _choice(fields: Fields, name: str, choices: Collection[str], usual: str) -> str:
-    if not fields.has(name):
-        return usual
-    value = fields.text(name, f"one of {listed(choices)}")
-    if value not in choices:
-        raise InputError(
-            f"{fields.source_of(name)}: {name} is {shown(value)}; it must be one of {listed(choices)}"
-        )
-    return value
-
-
-def _flag(fields: Fields, name: str, usual: bool) -> bool:
-    value = fields.values.get(name)
-    if value is None:
-        return usual
-    if not isinstance(value, bool):
-        raise InputError(f"{fields.source_of(name)}: {name} is {shown(value)}; it must be true or false")
-    return value
-
-
-def _line(fields: Fields, name: str, valid: str) -> str:
-    text = fields.text(name, valid)
-    if len(text) > LONGEST_NAME or any(map(is_control_character, text)):
-        raise InputError(f"{fields.source_of(name)}: {name} is {shown(text)}; it must be {valid}")
-    return text
-
-
-def _map(fields: Fields, bases: Mapping[str, Path]) -> str:
-    text = _line(fields, "map", MAP_VALID)
+def _map_fault(text: str) -> str:
     if text.lower().endswith(ENDING):
-        return str(safe_path(fields, "map", bases[fields.source_of("map")], MAP_VALID))
-    if any(letter in "/\\" for letter in text):
-        raise InputError(f"{fields.source_of('map')}: map is {shown(text)}; it must be {MAP_VALID}")
-    return text
+        return relative_path(MAP_VALID).fault(text)
+    return f"must be {MAP_VALID}" if any(letter in "/\\" for letter in text) else ""
+
+
+_ENDINGS = "|".join("".join(f"[{one}{one.upper()}]" for one in ending[1:]) for ending in CHARACTER_ENDINGS)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CharacterFields(CharacterOptions):
+    """The character that gets the motion too, as character.blend in the results."""
+
+    STRICT = True
+    ORDER = ("file", "object", "map", *declared(CharacterOptions))
+
+    file: Annotated[str, replace(relative_path(FILE_VALID), pattern=rf"{INSIDE[:-2]}\.({_ENDINGS})$")]
+    """The character's file, relative to the folder of the file with this field and inside it: .blend, .fbx,
+    .glb, .gltf or .vrm."""
+    object: Annotated[str, Text(LONGEST_NAME, "the name of an armature", one_line=True)] | None = None
+    """Name of the character's armature, where its file has several."""
+    map: Annotated[str, Text(LONGEST_NAME, MAP_VALID, one_line=True, fault=_map_fault)] | None = None
+    """Character map: its title, a file ending in .json inside the folder, auto (the default) for a saved map
+    that knows the character's bones, none for recognition alone."""
+
+    def settings(self, folder: Path, map_folder: Path) -> CharacterSettings:
+        """The settings, with paths in the folders of the files that give `file` and `map`."""
+        named = self.map or AUTO
+        return CharacterSettings(
+            CharacterFile(folder / self.file, self.object),
+            str(map_folder / named) if named.lower().endswith(ENDING) else named,
+            CharacterOptions(**{name: getattr(self, name) for name in declared(CharacterOptions)}),
+        )

@@ -3,15 +3,17 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from ..errors import InputError
-from ..files.control_characters import is_control_character
-from ..files.fields import Fields, listed
+from ..files.fields import Fields
+from ..files.inherited_fields import child_location
 from ..files.json_file import shown
-from ..files.safe_path import safe_path
+from ..files.kinds import Choice, Items, Kind, Number, Text
+from ..files.records import Record, read_record
+from ..files.safe_path import LONGEST_PATH, relative_path
 from ..library.several_libraries import EVERY_LIBRARY
-from .character_settings import CharacterSettings, read_character_settings
+from .character_settings import CharacterFields, CharacterSettings
 from .evidence_kinds import evidence_mistake, in_order
 from .methods import METHODS
 
@@ -90,6 +92,73 @@ def with_auto_as_library(
     return fields
 
 
+def _library_fault(text: str) -> str:
+    if text.lower().endswith(".json"):
+        return relative_path(LIBRARY_VALID).fault(text)
+    path_like = len(text) > LONGEST_NAME or any(letter in "/\\" for letter in text)
+    return f"must be {LIBRARY_VALID}" if path_like else ""
+
+
+LibraryName = Annotated[str, Text(LONGEST_PATH, LIBRARY_VALID, one_line=True, fault=_library_fault)]
+
+
+class KeypointFiles(Kind):
+    """A path, or a list of several."""
+
+    valid = KEYPOINTS_VALID
+    path = relative_path(KEYPOINTS_VALID)
+    paths = Items("files", 1, MOST_KEYPOINT_FILES, item=path)
+
+    def read(self, value: Any, where: str, name: str) -> tuple[str, ...]:
+        """See `Kind`."""
+        if not isinstance(value, list):
+            return (self.path.read(value, where, name),)
+        files = self.paths.read(value, where, name)
+        if len(set(map(Path, files))) < len(files):
+            raise InputError(f"{where}: {name} names a file twice; each counts once")
+        return files
+
+
+class EvidenceKinds(Kind):
+    """Kinds of evidence, each once."""
+
+    valid = "a list of kinds of evidence"
+
+    def read(self, value: Any, where: str, name: str) -> tuple[str, ...]:
+        """See `Kind`."""
+        mistake = evidence_mistake(value)
+        if mistake is not None:
+            raise InputError(f"{where}: {name} is {shown(value)}; {mistake}")
+        return in_order(value)
+
+
+@dataclass(frozen=True)
+class SettingsFields(Record):
+    """The fields of a take that say how it is converted."""
+
+    keyframes: Annotated[str, relative_path(KEYFRAMES_VALID)] | None = None
+    """The keyframe file, relative to the take's folder and inside it; the default is keyframes.json if it
+    exists. Or auto: keyframes are found in the footage with all libraries, beside those in the file."""
+    keypoints: Annotated[tuple[str, ...], KeypointFiles()] | None = None
+    """Keypoints seen in the clip: a file of Keymark's or of a detector, the folder of a detector that writes
+    a file a frame, or a list of several; relative to the take's folder and inside it. In shoot.json a name
+    that every take has. The default is keypoints.json if it exists."""
+    evidence: Annotated[tuple[str, ...], EvidenceKinds()] | None = None
+    """What the motion is held against; the default is whatever the take has. Hints of depth come with
+    keypoints."""
+    library: LibraryName | None = None
+    """Keyframe library to find keyframes with, beside posed ones: its name, a file ending in .json below the
+    folder of the file with this field, or auto for all libraries, which is the same as auto in keyframes."""
+    floor_m: Annotated[float, Number(-HIGHEST_FLOOR_M, HIGHEST_FLOOR_M, "m")] | None = None
+    """Height of the floor [m], if known; used where keyframes are found."""
+    method: Annotated[str, Choice(METHODS)] | None = None
+    """Method of the estimate; the default is map."""
+    pictures: bool | None = None
+    """Whether pictures of the result are drawn; the default is true."""
+    character: CharacterFields | None = None
+    """The character that gets the motion too, as character.blend in the results."""
+
+
 def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSettings:
     """The settings in a take's description.
 
@@ -100,76 +169,27 @@ def read_settings(description: Fields, folders: dict[str, Path]) -> ConversionSe
     Raises:
         InputError: A field has no valid value, or a path leaves its folder.
     """
-    method = description.text("method", listed(METHODS)) if description.has("method") else None
-    if method not in (None, *METHODS):
-        raise InputError(
-            f"{description.source_of('method')}: method is {shown(method)}; "
-            f"it must be one of {listed(METHODS)}"
+    said = read_record(SettingsFields, description)
+
+    def inside(name: str) -> Path:
+        return folders[description.source_of(name)]
+
+    library, character = said.library, None
+    if library is not None and library.lower().endswith(".json"):
+        library = str(inside("library") / library)
+    if said.character is not None:
+        fields = Fields(description.values["character"], "")
+        bases = {child_location(location, "character"): folder for location, folder in folders.items()}
+        character = said.character.settings(
+            bases[fields.source_of("file")], bases.get(fields.source_of("map"), Path())
         )
-    pictures = description.values.get("pictures")
-    if pictures is not None and not isinstance(pictures, bool):
-        raise InputError(
-            f"{description.source_of('pictures')}: pictures is {shown(pictures)}; it must be true or false"
-        )
-    floor_m = None
-    if description.has("floor_m"):
-        floor_m = description.number("floor_m", -HIGHEST_FLOOR_M, HIGHEST_FLOOR_M, "m")
-    keyframes = None
-    if description.has("keyframes"):
-        keyframes = safe_path(
-            description, "keyframes", folders[description.source_of("keyframes")], KEYFRAMES_VALID
-        )
-    library = _library(description, folders)
-    character = read_character_settings(description, folders)
     return ConversionSettings(
-        keyframes,
+        None if said.keyframes is None else inside("keyframes") / said.keyframes,
         library,
-        floor_m,
-        method,
-        pictures,
+        said.floor_m,
+        said.method,
+        said.pictures,
         character,
-        _keypoints(description, folders),
-        _evidence(description),
+        None if said.keypoints is None else tuple(inside("keypoints") / file for file in said.keypoints),
+        said.evidence,
     )
-
-
-def _keypoints(description: Fields, folders: dict[str, Path]) -> tuple[Path, ...] | None:
-    if not description.has("keypoints"):
-        return None
-    source, value = description.source_of("keypoints"), description.values["keypoints"]
-    named = value if isinstance(value, list) else [value]
-    if not 1 <= len(named) <= MOST_KEYPOINT_FILES:
-        raise InputError(
-            f"{source}: keypoints lists {len(named)} files; it must be {KEYPOINTS_VALID}, at most "
-            f"{MOST_KEYPOINT_FILES}"
-        )
-    folder = folders[source]
-    paths = [
-        safe_path(Fields({"keypoints": one}, source), "keypoints", folder, KEYPOINTS_VALID) for one in named
-    ]
-    if len(set(paths)) < len(paths):
-        raise InputError(f"{source}: keypoints names a file twice; each counts once")
-    return tuple(paths)
-
-
-def _evidence(description: Fields) -> tuple[str, ...] | None:
-    if not description.has("evidence"):
-        return None
-    kinds = description.values["evidence"]
-    mistake = evidence_mistake(kinds)
-    if mistake is not None:
-        raise InputError(f"{description.source_of('evidence')}: evidence is {shown(kinds)}; {mistake}")
-    return in_order(kinds)
-
-
-def _library(description: Fields, folders: dict[str, Path]) -> str | None:
-    if not description.has("library"):
-        return None
-    name = description.text("library", LIBRARY_VALID)
-    if not name.lower().endswith(".json"):  # a name, which must not look like a path
-        if len(name) > LONGEST_NAME or any(char in "/\\" or is_control_character(char) for char in name):
-            raise InputError(
-                f"{description.source_of('library')}: library is {shown(name)}; it must be {LIBRARY_VALID}"
-            )
-        return name
-    return str(safe_path(description, "library", folders[description.source_of("library")], LIBRARY_VALID))

@@ -1,24 +1,27 @@
 """`motion.json`: writing a motion for other programs, and reading it."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..arrays import Array
 from ..body.actor import Actor
+from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.posture_fields import posture_to_json, rounded
-from ..errors import ConversionError, InputError
-from ..files.fields import Fields
+from ..errors import ConversionError
 from ..files.json_file import read_json, shown, write_json
-from ..files.number_lists import number_array
+from ..files.kinds import ByName, Items, Kind, Whole, refuse
+from ..files.number_lists import NumberArray, number_array
+from ..files.records import Record
 from .motion import Motion
+from .record_fields import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
-SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**29
 """Two hours of motion: about 2 kB a frame."""
 LARGEST_NUMBER = 1e15
@@ -27,6 +30,80 @@ MOST_DIAGNOSTICS = 100
 SIGNIFICANT_DIGITS = 6
 UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
 """Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
+
+
+class Diagnostic(Kind):
+    """A number or null, or nested lists of them; an array with NaN for null."""
+
+    valid = "numbers or null, or lists of them"
+
+    def read(self, value: Any, where: str, name: str) -> Array:
+        """See `Kind`."""
+        array = number_array(value, nulls=True)
+        if array is None:
+            refuse(where, name, value, self.valid)
+        return array
+
+
+def _lists(names: tuple[str, ...], *shape: int) -> ByName:
+    """Lists of every name, with one entry a frame."""
+    item = NumberArray((-1, *shape), LARGEST_NUMBER)
+    return ByName("lists by name", names=names, needs=names, strict=False, item=item)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFile(Record):
+    """The fields of `motion.json`; lists run over the F frames of the clip."""
+
+    VERSION, TITLE = 1, "motion"
+
+    fps: FrameRate
+    """Frames per second."""
+    frame_start: Frame
+    """Scene frame of the first frame."""
+    frame_count: FrameCount
+    """Number of frames, F."""
+    method: Line
+    """map, ekf or interpolation."""
+    keyframes: Annotated[tuple[Annotated[int, Whole(-(10**8), 10**8)], ...], Items("frames", 0, MOST_FRAMES)]
+    """Scene frames of the keyframes."""
+    time_s: Annotated[Array, NumberArray((-1,), LARGEST_NUMBER)]
+    """Time of each frame [s]."""
+    points: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 3)]
+    """The thirteen joint centers: F times [x, y, z] [m] each."""
+    posture: Annotated[Mapping[str, Array], _lists(HUMAN.dof_names)]
+    """The posture by degree of freedom: F numbers [m, rad] each."""
+    actor: Actor
+    """The performer's size."""
+    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", MOST_DIAGNOSTICS, item=Diagnostic())]
+    """Diagnostics of the estimate by name; null where a number does not apply."""
+    sigma_m: Annotated[Mapping[str, Array], _lists(HUMAN.point_names)] = field(default_factory=dict)
+    """Square root of the trace of each point's covariance: F numbers [m] each; only for methods with
+    uncertainty."""
+    covariance_mm2: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 6)] = field(default_factory=dict)
+    """Covariance of each point: F times xx, xy, xz, yy, yz, zz [mm²]."""
+
+    ORDER = (
+        *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
+        *("covariance_mm2", "posture", "actor", "diagnostics"),
+    )
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        rows = {"time_s": self.time_s}
+        for name in ("points", "posture", "sigma_m", "covariance_mm2"):
+            rows |= {f"{name}.{key}": array for key, array in getattr(self, name).items()}
+        for name, array in rows.items():
+            if len(array) != self.frame_count:
+                return (
+                    f"{name} is a list of {len(array)}; it must have one entry for each of {self.frame_count}"
+                )
+        first, last = self.frame_start, self.frame_start + self.frame_count - 1
+        if not all(first <= frame <= last for frame in self.keyframes):
+            return (
+                f"keyframes is {shown(list(self.keyframes))}; it must be a list of frames, {first} to {last}"
+            )
+        return ""
 
 
 def write_motion(motion: Motion, path: Path) -> None:
@@ -44,21 +121,20 @@ def write_motion(motion: Motion, path: Path) -> None:
     """
     _check_finite(motion)
     names = motion.body.skeleton.point_names
-    fields = {
-        "schema_version": SCHEMA_VERSION,
-        "fps": motion.fps,
-        "frame_start": motion.frame_start,
-        "frame_count": len(motion.time_s),
-        "method": motion.method,
-        "keyframes": [index + motion.frame_start for index in motion.keyframe_indices],
-        "time_s": rounded(motion.time_s),
-        "points": dict(zip(names, rounded(np.swapaxes(motion.points, 0, 1)), strict=True)),
+    file = MotionFile(
+        fps=motion.fps,
+        frame_start=motion.frame_start,
+        frame_count=len(motion.time_s),
+        method=motion.method,
+        keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
+        time_s=rounded(motion.time_s),
+        points=dict(zip(names, rounded(np.swapaxes(motion.points, 0, 1)), strict=True)),
+        posture=posture_to_json(motion.posture),
+        actor=motion.body.actor,
+        diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
         **(_uncertainty(motion) if _has_covariance(motion) else {}),
-        "posture": posture_to_json(motion.posture),
-        "actor": {"segments_m": dict(motion.body.actor.segments_m)},
-        "diagnostics": {name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
-    }
-    write_json(path, fields)
+    )
+    write_json(path, file.to_json())
 
 
 def read_motion(path: Path) -> Motion:
@@ -67,29 +143,19 @@ def read_motion(path: Path) -> Motion:
     Raises:
         InputError: The file or a field is unusable; the sentence names it.
     """
-    fields = Fields(read_json(path, LARGEST_BYTES), str(path))
-    fields.check_version(SCHEMA_VERSION)
-    count = fields.integer("frame_count", 1, 10**6)
-    lengths = fields.child("actor", "an object with segments_m").child("segments_m", "an object of lengths")
-    try:
-        body = Body(Actor(lengths.values))
-    except InputError as error:
-        raise InputError(f"{path}: {error}") from error
-    skeleton = body.skeleton
-    frame_start = fields.integer("frame_start", -(10**7), 10**7)
-    if fields.has("sigma_m"):
-        _rows(fields, "sigma_m", skeleton.point_names, (count,))  # checked only: the covariance holds it too
+    file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
+    body = Body(file.actor)
     return Motion(
         body=body,
-        fps=fields.number("fps", 1e-3, 1e4, "frames per second"),
-        frame_start=frame_start,
-        time_s=_array(fields.required("time_s", "a list of seconds"), (count,), f"{path}: time_s"),
-        posture=Posture.from_vector(skeleton, _rows(fields, "posture", skeleton.dof_names, (count,)).T),
-        points=np.moveaxis(_rows(fields, "points", skeleton.point_names, (count, 3)), 0, 1),
-        point_covariance=_covariance(fields, skeleton.point_names, count),
-        keyframe_indices=_keyframe_indices(fields, frame_start, count),
-        method=fields.text("method", "the name of a method"),
-        diagnostics=_diagnostics(fields),
+        fps=file.fps,
+        frame_start=file.frame_start,
+        time_s=file.time_s,
+        posture=Posture.from_vector(body.skeleton, np.stack(list(file.posture.values()), axis=1)),
+        points=np.stack(list(file.points.values()), axis=1),
+        point_covariance=_covariance(file),
+        keyframe_indices=tuple(frame - file.frame_start for frame in file.keyframes),
+        method=file.method,
+        diagnostics=MappingProxyType(dict(file.diagnostics)),
     )
 
 
@@ -106,10 +172,10 @@ def _uncertainty(motion: Motion) -> dict[str, Any]:
     }
 
 
-def _covariance(fields: Fields, names: tuple[str, ...], count: int) -> Array:
-    covariance = np.full((count, len(names), 3, 3), np.nan)
-    if fields.has("covariance_mm2"):
-        upper = 1e-6 * np.moveaxis(_rows(fields, "covariance_mm2", names, (count, 6)), 0, 1)
+def _covariance(file: MotionFile) -> Array:
+    covariance = np.full((file.frame_count, len(file.points), 3, 3), np.nan)
+    if file.covariance_mm2:
+        upper = 1e-6 * np.stack(list(file.covariance_mm2.values()), axis=1)
         covariance[:, :, UPPER[0], UPPER[1]] = upper
         covariance[:, :, UPPER[1], UPPER[0]] = upper
     return covariance
@@ -134,50 +200,3 @@ def _significant(values: Array) -> Any:
     array = np.asarray(values, dtype=np.float64)
     flat = [float(f"{x:.{SIGNIFICANT_DIGITS}g}") + 0.0 if np.isfinite(x) else None for x in array.ravel()]
     return np.array(flat, dtype=object).reshape(array.shape).tolist()
-
-
-def _rows(fields: Fields, name: str, keys: tuple[str, ...], shape: tuple[int, ...]) -> Array:
-    """The lists of an object as one array, (len(keys), *shape)."""
-    child = fields.child(name, "an object of lists by name")
-    rows = [child.required(key, f"a list of shape {shape}") for key in keys]
-    return np.stack([_array(row, shape, f"{child.where}.{key}") for row, key in zip(rows, keys, strict=True)])
-
-
-def _array(value: Any, shape: tuple[int, ...], where: str) -> Array:
-    array = number_array(value)
-    if array is None or array.shape != shape or not np.all(np.abs(array) <= LARGEST_NUMBER):
-        raise InputError(
-            f"{where} is {shown(value)}; it must be a list of numbers of shape {shape}, each within "
-            f"{LARGEST_NUMBER:g}"
-        )
-    return array
-
-
-def _keyframe_indices(fields: Fields, frame_start: int, count: int) -> tuple[int, ...]:
-    frames = fields.required("keyframes", "a list of frames")
-    first, last = frame_start, frame_start + count - 1
-    if not isinstance(frames, list) or not all(
-        type(frame) is int and first <= frame <= last for frame in frames
-    ):
-        raise InputError(
-            f"{fields.where}: keyframes is {shown(frames)}; it must be a list of frames, {first} to {last}"
-        )
-    return tuple(frame - frame_start for frame in frames)
-
-
-def _diagnostics(fields: Fields) -> Mapping[str, Array]:
-    given = fields.child("diagnostics", "an object of lists by name").values
-    if len(given) > MOST_DIAGNOSTICS:
-        raise InputError(
-            f"{fields.where}: diagnostics has {len(given)} lists; at most {MOST_DIAGNOSTICS} are read"
-        )
-    rows: dict[str, Array] = {}
-    for name, value in given.items():
-        array = number_array(value, nulls=True)
-        if array is None:
-            raise InputError(
-                f"{fields.where}: diagnostics: {shown(name)} is {shown(value)}; it must be numbers or "
-                "null, or lists of them"
-            )
-        rows[name] = array
-    return MappingProxyType(rows)

@@ -9,6 +9,7 @@ from ..files.fields import Fields
 from ..files.inherited_fields import COMMENT_PREFIX
 from ..files.json_file import read_json, shown
 from ..files.paths import absolute_path
+from ..files.records import check_version
 from ..library.several_libraries import EVERY_LIBRARY
 
 SHOOT_FILE = "shoot.json"
@@ -38,7 +39,7 @@ def shoot_fields(path: Path, values: dict[str, Any]) -> dict[str, Any]:
     fields = Fields(values, str(path))
     fields.refuse_others([*KNOWN_FIELDS, *(name for name in values if name.startswith(COMMENT_PREFIX))])
     if fields.has("schema_version"):
-        fields.check_version(SCHEMA_VERSION)
+        check_version(fields, SCHEMA_VERSION)
     if not isinstance(values.get("root", False), bool):
         raise InputError(f"{path}: root is {shown(values['root'])}; it must be true or false")
     if values.get(KEYFRAMES) not in (None, EVERY_LIBRARY):

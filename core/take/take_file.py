@@ -3,23 +3,31 @@
 import os
 import shutil
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from ..body.actor import Actor
+from ..body.actor import Actor, Segments
 from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..errors import InputError
-from ..files.control_characters import is_control_character
 from ..files.fields import Fields, listed
-from ..files.inherited_fields import InheritedFields
+from ..files.inherited_fields import InheritedFields, child_location
 from ..files.json_file import shown, write_atomically, write_json
+from ..files.kinds import ByName, Choice, Items, Kind, Number, Text, Whole, refuse
+from ..files.records import Object, Record, read_record
 from ..footage.camera import Camera
-from ..footage.ignored_region_fields import IGNORED_REGIONS, ignored_region_fields, read_ignored_regions
+from ..footage.camera_fields import CameraFields
+from ..footage.ignored_region_fields import (
+    IGNORED_REGIONS,
+    MOST_REGIONS,
+    RegionFields,
+    ignored_region_fields,
+    ignored_regions,
+)
 from ..footage.keypoints.keypoint_file import read_keypoints, write_keypoints
 from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
@@ -38,6 +46,101 @@ LONGEST_MARKER_NAME = 200
 """Characters."""
 MISTYPED = 0.85
 """Likeness of an object's name from which on it is `markers` with one letter wrong."""
+
+
+FRAME_RATE = Number(1.0, 1000.0, "frames per second")
+FRAME_START = Whole(-(10**6), 10**6)
+
+
+class CameraKind(Kind):
+    """A camera."""
+
+    like = Object(CameraFields)
+    valid = "an object with lens_mm, sensor_width_mm, resolution and matrix_world"
+
+    def read(self, value: Any, where: str, name: str) -> Camera:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        return Camera.from_dict(value, child_location(where, name))
+
+
+@dataclass(frozen=True)
+class MarkerFields(Record):
+    """A colored surface marker."""
+
+    color_srgb: Annotated[
+        tuple[Annotated[float, Number(0.0, 255.0)], ...],
+        Items("numbers", 3, 3, "three numbers from 0 to 255, as an eyedropper gives"),
+    ]
+    """One eyedropper sample of the marker in the footage: red, green, blue."""
+    segment: Annotated[str, Choice(MARKER_SEGMENTS)] | None = None
+    """The body segment that the marker is bound to; the default is the segment of the marker's name."""
+
+
+@dataclass(frozen=True, eq=False)
+class ActorFields(Record):
+    """The performer's size.
+
+    Of segments_m and height_m the one in the nearer file counts; in the same file, segments_m.
+    """
+
+    height_m: Annotated[float, Number(0.5, 3.0, "m")] | None = None
+    """Height [m], for a body of average proportions."""
+    segments_m: Segments | None = None
+    """Lengths of the segments [m]: joint to joint; shoulder_width and hip_width join the two joints' centers,
+    trunk runs from between the hips to between the shoulders, neck_head from there to the middle of the
+    head."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        given = self.height_m is not None or self.segments_m is not None
+        return (
+            "" if given else "segments_m is missing; it must be an object of lengths in meters, or height_m"
+        )
+
+    @property
+    def body(self) -> Body:
+        """The performer's body."""
+        if self.segments_m is None:
+            assert self.height_m is not None
+            return Body(Actor.from_stature(self.height_m))
+        return Body(Actor(self.segments_m))
+
+
+@dataclass(frozen=True, eq=False)
+class TakeFields(Record):
+    """The fields of a take that say what it shows."""
+
+    fps: Annotated[float, FRAME_RATE]
+    """Frames per second. Below a shoot.json the default is the video's own."""
+    frame_start: Annotated[int, FRAME_START]
+    """Scene frame of the clip's first frame. Below a shoot.json the default is 1."""
+    camera: Annotated[Camera, CameraKind()]
+    """The camera that saw the performance."""
+    actor: ActorFields
+    """The performer's size."""
+    markers: (
+        Annotated[
+            Mapping[str, MarkerFields],
+            ByName(
+                "markers",
+                MOST_MARKERS,
+                key=Text(
+                    LONGEST_MARKER_NAME,
+                    f"one line of at most {LONGEST_MARKER_NAME} visible characters",
+                    one_line=True,
+                ),
+            ),
+        ]
+        | None
+    ) = None
+    """The performer's colored markers, by name; none where any clothes are worn."""
+    ignored_regions: Annotated[tuple[RegionFields, ...], Items("regions", 0, MOST_REGIONS)] | None = None
+    """Regions of the picture that are never a marker, as a wall panel of a marker's color: boxes and strokes
+    of a brush, in pixels of the footage from its top left corner, in all frames or some."""
+    frame_count: Annotated[int, Whole(2, MOST_FRAMES)] | None = None
+    """Number of frames of the clip; the default is the clip's own."""
 
 
 def read_take(
@@ -85,11 +188,15 @@ def read_described(
     settings = replace(settings, evidence=None) if whole else settings
     if description.inherits:
         fields = _with_clip_fields(fields, description.clip)
-    from_clip = description.inherits and not fields.has("frame_start")
-    frame_start = 1 if from_clip else fields.integer("frame_start", -(10**6), 10**6)
-    frame_count = fields.integer("frame_count", 2, MOST_FRAMES) if fields.has("frame_count") else None
-    body = _body(fields)
-    camera = _camera(fields, frame_count)
+    _refuse_mistyped_markers(fields)
+    said = read_record(TakeFields, fields)
+    fps, frame_start, frame_count, camera = said.fps, said.frame_start, said.frame_count, said.camera
+    if camera.is_moving and frame_count is not None and len(camera.matrix_world) < frame_count:
+        raise InputError(
+            f"{child_location(fields.source_of('camera'), 'camera')}: matrix_world_frames has "
+            f"{len(camera.matrix_world)} poses; it must have one for each of the {frame_count} frames"
+        )
+    body = said.actor.body
     posed = keyframes or description.keyframes
     optional = keyframes is None and not keyframes_required
     missing = optional and (fewest_keyframes == 0 or not os.path.exists(posed))
@@ -99,7 +206,6 @@ def read_described(
             f"{posed}: no such file{named}; a take needs keyframes posed there, or found in its footage: "
             '--keyframes auto, or "keyframes": "auto" in its description'
         )
-    fps = fields.number("fps", 1.0, 1000.0, "frames per second")
     take = Take(
         folder=description.folder,
         clip=description.clip,
@@ -108,12 +214,14 @@ def read_described(
         frame_count=frame_count,
         camera=camera,
         body=body,
-        markers=_markers(fields),
+        markers=_markers(said.markers or {}, child_location(fields.source_of("markers"), "markers")),
         keyframes=() if missing else read_keyframes(posed, body, frame_start, frame_count, fewest_keyframes),
         described_in=description.file,
         title=description.name,
         keypoints=_keypoints(description, settings, camera, fps, frame_start, frame_count),
-        ignored_regions=read_ignored_regions(fields, camera.resolution, frame_start),
+        ignored_regions=ignored_regions(
+            said.ignored_regions or (), camera.resolution, frame_start, fields.source_of(IGNORED_REGIONS)
+        ),
     )
     if whole:
         return take
@@ -230,10 +338,11 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     assert isinstance(fields.values, InheritedFields)
     camera = fields.values.get("camera")
     sized = not isinstance(camera, Mapping) or camera.get("resolution") is not None
-    if fields.has("fps") and sized:
+    if fields.has("fps") and fields.has("frame_start") and sized:
         return fields
-    clip = open_footage(path, None)
-    from_clip: dict[str, Any] = {}
+    from_clip: dict[str, Any] = {} if fields.has("frame_start") else {"frame_start": 1}
+    if not fields.has("fps") or not sized:
+        clip = open_footage(path, None)
     if not fields.has("fps") and clip.knows_its_rate:
         from_clip["fps"] = clip.fps
     if not sized:
@@ -246,69 +355,29 @@ def _with_clip_fields(fields: Fields, path: Path) -> Fields:
     return Fields(merged, fields.where)
 
 
-def _camera(fields: Fields, frame_count: int | None) -> Camera:
-    child = fields.child("camera", "an object with lens_mm, sensor_width_mm, resolution and matrix_world")
-    camera = Camera.from_dict(child.values, child.where)
-    if camera.is_moving and frame_count is not None and len(camera.matrix_world) < frame_count:
-        raise InputError(
-            f"{child.where}: matrix_world_frames has {len(camera.matrix_world)} poses; "
-            f"it must have one for each of the {frame_count} frames"
-        )
-    return camera
+def _refuse_mistyped_markers(fields: Fields) -> None:
+    """Without markers a take has other evidence: a mistyped name of theirs must not lead there."""
+    objects = [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
+    if not fields.has("markers") and get_close_matches("markers", objects, n=1, cutoff=MISTYPED):
+        fields.required("markers", "an object of markers by name, each with color_srgb")
 
 
-def _body(fields: Fields) -> Body:
-    actor = fields.child("actor", "an object with segments_m, or with height_m alone")
-    height_m = actor.number("height_m", 0.5, 3.0, "m") if actor.has("height_m") else None
-    if height_m is not None and not actor.has("segments_m"):
-        return Body(Actor.from_stature(height_m))
-    lengths: Mapping[str, Any] = actor.child("segments_m", "an object of lengths in meters").values
-    try:
-        return Body(Actor(lengths))
-    except InputError as error:
-        raise InputError(f"{fields.source_of('actor')}: {error}") from error
-
-
-def _markers(fields: Fields) -> tuple[MarkerStyle, ...]:
-    """The markers; none where the field is absent or empty, as of a performer in any clothes."""
-    valid = "an object of markers by name, each with color_srgb"
-    mistyped = get_close_matches("markers", _names_of_objects(fields), n=1, cutoff=MISTYPED)
-    if not fields.has("markers") and not mistyped:
-        return ()
-    markers = fields.child("markers", valid)
-    if len(markers.values) > MOST_MARKERS:
-        raise InputError(
-            f"{markers.where} has {len(markers.values)} markers; at most {MOST_MARKERS} are read"
-        )
-    styles = tuple(_marker(markers, name) for name in markers.values)
+def _markers(given: Mapping[str, MarkerFields], where: str) -> tuple[MarkerStyle, ...]:
+    styles: list[MarkerStyle] = []
     seen: dict[tuple[int, int, int], str] = {}
-    for style in styles:
-        twin = seen.setdefault(style.color_srgb, style.name)
-        if twin != style.name:
+    for name, marker in given.items():
+        segment = marker.segment or name
+        if segment not in MARKER_SEGMENTS:
             raise InputError(
-                f"{markers.where}: {shown(twin)} and {shown(style.name)} have the same color_srgb "
-                f"{list(style.color_srgb)}; each marker needs a color of its own"
+                f"{where}: {shown(name)} is bound to the unknown segment {shown(segment)}; "
+                f"known are {listed(MARKER_SEGMENTS)}"
             )
-    return styles
-
-
-def _names_of_objects(fields: Fields) -> list[str]:
-    return [name for name, value in islice(fields.values.items(), 100) if isinstance(value, Mapping)]
-
-
-def _marker(markers: Fields, name: str) -> MarkerStyle:
-    if not name.strip() or len(name) > LONGEST_MARKER_NAME or any(map(is_control_character, name)):
-        raise InputError(
-            f"{markers.where}: a marker is called {shown(name)}; its name must be one line of at most "
-            f"{LONGEST_MARKER_NAME} visible characters"
-        )
-    marker = markers.child(name, "an object with color_srgb")
-    segment = marker.text("segment", "a body segment's name") if marker.has("segment") else name
-    if segment not in MARKER_SEGMENTS:
-        raise InputError(
-            f"{markers.where}: {shown(name)} is bound to the unknown segment {shown(segment)}; "
-            f"known are {listed(MARKER_SEGMENTS)}"
-        )
-    color = marker.numbers("color_srgb", 3, 0.0, 255.0, "three numbers from 0 to 255, as an eyedropper gives")
-    red, green, blue = (round(value) for value in color)
-    return MarkerStyle(name=name, segment=segment, color_srgb=(red, green, blue))
+        red, green, blue = map(round, marker.color_srgb)
+        twin = seen.setdefault((red, green, blue), name)
+        if twin != name:
+            raise InputError(
+                f"{where}: {shown(twin)} and {shown(name)} have the same color_srgb {[red, green, blue]}; "
+                "each marker needs a color of its own"
+            )
+        styles.append(MarkerStyle(name, segment, (red, green, blue)))
+    return tuple(styles)

@@ -1,41 +1,46 @@
 """Evidence that a result rests on beside its keyframes, for the record of a conversion and for people."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated
 
-from ..errors import InputError
-from ..files.fields import Fields, listed
-from ..files.json_file import shown
+from ..files.kinds import Choice, Items, Number, Text
+from ..files.records import Record
 from ..footage.keypoints.body_points import BODY_POINTS
 from ..text import pluralize
-from .record_fields import record_line, record_list
+from .record_fields import Line
 
 MOST_MARKERS, MOST_SOURCES = 64, 100
 LONGEST_NAME = 200
+Share = Annotated[float, Number(0.0, 1.0, decimals=4)]
 
 
 @dataclass(frozen=True)
-class UsedKeypoints:
+class UsedKeypoints(Record):
     """Keypoints of one source."""
 
-    source: str
+    SPARSE, REQUIRED = False, ("swapped",)
+
+    source: Line
     """The detector, Blender's tracks, or clicks."""
-    points: tuple[str, ...]
+    points: Annotated[
+        tuple[Annotated[str, Choice(BODY_POINTS)], ...], Items("body points", 0, len(BODY_POINTS))
+    ]
     """The body points it shows."""
-    believed: float
+    believed: Share
     """Share of all keypoints it saw that were followed, 0 to 1; 0 too where it saw nobody."""
-    swapped: float = 0.0
+    swapped: Share = 0.0
     """Share of them that it saw on the other side of the body."""
 
 
 @dataclass(frozen=True)
-class UsedEvidence:
+class UsedEvidence(Record):
     """The markers, keypoints, hints of depth and contours that an estimate was held against."""
 
-    markers: tuple[str, ...] = ()
+    SPARSE, REQUIRED = False, ("markers", "keypoints", "depth_hints", "contours")
+
+    markers: Annotated[tuple[Annotated[str, Text(LONGEST_NAME)], ...], Items("names", 0, MOST_MARKERS)] = ()
     """Names of the markers."""
-    keypoints: tuple[UsedKeypoints, ...] = ()
+    keypoints: Annotated[tuple[UsedKeypoints, ...], Items("sources", 0, MOST_SOURCES)] = ()
     """The sources of keypoints."""
     depth_hints: bool = False
     """Whether a network's guess of depths counted."""
@@ -50,61 +55,3 @@ class UsedEvidence:
         kinds = [pluralize(count, word) for count, word in counted if count]
         flags = ((self.depth_hints, "depth hints"), (self.contours, "contours"))
         return ", ".join([*kinds, *(word for used, word in flags if used)]) or "keyframes alone"
-
-    def to_json(self) -> dict[str, Any]:
-        """The evidence as a JSON object."""
-        return {
-            "markers": list(self.markers),
-            "keypoints": [
-                {
-                    "source": said.source,
-                    "points": list(said.points),
-                    "believed": round(said.believed, 4),
-                    "swapped": round(said.swapped, 4),
-                }
-                for said in self.keypoints
-            ],
-            "depth_hints": self.depth_hints,
-            "contours": self.contours,
-        }
-
-
-def read_used_evidence(fields: Fields) -> UsedEvidence:
-    """Read the object of `to_json`.
-
-    Raises:
-        InputError: A field is unusable.
-    """
-    valid = f"a list of at most {MOST_MARKERS} names of {LONGEST_NAME} characters"
-    markers = record_list(fields, "markers", str, MOST_MARKERS, valid)
-    if not all(name.strip() and len(name) <= LONGEST_NAME for name in markers):
-        raise InputError(f"{fields.where}: markers is {shown(markers)}; it must be {valid}")
-    sources = record_list(
-        fields, "keypoints", dict, MOST_SOURCES, f"a list of at most {MOST_SOURCES} sources"
-    )
-    return UsedEvidence(
-        markers=tuple(markers),
-        keypoints=tuple(
-            _used_keypoints(value, f"{fields.where}: keypoints[{index}]")
-            for index, value in enumerate(sources)
-        ),
-        depth_hints=_flag(fields, "depth_hints"),
-        contours=_flag(fields, "contours"),
-    )
-
-
-def _used_keypoints(value: Mapping[str, Any], where: str) -> UsedKeypoints:
-    fields = Fields.of(value, where)
-    valid = f"a list of body points, each one of {listed(BODY_POINTS, 5)}"
-    points = record_list(fields, "points", str, len(BODY_POINTS), valid)
-    if not set(points) <= set(BODY_POINTS):
-        raise InputError(f"{where}: points is {shown(points)}; it must be {valid}")
-    believed, swapped = (fields.number(name, 0.0, 1.0) for name in ("believed", "swapped"))
-    return UsedKeypoints(record_line(fields, "source"), tuple(points), believed, swapped)
-
-
-def _flag(fields: Fields, name: str) -> bool:
-    value = fields.required(name, "true or false")
-    if not isinstance(value, bool):
-        raise InputError(f"{fields.where}: {name} is {shown(value)}; it must be true or false")
-    return value

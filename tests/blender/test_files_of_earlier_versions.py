@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 import pytest
-from keymark.core.library.library_file import library_digest, library_to_json, read_library
+from keymark.core.library.library_file import library_digest, read_library
 from keymark.core.shoot.discovery import take_path
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import is_up_to_date, read_record
@@ -273,7 +273,7 @@ def test_a_library_file_reads_the_same(saved: Saved) -> None:
     """Nothing is lost, and nothing is written differently."""
     path = saved.folder / "shoot" / "gestures.json"
     written = json.loads(path.read_text(encoding="utf-8"))
-    assert library_to_json(read_library(path)) == written
+    assert read_library(path).to_json() == written
     assert len(written["postures"]) == 3 and len(written["motions"]) == 2
 
 

@@ -1,16 +1,18 @@
 """Keymark's own file of keypoints; see docs/keypoint_format.md."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError
-from ...files.control_characters import is_control_character
-from ...files.fields import Fields, listed
+from ...files.fields import Fields
 from ...files.json_file import shown, write_json
+from ...files.kinds import Anything, Choice, Items, Number, Text, Whole
+from ...files.records import Record, read_record
 from .body_points import BODY_POINTS
 from .detected_frames import (
     FARTHEST_M,
@@ -31,6 +33,53 @@ PIXEL_DIGITS, SCORE_DIGITS, HINT_DIGITS = 3, 4, 4
 """Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
 
 
+NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
+Rows = Annotated[tuple[Any, ...], Items("entries, one a frame", 1, MOST_FRAMES, item=Anything("an entry"))]
+
+
+@dataclass(frozen=True)
+class OwnFile(Record):
+    """The fields of a file of our own."""
+
+    TITLE = "keypoints"
+
+    layout: Annotated[str, Choice((*LAYOUTS, OWN))]
+    """Order of the points of a person; own is that of names."""
+    size: Annotated[
+        tuple[Annotated[int, Whole(1, LARGEST_SIDE_PX)], ...],
+        Items("numbers", 2, 2, f"[width, height] of the clip in whole pixels, at most {LARGEST_SIDE_PX}"),
+    ]
+    """Width and height of the pictures in which they were seen [px]; of the clip, or of the same
+    proportions."""
+    names: Annotated[Any, Anything("a list of body points")] = None
+    """Body points of the layout own, each once; other layouts ignore it."""
+    detector: (
+        Annotated[
+            str,
+            Text(
+                LONGEST_DETECTOR,
+                f"one line of at most {LONGEST_DETECTOR} visible characters",
+                one_line=True,
+            ),
+        ]
+        | None
+    ) = None
+    """What saw the points; shown to people."""
+    frame_start: Annotated[int, Whole(-(10**6), 10**6)] | None = None
+    """Scene frame of the first entry, which is the clip's first frame."""
+    fps: Annotated[float, Number(1.0, 1000.0, "frames per second")] | None = None
+    """Frames per second of the clip."""
+    by_hand: bool | None = None
+    """Whether a person placed the points; they are then the performer's."""
+    frames: Rows | None = None
+    """One person a frame, null where nobody is seen; instead of people."""
+    people: Rows | None = None
+    """A list of people a frame, null where nobody is seen; instead of frames."""
+    world: Rows | None = None
+    """A network's guess of the same points in space, in the order of frames or people; null where there is
+    none."""
+
+
 def read_own(fields: Fields, name: str) -> DetectedFrames:
     """Read a file of our own.
 
@@ -41,16 +90,17 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
     Raises:
         InputError: A field is missing or not what it must be.
     """
-    layout = _layout(fields)
-    several = fields.has("people")
-    if several == fields.has("frames"):
+    said = read_record(OwnFile, fields)
+    layout = _layout(said, fields)
+    several = said.people is not None
+    if several == (said.frames is not None):
         found = "both frames and people" if several else "neither frames nor people"
         raise InputError(
             f"{fields.where}: has {found}; it must have frames, with one person in each, or people, with "
             "several"
         )
-    rows = _rows(fields, "people" if several else "frames")
-    world = _rows(fields, "world") if fields.has("world") else [None] * len(rows)
+    rows = said.people or said.frames or ()
+    world = said.world or (None,) * len(rows)
     if len(world) != len(rows):
         raise InputError(
             f"{fields.where}: world has {len(world)} entries; it must have one for each of the {len(rows)} "
@@ -66,14 +116,14 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
         people[index] = _frame(row, hints, layout, where, hint_where)
     return DetectedFrames(
         where=fields.where,
-        source=_detector(fields, name),
+        source=said.detector or name,
         layout=layout,
         people=people,
         numbered=False,
-        size=_size(fields),
-        fps=fields.number("fps", 1.0, 1000.0, "frames per second") if fields.has("fps") else None,
-        frame_start=fields.integer("frame_start", -(10**6), 10**6) if fields.has("frame_start") else None,
-        by_hand=_by_hand(fields),
+        size=(said.size[0], said.size[1]),
+        fps=said.fps,
+        frame_start=said.frame_start,
+        by_hand=bool(said.by_hand),
     )
 
 
@@ -103,60 +153,15 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     write_json(path, fields)
 
 
-def _by_hand(fields: Fields) -> bool:
-    value = fields.values.get("by_hand")
-    if value is not None and not isinstance(value, bool):
-        raise InputError(f"{fields.where}: by_hand is {shown(value)}; it must be true or false")
-    return bool(value)
-
-
 def _alone(entry: Any) -> Any:
     return None if entry is None else [entry]
 
 
-def _layout(fields: Fields) -> Layout:
-    valid = f"one of {listed((*LAYOUTS, OWN))}"
-    name = fields.text("layout", valid)
-    if name != OWN and name not in LAYOUTS:
-        raise InputError(f"{fields.where}: layout is {shown(name)}; it must be {valid}")
-    if name != OWN:
-        return LAYOUTS[name]
-    names = fields.required("names", "a list of body points")
-    known = isinstance(names, list) and all(isinstance(one, str) and one in BODY_POINTS for one in names)
-    if not known or not names or len(set(names)) != len(names):
-        raise InputError(
-            f"{fields.where}: names is {shown(names)}; it must be a list of body points, each once: "
-            f"{listed(BODY_POINTS)}"
-        )
-    return own_layout(names)
-
-
-def _rows(fields: Fields, name: str) -> list[Any]:
-    rows = fields.required(name, "a list with one entry a frame")
-    if not isinstance(rows, list) or not 1 <= len(rows) <= MOST_FRAMES:
-        raise InputError(
-            f"{fields.where}: {name} is {shown(rows)}; it must be a list with one entry a frame, at most "
-            f"{MOST_FRAMES}"
-        )
-    return rows
-
-
-def _detector(fields: Fields, name: str) -> str:
-    if not fields.has("detector"):
-        return name
-    valid = f"one line of at most {LONGEST_DETECTOR} visible characters"
-    text = fields.text("detector", valid)
-    if len(text) > LONGEST_DETECTOR or any(map(is_control_character, text)):
-        raise InputError(f"{fields.where}: detector is {shown(text)}; it must be {valid}")
-    return text
-
-
-def _size(fields: Fields) -> tuple[int, int]:
-    valid = f"[width, height] of the clip in whole pixels, at most {LARGEST_SIDE_PX}"
-    width, height = fields.numbers("size", 2, 1.0, LARGEST_SIDE_PX, valid)
-    if width != int(width) or height != int(height):
-        raise InputError(f"{fields.where}: size is {[width, height]}; it must be {valid}")
-    return int(width), int(height)
+def _layout(said: OwnFile, fields: Fields) -> Layout:
+    if said.layout != OWN:
+        return LAYOUTS[said.layout]
+    fields.required("names", NAMES.valid)
+    return own_layout(NAMES.read(said.names, fields.where, "names"))
 
 
 def _frame(row: Any, hints: Any, layout: Layout, where: str, hint_where: str) -> tuple[DetectedPerson, ...]:

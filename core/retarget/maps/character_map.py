@@ -1,93 +1,283 @@
-"""A character map: which bones and controls of a character play which role."""
+"""A character map: which bones and controls of a character play which role, as its file holds it.
+
+`docs/character_map_format.md` describes the fields. Conventions in `presets/characters` have a few more.
+"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import hypot
 from types import MappingProxyType
+from typing import Annotated, Any, ClassVar
 
-from ..roles import CHAINS
+from ...files.fields import is_number, listed
+from ...files.json_file import shown
+from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
+from ...files.records import Object, Record
+from ...library.text_fields import LONGEST_LINE, LONGEST_TEXT, SPDX, Tags, line
+from ...library.texts import LONGEST_NAME
+from ..roles import CHAINS, LIMBS, ROLES, SOURCES
 
+MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
+"""Most bones of one role; settings; points of one sole."""
+LONGEST_BONE = 255
+"""Characters of a bone's or a property's name; Blender's own have up to 63 bytes."""
+FARTHEST = 1e6
+"""Largest coordinate of a sole, in the armature's units, and largest value of a property."""
+DECIMALS = 9
+ROUGH_LENGTH, EXACT_LENGTH = 1e-3, 1e-8
+"""How far a rest correction's length may be from 1; one that is farther than the second is made 1."""
+SOLE_ROLES = tuple(role for role in ROLES if role.partition(".")[0] in ("foot", "toe"))
+
+
+class Turn(Kind):
+    """A quaternion, which is made to have the length 1."""
+
+    valid = "a turn as a quaternion [w, x, y, z] of length 1"
+    like = Items(
+        "numbers", 4, 4, valid, item=Number(-1.0 - ROUGH_LENGTH, 1.0 + ROUGH_LENGTH, decimals=DECIMALS)
+    )
+
+    def read(self, value: Any, where: str, name: str) -> tuple[float, ...]:
+        """See `Kind`."""
+        turn = self.like.read(value, where, name)
+        length = hypot(*turn)
+        if abs(length - 1.0) > ROUGH_LENGTH:
+            refuse(where, name, value, self.valid)
+        return turn if abs(length - 1.0) <= EXACT_LENGTH else tuple(part / length for part in turn)
+
+    def write(self, value: Any) -> list[float]:
+        """See `Kind`."""
+        return self.like.write(value)
+
+
+class PropertyValue(Kind):
+    """A number or a truth value, which stays of its kind: a property of Blender has a type."""
+
+    farthest = FARTHEST
+    valid = f"a number from {-FARTHEST:g} to {FARTHEST:g}, true or false"
+
+    def read(self, value: Any, where: str, name: str) -> float | int | bool:
+        """See `Kind`."""
+        if not isinstance(value, bool) and not (is_number(value) and abs(value) <= FARTHEST):
+            refuse(where, name, value, self.valid)
+        return value
+
+    def write(self, value: float | int | bool) -> float | int | bool:
+        """See `Kind`."""
+        return round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
+
+
+Share = Annotated[float, Number(0.0, 1.0, decimals=DECIMALS)]
+BoneName = Annotated[
+    str, Text(LONGEST_BONE, f"a bone's name, of at most {LONGEST_BONE} characters", one_line=True)
+]
+PropertyName = Annotated[
+    str, Text(LONGEST_BONE, f"a custom property's name, of at most {LONGEST_BONE} characters", one_line=True)
+]
+BONES = Items("bones", 1, MOST_BONES, unique="bone")
+Bones = Annotated[tuple[BoneName, ...], BONES]
+Figure = Annotated[float, Number(-FARTHEST, FARTHEST, decimals=DECIMALS)]
 Point = tuple[float, float, float]
+SolePoint = Annotated[
+    tuple[Figure, Figure, Figure],
+    Items("numbers", 3, 3, f"a point [x, y, z] within {FARTHEST:g} of the armature's origin"),
+]
 
 
 @dataclass(frozen=True)
-class RoleBones:
+class RoleBones(Record):
     """The bones that play a role."""
 
-    bones: tuple[str, ...]
+    STRICT = True
+
+    bones: Bones
     """One bone; for spine and neck one or several, from the hips upward. They say where the joints are."""
-    confidence: float = 1.0
+    confidence: Share = 1.0
     """Probability that these are the right bones, 0 to 1."""
-    source: str = "you"
-    """Where they come from: one of `roles.SOURCES`."""
-    shares: tuple[float, ...] = ()
+    source: Annotated[str, Choice(SOURCES)] = "you"
+    """Where they come from; by default the person."""
+    shares: Annotated[tuple[Share, ...], Items("numbers from 0 to 1", 0, MOST_BONES)] = ()
     """For spine and neck: how much of the turn from the bone below the chain (hips; last of the spine) to its
     upper end (chest; head) each bone takes, not falling; empty for equal steps."""
 
+    def mistake(self) -> str:
+        """See `Record`."""
+        count, shares = len(self.bones), list(self.shares)
+        if not shares or (len(shares) == count and shares == sorted(shares)):
+            return ""
+        valid = f"{count} numbers from 0 to 1, one a bone, none below the one before"
+        return f"shares is {shown(shares)}; it must be {valid}"
+
 
 @dataclass(frozen=True)
-class Switch:
+class OneBone(RoleBones):
+    """The bone of a role that is no chain."""
+
+    bones: Annotated[tuple[BoneName], replace(BONES, most=1)]
+    """The role's bone."""
+    shares: Annotated[tuple[()], Never(f"shares is for {listed(CHAINS)} alone; leave it out")] = ()
+    """Of chains alone."""
+
+
+@dataclass(frozen=True)
+class Switch(Record):
     """A custom property of a pose bone that chooses between IK and FK."""
 
-    bone: str
-    property: str
-    ik: float
-    fk: float
+    STRICT = True
+
+    bone: BoneName
+    """Pose bone with the property."""
+    property: PropertyName
+    """Name of the property."""
+    ik: Figure
+    """Value for IK."""
+    fk: Figure
+    """Value for FK."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        return f"ik and fk are both {self.ik:g}; a switch has two values" if self.ik == self.fk else ""
 
 
 @dataclass(frozen=True)
-class IkControls:
+class IkControls(Record):
     """The controls of a limb's inverse kinematics."""
 
-    goal: str
+    STRICT = True
+
+    goal: BoneName
     """The control that the hand or foot follows, in place and turn."""
-    pole: str | None = None
+    pole: BoneName | None = None
     """The control that elbow or knee points to."""
-    toe: str | None = None
+    toe: BoneName | None = None
     """The control that turns the toes while the leg is in IK."""
     switch: Switch | None = None
+    """The custom property that chooses between IK and FK."""
 
 
 @dataclass(frozen=True)
-class Setting:
+class ArmControls(IkControls):
+    """The controls of an arm's inverse kinematics."""
+
+    toe: Annotated[None, Never("toe is a control of legs alone; leave it out")] = None
+    """Of legs alone."""
+
+
+@dataclass(frozen=True)
+class Setting(Record):
     """A custom property of a pose bone that is keyed with the motion, so that controls behave as solved."""
 
-    bone: str
-    property: str
-    value: float | int | bool
+    STRICT = True
+
+    bone: BoneName
+    """Pose bone with the property."""
+    property: PropertyName
+    """Name of the property."""
+    value: Annotated[float | int | bool, PropertyValue()]
+    """Number or truth value, of the property's own type."""
+
+
+Roles = Annotated[
+    Mapping[str, RoleBones],
+    ByName(
+        "bones by role",
+        names=ROLES,
+        empty="a character map has roles, hips first",
+        others={role: Object(OneBone, makes=RoleBones) for role in ROLES if role not in CHAINS},
+    ),
+]
+Ik = Annotated[
+    Mapping[str, IkControls],
+    ByName(
+        "controls by limb",
+        names=tuple(LIMBS),
+        others={limb: Object(ArmControls, makes=IkControls) for limb in LIMBS if limb.startswith("arm")},
+    ),
+]
+
+
+def roles_mistake(roles: Mapping[str, RoleBones]) -> str:
+    """What is wrong with roles together: a bone that plays two."""
+    seen: dict[str, str] = {}
+    for role, bones in roles.items():
+        for bone in bones.bones:
+            other = seen.setdefault(bone, role)
+            if other != role:
+                return f"roles: {shown(bone)} plays {other} and {role}; each role needs bones of its own"
+    return ""
 
 
 @dataclass(frozen=True)
-class CharacterMap:
+class CharacterMap(Record):
     """Which bones and controls of a character play which role."""
 
-    title: str
+    STRICT = True
+    SCHEMA, VERSION, TITLE = "keymark-character", 1, "character map"
+    ORDER: ClassVar[tuple[str, ...]] = (
+        *("title", "preset", "author", "license", "description", "tags"),
+        *("roles", "fk", "ik", "settings", "root", "soles", "rest_corrections", "left_alone"),
+    )
+
+    title: Annotated[str, line(LONGEST_NAME)]
     """Name for people, of the character or the convention."""
-    roles: Mapping[str, RoleBones]
-    """By role, of `roles.ROLES`; missing roles are not there."""
-    fk: Mapping[str, tuple[str | None, ...]] = field(default_factory=lambda: MappingProxyType({}))
-    """By role the bones that are keyed so that the role's bones turn as wanted, one for each of them; None
+    roles: Roles
+    """Bones by role; roles that the character lacks are left out."""
+    fk: Annotated[
+        Mapping[str, Annotated[tuple[BoneName | None, ...], Items("bones or null", 1, MOST_BONES)]],
+        ByName("keyed bones by role", names=ROLES),
+    ] = field(default_factory=lambda: MappingProxyType({}))
+    """By role the bones that are keyed so that the role's bones turn as wanted, one for each of them; null
     where one is not keyed (its share lies on others). A role that is not listed is keyed on its own bones."""
-    ik: Mapping[str, IkControls] = field(default_factory=lambda: MappingProxyType({}))
-    """By limb of `roles.LIMBS`, where the rig has inverse kinematics of its own."""
-    settings: tuple[Setting, ...] = ()
-    root: str | None = None
+    ik: Ik = field(default_factory=lambda: MappingProxyType({}))
+    """Controls by limb, where the rig has inverse kinematics of its own."""
+    settings: Annotated[tuple[Setting, ...], Items("settings", 0, MOST_SETTINGS)] = ()
+    """Custom properties that are keyed with the motion."""
+    root: BoneName | None = None
     """The bone that carries the whole character over the ground, for root motion on a bone."""
-    soles: Mapping[str, tuple[Point, ...]] = field(default_factory=lambda: MappingProxyType({}))
+    soles: Annotated[
+        Mapping[str, Annotated[tuple[SolePoint, ...], Items("points [x, y, z]", 1, MOST_SOLE_POINTS)]],
+        ByName("lists of points by role", names=SOLE_ROLES),
+    ] = field(default_factory=lambda: MappingProxyType({}))
     """By role `foot.L`, `toe.L` ...: points of the sole fixed to its bone, at rest, in the armature's space
     and units; without them the sole is taken from the bones."""
-    rest_corrections: Mapping[str, tuple[float, float, float, float]] = field(
-        default_factory=lambda: MappingProxyType({})
-    )
+    rest_corrections: Annotated[
+        Mapping[str, Annotated[tuple[float, float, float, float], Turn()]],
+        ByName("quaternions by role", names=ROLES),
+    ] = field(default_factory=lambda: MappingProxyType({}))
     """By role a turn (w, x, y, z) of the rest pose in the armature's space, for what alignment cannot see."""
-    left_alone: tuple[str, ...] = ()
+    left_alone: Annotated[
+        tuple[Annotated[str, Choice(ROLES)], ...], Items("roles", 0, len(ROLES), unique="role")
+    ] = ()
     """Roles that are not moved."""
-    preset: str | None = None
+    preset: Annotated[str, line(LONGEST_NAME)] | None = None
     """Identifier of the preset that gave it."""
-    author: str = ""
-    license: str = ""
+    author: Annotated[str, line(LONGEST_LINE, empty=True)] = ""
+    """Who made it."""
+    license: Annotated[str, SPDX] = ""
     """SPDX expression, as in a keyframe library."""
-    description: str = ""
-    tags: tuple[str, ...] = ()
+    description: Annotated[str, line(LONGEST_TEXT, empty=True)] = ""
+    """What it is for."""
+    tags: Tags = ()
+    """Words to find it by."""
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        for role, keyed in self.fk.items():
+            if role not in self.roles:
+                return f"fk: {role} is keyed, but roles says no bone for it"
+            count = len(self.roles[role].bones)
+            if len(keyed) != count:
+                return (
+                    f"fk: {role} has {len(keyed)} of them; it must be a list of {count} bones or null, as "
+                    f"many as the bones of {role}"
+                )
+        keyed_bones = [bone for bones in self.fk.values() for bone in bones if bone is not None]
+        keyed_properties = [f"{one.bone} {one.property}" for one in self.settings]
+        return (
+            roles_mistake(self.roles)
+            or first_twice(keyed_bones, "fk", "bone")
+            or first_twice(keyed_properties, "settings", "property")
+        )
 
     def bones(self, role: str) -> tuple[str, ...]:
         """The role's bones; () where it is missing."""

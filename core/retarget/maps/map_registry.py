@@ -14,7 +14,7 @@ from ...library.library_file import LARGEST_BYTES
 from ...library.texts import identifier_from, name_key
 from ..character import Character
 from .character_map import CharacterMap
-from .character_map_file import SCHEMA, map_from_json, read_character_map
+from .character_map_file import read_character_map
 from .map_check import missing_bones
 
 
@@ -111,8 +111,8 @@ def _read(path: Path) -> RegisteredMap | None:
     """The map of a file; None for a file of another of Keymark's formats."""
     try:
         value = read_json(path, LARGEST_BYTES)  # a library, which is larger, is no damaged map
-        if is_other_format(value, SCHEMA):
+        if is_other_format(value, CharacterMap.SCHEMA):
             return None
-        return RegisteredMap(path, map_from_json(value, str(path)))
+        return RegisteredMap(path, CharacterMap.from_json(value, str(path)))
     except InputError as error:
         return RegisteredMap(path, None, str(error))

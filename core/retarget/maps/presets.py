@@ -5,25 +5,34 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from ...errors import InputError
-from ...files.fields import Fields
-from ...files.json_file import read_json, shown
+from ...files.json_file import read_json
 from ...files.json_folder import json_files
+from ...files.kinds import Never
+from ...files.records import declared
 from ..character import Character
-from .character_map import CharacterMap, IkControls, RoleBones
-from .character_map_fields import bone_names, read_map_fields
+from .character_map import Bones, CharacterMap, IkControls, RoleBones
 
 SHIPPED = Path(__file__).resolve().parents[3] / "presets" / "characters"
 """The presets that come with Keymark."""
-SCHEMA = "keymark-character-preset"
-SCHEMA_VERSION = 1
 LARGEST_BYTES = 2**20
 
 _SEPARATORS = re.compile(r"[\s._-]+")
 _PREFIX = re.compile(r"(?:.*[^a-z0-9])?", re.DOTALL)
 """What may stand before all names of a character: nothing, or a namespace that ends in a sign."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PresetFields(CharacterMap):
+    """The fields of a preset's file."""
+
+    SCHEMA, TITLE = "keymark-character-preset", "preset of characters"
+    ORDER = (*CharacterMap.ORDER, "requires", "lacks")
+
+    preset: Annotated[None, Never("has the field 'preset'; a preset is one itself, leave it out")] = None
+    requires: Bones
+    lacks: Bones = ()
 
 
 @dataclass(frozen=True)
@@ -60,17 +69,11 @@ def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
     Raises:
         InputError: The JSON is no valid preset.
     """
-    fields = Fields.of(value, where)
-    schema = fields.values.get("schema")
-    if schema != SCHEMA:
-        raise InputError(f'{where}: schema is {shown(schema)}; a preset of characters has "{SCHEMA}" there')
-    fields.check_version(SCHEMA_VERSION)
-    if fields.has("preset"):
-        raise InputError(f"{where} has the field 'preset'; a preset is one itself, leave it out")
-    character_map = read_map_fields(fields, "preset", ("requires", "lacks"))
-    requires = bone_names(fields, "requires")
-    lacks = bone_names(fields, "lacks") if fields.has("lacks") else ()
-    return Preset(identifier, replace(character_map, preset=identifier), requires, lacks)
+    read = _PresetFields.from_json(value, where)
+    given = {name: getattr(read, name) for name in declared(CharacterMap)}
+    roles = {role: replace(bones, source="preset") for role, bones in read.roles.items()}
+    character_map = CharacterMap(**given | {"preset": identifier, "roles": roles})
+    return Preset(identifier, character_map, read.requires, read.lacks)
 
 
 @lru_cache(maxsize=1)

@@ -7,8 +7,7 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
-from ....core.library.library import Library
-from ....core.library.library_fields import MOST_POSTURES
+from ....core.library.library import MOST_POSTURES, Library
 from ..assets.asset_blend import write_asset_blend
 from ..blend_reader import check_blend
 from ..blend_writer import one_line

@@ -5,7 +5,6 @@ import bpy
 from ....core.body.human import HUMAN
 from ....core.library.learning import LibraryMetadata, learn_library
 from ....core.library.library import Library
-from ....core.library.library_file import library_from_json, library_to_json
 from ....core.progress import run
 from ..actor_lengths import read_body
 from ..final_motion import motion_frames, read_values, shown_postures
@@ -38,5 +37,5 @@ def library_from_action(
     values = run(read_values(armature_object, action, rig, frames))
     posture = shown_postures(armature_object, rig, rig.pose(values), body)
     library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
-    library_from_json(library_to_json(library), f"library '{about.title}'")  # checks what was typed
+    Library.from_json(library.to_json(), f"library '{about.title}'")  # checks what was typed
     return library

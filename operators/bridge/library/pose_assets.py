@@ -19,7 +19,6 @@ from ....core.body.kinematics import Body
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
 from ....core.library.library import Library, LibraryPosture
-from ....core.library.library_file import library_from_json, library_to_json
 from ....core.library.text_fields import LONGEST_TAG
 from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
 from ....core.report.posture_picture import posture_picture
@@ -66,7 +65,7 @@ def _stamp_asset(action: bpy.types.Action, library: Library, posture: LibraryPos
         description=library.description,
     )
     mark_asset(action, details, posture_picture(_body(library), posture.posture))
-    alone = library_to_json(replace(library, postures=(posture,), motions=()))["postures"]
+    alone = replace(library, postures=(posture,), motions=()).to_json()["postures"]
     asset = {"name": action.name, "tags": _asset_tags(action)}
     action[POSTURE] = _text({"order": order, "postures": alone, "asset": asset})
     action[HEADER] = _header_text(library)
@@ -75,7 +74,7 @@ def _stamp_asset(action: bpy.types.Action, library: Library, posture: LibraryPos
 @lru_cache(maxsize=4)
 def _header_text(library: Library) -> str:
     """A library without its postures, as JSON."""
-    return _text(library_to_json(replace(library, postures=())))
+    return _text(replace(library, postures=()).to_json())
 
 
 def is_posture(action: bpy.types.Action) -> bool:
@@ -91,7 +90,7 @@ def read_asset(action: bpy.types.Action) -> LibraryPosture:
     """
     header, own = _fields(action, HEADER), _fields(action, POSTURE)
     where = _where(action)
-    library = library_from_json({**header, "motions": [], "postures": own.get("postures")}, where)
+    library = Library.from_json({**header, "motions": [], "postures": own.get("postures")}, where)
     if len(library.postures) != 1:
         raise InputError(
             "{where}: holds {postures} postures; a pose asset holds one",
@@ -146,10 +145,10 @@ def _merged(actions: Sequence[bpy.types.Action]) -> Library:
         name = unique_name(posture.name, [other.name for other in postures])
         now.setdefault(_stored_name(action), name)
         postures.append(replace(posture, name=name))
-    one = library_from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))
-    document = library_to_json(replace(one, postures=tuple(postures)))
+    one = Library.from_json({**header, "motions": [], "postures": _alone(actions[0])}, _where(actions[0]))
+    document = replace(one, postures=tuple(postures)).to_json()
     motions = _present_motions(header.get("motions", []), now)
-    return library_from_json({**document, "motions": motions}, f"library {one.identifier!r}")
+    return Library.from_json({**document, "motions": motions}, f"library {one.identifier!r}")
 
 
 def _stored_name(action: bpy.types.Action) -> str:

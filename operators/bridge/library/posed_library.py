@@ -16,7 +16,6 @@ from ....core.body.soles import lower_sole_m
 from ....core.errors import InputError
 from ....core.library.learning import LibraryMetadata, numbered_names
 from ....core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from ....core.library.library_file import library_from_json, library_to_json
 from ....core.library.texts import identifier_from, unique_name
 from ....core.library.transfer import transferred
 from ..actor_lengths import read_body
@@ -125,5 +124,5 @@ def _empty(body: Body, about: LibraryMetadata) -> Library:
 
 def _checked(library: Library) -> Library:
     """The library, which is what a file may hold: names are typed by people."""
-    library_from_json(library_to_json(library), f"library '{library.title}'")
+    Library.from_json(library.to_json(), f"library '{library.title}'")
     return library

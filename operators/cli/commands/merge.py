@@ -123,12 +123,12 @@ class MotionGathering:
         except InputError as error:
             self.problems[result.name] = str(error)
             return
-        name = asset_name(f"{result.name} {record.character_object}", names)
+        name = asset_name(f"{result.name} {record.character.object}", names)
         names.add(name)
         self.character_count += 1
-        words = f"For the character '{record.character_object}' of {record.character_file}. "
+        words = f"For the character '{record.character.object}' of {record.character.file}. "
         about = shortened(words + description(result))
-        marks = (*tags(result), *_short_tags(record.character_object, record.preset))
+        marks = (*tags(result), *_short_tags(record.character.object, record.map.preset))
         yield CharacterAsset(name, catalog, about, marks, motion, action)
 
 

@@ -19,7 +19,7 @@ from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.maps.choose_map import ChosenMap, choose_map
 from ....core.retarget.option_words import retarget_options
-from ....core.retarget.retarget_record import RetargetRecord, write_retarget_record
+from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
 from ....core.retarget.roles import LIMBS
 from ....core.take.character_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
@@ -148,12 +148,10 @@ def write_character_result(
         record = RetargetRecord(
             keymark=version(),
             take=take,
-            character_file=settings.file.path.name,
-            character_object=opened.character.name,
-            character_sha256=content_digest(settings.file.path),
-            map_title=character_map.title,
-            map_origin=opened.chosen.origin,
-            preset=character_map.preset,
+            character=UsedCharacter(
+                settings.file.path.name, opened.character.name, content_digest(settings.file.path)
+            ),
+            map=UsedMap(character_map.title, opened.chosen.origin, character_map.preset),
             action=action_name,
             frames=len(frames),
             frame_start=motion.frame_start,

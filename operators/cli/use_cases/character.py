@@ -3,7 +3,7 @@
 import argparse
 
 from ....core.retarget.maps.character_map import CharacterMap, IkControls
-from ....core.retarget.maps.character_map_file import map_to_json, write_character_map
+from ....core.retarget.maps.character_map_file import write_character_map
 from ....core.retarget.maps.choose_map import ChosenMap
 from ....core.retarget.retarget_record import GIVEN, SAVED
 from ....core.retarget.roles import ROLES
@@ -39,7 +39,7 @@ def character_command(arguments: argparse.Namespace) -> None:
             "object": name,
             "origin": chosen.origin,
             "map_file": None if chosen.path is None else str(chosen.path),
-            "map": map_to_json(character_map),
+            "map": character_map.to_json(),
             "doubts": list(chosen.doubts),
             "notes": list(notes),
             "files": [],

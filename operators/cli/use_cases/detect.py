@@ -9,6 +9,7 @@ from typing import Any
 
 from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected
 from ....core.files.fields import listed
+from ....core.files.kinds import read_field
 from ....core.footage.clips.image_sequence import find_images
 from ....core.footage.keypoints.keypoint_file import write_keypoints
 from ....core.progress import run, stretch
@@ -16,6 +17,7 @@ from ....core.shoot.discovery import VIDEOS, find_takes, open_shoot
 from ....core.shoot.shoot import ShootTake
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, sidecar_file
 from ....core.take.shoot_file import find_shoot_files
+from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.text import pluralize
 from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
 from ...bridge.detector.detector_setting import Detector
@@ -196,8 +198,8 @@ def _footage(take: ShootTake) -> Footage:
     return Footage(
         name=take.name,
         clip=description.clip,
-        fps=fields.number("fps", 1.0, 1000.0, "frames per second") if fields.has("fps") else None,
-        frame_start=fields.integer("frame_start", -(10**6), 10**6) if fields.has("frame_start") else 1,
+        fps=read_field(fields, "fps", FRAME_RATE, None),
+        frame_start=read_field(fields, "frame_start", FRAME_START, 1),
         output=_keypoint_file(description),
     )
 

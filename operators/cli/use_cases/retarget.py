@@ -11,7 +11,6 @@ from ....core.retarget.retarget_record import (
     RECORD_FILE,
     RetargetRecord,
     read_retarget_record,
-    record_to_json,
 )
 from ....core.take.character_settings import (
     LARGEST_TOLERANCE_MM,
@@ -50,7 +49,7 @@ def retarget_command(arguments: argparse.Namespace) -> None:
     _check_output(arguments.output)
     with arguments_console(arguments) as console:
         record, files, notes = _retarget(arguments, settings, formats, (motion_file, blend), console)
-        result = {**record_to_json(record), "notes": list(notes), "files": [str(file) for file in files]}
+        result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
         console.finish(result, _text(record, notes, files))
 
 
@@ -171,8 +170,8 @@ def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> 
     lines = [f"Doubtful: {doubt.rstrip('.')}." for doubt in record.doubts]
     lines += [f"Note: {note.rstrip('.')}." for note in notes]
     lines.append(
-        f"{record.frames} frames on '{record.character_object}' of {record.character_file} "
-        f"({record.map_title}, {record.map_origin}):"
+        f"{record.frames} frames on '{record.character.object}' of {record.character.file} "
+        f"({record.map.title}, {record.map.origin}):"
     )
     figures = {name: record.quality.get(name) for name in FIGURES}
     lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]

@@ -90,7 +90,7 @@ def test_every_take_gets_the_character(batch: Batch, converted: Path, tmp_path: 
         record = read_record(folder)
         assert MADE - {"conversion.json"} == set(record.files)
         made = read_retarget_record(folder)
-        assert made.take == Path(name).name and made.character_object == "Anna"
+        assert made.take == Path(name).name and made.character.object == "Anna"
         assert made.files["character.blend"] == record.files["character.blend"]
     assert batch() == {"unchanged": TAKES}
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out" / NAMES[0] / "character.blend"))
@@ -111,7 +111,7 @@ def test_a_change_of_the_character_converts_anew(
     write_character_map(shoot / "cast" / "anna.json", plain_map(plain_character()))
     name_character(shoot, file="cast/anna.blend", map="cast/anna.json")
     assert batch() == {"converted": TAKES}
-    assert read_retarget_record(tmp_path / "out" / NAMES[0]).map_origin == "given"
+    assert read_retarget_record(tmp_path / "out" / NAMES[0]).map.origin == "given"
     name_character(shoot, file="cast/two.blend", object="Anna", map="cast/anna.json")
     assert batch() == {"converted": TAKES}
     (shoot / "shoot.json").write_text(

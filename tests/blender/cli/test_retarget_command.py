@@ -76,14 +76,14 @@ def test_the_record_says_what_was_recognized_and_how_good_it_is(
     """Roles with confidence and source, options, and the digest of the curves in character.blend."""
     assert retarget("--legs", "fk", "--root-motion", "in-place", "--tolerance", "none") == 0
     record = read_retarget_record(output)
-    assert record.take == "small" and record.character_file == "anna.blend"
-    assert record.character_object == "Anna" and record.map_origin == "recognized"
+    assert record.take == "small" and record.character.file == "anna.blend"
+    assert record.character.object == "Anna" and record.map.origin == "recognized"
     assert set(REQUIRED) <= set(record.roles) and (record.frames, record.fps) == (FRAMES, 30.0)
     assert record.options.legs == "fk" and record.options.root_motion == "in-place"
     assert record.options.tolerance_mm == 0.0 and record.limbs["leg.L"] == "fk"
     assert str(cast) not in (output / "retarget.json").read_text(encoding="utf-8")
     scene = opened(output / "character.blend")
-    assert record.files == {"character.blend": curve_digest(scene.objects[record.character_object])}
+    assert record.files == {"character.blend": curve_digest(scene.objects[record.character.object])}
     assert scene.objects["Anna"].animation_data.action.name == record.action
 
 

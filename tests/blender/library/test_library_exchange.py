@@ -12,7 +12,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.soles import lower_sole_m
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.library_file import library_to_json, read_library, write_library
+from keymark.core.library.library_file import read_library, write_library
 from keymark.core.library.registry import registered_libraries
 from keymark.core.prior.keyframes import Keyframe
 from keymark.operators.bridge.actions import new_channelbag
@@ -175,7 +175,7 @@ def saved(path: Path, **settings: str) -> Library:
 
 def same(first: Library, second: Library) -> bool:
     """Whether a file of both would be the same."""
-    return library_to_json(first) == library_to_json(second)
+    return first.to_json() == second.to_json()
 
 
 @pytest.mark.parametrize("suffix", [".json", ".blend"])

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
-from keymark.core.files.fields import Fields
+from keymark.core.files.kinds import Items, Number, Whole
 
 NO_FLOAT_HOLDS_IT = 10**400
 
@@ -13,14 +13,11 @@ NO_FLOAT_HOLDS_IT = 10**400
 @pytest.mark.parametrize("value", [NO_FLOAT_HOLDS_IT, -NO_FLOAT_HOLDS_IT, float("inf"), float("nan"), True])
 def test_what_is_no_number_of_the_range_is_refused_in_one_sentence(value: Any) -> None:
     """Alone, whole, and in a list."""
-    fields = Fields({"size": value}, "a.json")
-    for read in (
-        lambda: fields.number("size", 0.0, 3.0),
-        lambda: fields.integer("size", 0, 3),
-        lambda: Fields({"size": [value]}, "a.json").numbers("size", 1, 0.0, 3.0, "a list of one number"),
-    ):
+    one = Number(0.0, 3.0)
+    kinds = (one, Whole(0, 3), Items("numbers", 1, 1, "a list of one number", item=one))
+    for kind, given in zip(kinds, (value, value, [value]), strict=True):
         with pytest.raises(InputError, match=r"a\.json: size is .*; it must be a") as refusal:
-            read()
+            kind.read(given, "a.json", "size")
         assert len(str(refusal.value)) < 200
 
 

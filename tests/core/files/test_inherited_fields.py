@@ -1,6 +1,7 @@
 """Fields inherited from several files: the nearest overrides, and each field has its source."""
 
-from typing import Any
+from dataclasses import make_dataclass
+from typing import Annotated, Any
 
 import pytest
 from hypothesis import given
@@ -8,6 +9,8 @@ from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.files.fields import Fields
 from keymark.core.files.inherited_fields import ALTERNATIVES, InheritedFields, child_location
+from keymark.core.files.kinds import Number
+from keymark.core.files.records import Record, read_record
 
 FAR, NEAR = "/shoot/shoot.json", "/shoot/take/take.json"
 
@@ -34,7 +37,7 @@ def test_null_removes_an_inherited_field_and_stays_where_there_is_none() -> None
     fields = merged({"fps": 24, "camera": {"shift_x": 0.1}}, {"fps": None, "camera": {"shift_x": None}})
     assert "fps" not in fields and fields["camera"] == {} and "fps" not in fields.sources
     with pytest.raises(InputError, match=r"^1\.json: fps is null"):
-        Fields(merged({}, {"fps": None}), "1.json").number("fps", 1, 2)
+        Fields(merged({}, {"fps": None}), "1.json").required("fps", "a number")
 
 
 def test_a_removed_field_can_be_given_again() -> None:
@@ -87,8 +90,10 @@ def test_a_sentence_names_the_file_that_says_the_field(field: str, said: str) ->
     """And for a field that is missing everywhere, the nearest file."""
     fields = InheritedFields().overridden_by({"camera": {"lens_mm": -1}}, FAR)
     fields = fields.overridden_by({"camera": {"sensor_width_mm": "x"}}, NEAR)
+    camera = make_dataclass("Camera", [(field, Annotated[float, Number(0.0, 1.0)])], bases=(Record,))
+    shot = make_dataclass("Shot", [("camera", camera)], bases=(Record,))
     with pytest.raises(InputError, match=said):
-        Fields(fields, NEAR).child("camera", "an object").number(field, 0, 1)
+        read_record(shot, Fields(fields, NEAR))
 
 
 def test_locations_of_objects_read_well() -> None:

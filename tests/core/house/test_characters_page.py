@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from _synthetic_take import write_synthetic_take
-from keymark.core.take.character_settings import CHARACTER_ENDINGS, FIELDS, CharacterOptions
+from keymark.core.take.character_settings import CHARACTER_ENDINGS, CharacterFields, CharacterOptions
 from keymark.core.take.description import describe
 from keymark.operators.cli.commands.character import CHARACTER
 from keymark.operators.cli.commands.retarget import RETARGET
@@ -31,7 +31,7 @@ def test_every_option_is_described(page: str) -> None:
 def test_every_field_is_described(page: str) -> None:
     """In the section on shoots."""
     section = page.split("## In a shoot")[1]
-    assert [name for name in FIELDS if f"`{name}`" not in section] == []
+    assert [name for name in CharacterFields.ORDER if f"`{name}`" not in section] == []
     assert f"{CharacterOptions().tolerance_mm:g} by default" in section
 
 

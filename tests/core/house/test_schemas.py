@@ -1,6 +1,7 @@
 """Schemas agree with readers: a schema accepts what its reader accepts, and both refuse mistakes."""
 
 import json
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -16,6 +17,9 @@ from jsonschema import Draft202012Validator
 from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
 from referencing import Registry, Resource
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "tools"))
+import make_schemas
 
 NAMES = (
     *("take", "keyframes", "shoot", "takes", "library", "character", "motion", "conversion", "retarget"),
@@ -51,6 +55,13 @@ def test_there_is_a_schema_for_every_format() -> None:
     for schema in schemas().values():
         Draft202012Validator.check_schema(schema)
         assert schema["title"] and schema["description"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_schemas_are_made_of_the_declarations(name: str, repository: Path) -> None:
+    """Byte for byte what tools/make_schemas.py writes."""
+    file = repository / "presets" / "schemas" / f"{name}.schema.json"
+    assert file.read_text(encoding="utf-8") == make_schemas.text_of(name)
 
 
 def fields_of(schema: Any) -> list[tuple[str, Any]]:

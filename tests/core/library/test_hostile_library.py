@@ -11,27 +11,26 @@ from _fuzz import changed
 from _libraries import small_library
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
+from keymark.core.library.library import Library
 from keymark.core.library.library_file import (
     LARGEST_BYTES,
-    library_from_json,
-    library_to_json,
     read_library,
     write_library,
 )
 
-VALID = library_to_json(small_library())
+VALID = small_library().to_json()
 TEXT = json.dumps(VALID, ensure_ascii=False).encode()
 
 
 def judged(value: Any) -> bool:
     """Whether a value is a library: where it is none, one sentence says so; where it is, it can be kept."""
     try:
-        library = library_from_json(value, "here")
+        library = Library.from_json(value, "here")
     except InputError as error:
         assert len(str(error).splitlines()) == 1 and str(error).isprintable() and len(str(error)) < 1500
         return False
-    again = library_to_json(library)
-    assert library_to_json(library_from_json(again, "here")) == again
+    again = library.to_json()
+    assert Library.from_json(again, "here").to_json() == again
     json.dumps(again, allow_nan=False).encode()
     return True
 
@@ -132,7 +131,7 @@ def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> 
         holder = holder[key]
     holder[way[-1]] = value
     with pytest.raises(InputError, match=said) as caught:
-        library_from_json(library, "walk.json")
+        Library.from_json(library, "walk.json")
     assert str(caught.value).startswith("walk.json")
 
 

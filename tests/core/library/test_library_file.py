@@ -9,7 +9,7 @@ from _libraries import small_library
 from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.library.library import Library
-from keymark.core.library.library_file import library_from_json, library_to_json, read_library, write_library
+from keymark.core.library.library_file import read_library, write_library
 
 
 @pytest.fixture
@@ -44,18 +44,18 @@ def assert_same(first: Library, second: Library, tolerance: float) -> None:
 @given(libraries())
 def test_nothing_is_lost_and_the_second_time_nothing_changes(library: Library) -> None:
     """What is written is read back to nine decimals, and from then on to the last bit."""
-    value = library_to_json(library)
-    back = library_from_json(value, "here")
+    value = library.to_json()
+    back = Library.from_json(value, "here")
     assert_same(back, library, 3e-9)  # half a turn is kept two nanoradians short
-    assert library_to_json(back) == value
-    assert_same(library_from_json(library_to_json(back), "here"), back, 0.0)
+    assert back.to_json() == value
+    assert_same(Library.from_json(back.to_json(), "here"), back, 0.0)
 
 
 def test_a_way_too_short_for_the_file_leaves_none() -> None:
     """Else it would stand there as zeros once, and be gone the next time."""
     library = small_library()
     cycle = next(motion for motion in library.motions if motion.cyclic)
-    value = library_to_json(replace(library, motions=(replace(cycle, travel=(1e-12, 0.0, -1e-12)),)))
+    value = replace(library, motions=(replace(cycle, travel=(1e-12, 0.0, -1e-12)),)).to_json()
     assert "travel" not in value["motions"][0]
 
 

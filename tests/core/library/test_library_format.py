@@ -5,8 +5,10 @@ import re
 from pathlib import Path
 
 import pytest
-from keymark.core.library import library_fields, library_file, text_fields, texts
-from keymark.core.library.library_file import library_from_json, read_library, write_library
+from keymark.core.library import library as fields
+from keymark.core.library import library_file, text_fields, texts
+from keymark.core.library.library import Library
+from keymark.core.library.library_file import read_library, write_library
 
 
 @pytest.fixture(scope="module")
@@ -21,12 +23,12 @@ def test_the_example_is_a_library_and_laid_out_as_one(page: str, tmp_path: Path)
     (tmp_path / "given.json").write_text(example, encoding="utf-8")
     write_library(tmp_path / "nodding.json", read_library(tmp_path / "given.json"))
     assert (tmp_path / "nodding.json").read_text(encoding="utf-8") == example
-    assert library_from_json(json.loads(example), "here").motions[0].cyclic
+    assert Library.from_json(json.loads(example), "here").motions[0].cyclic
 
 
 def test_every_field_has_its_row(page: str) -> None:
     """No field of the header is left out."""
-    for name in library_fields.HEADER:
+    for name in Library.ORDER:
         assert f"`{name}`" in page.split("## A posture")[0]
 
 
@@ -35,15 +37,15 @@ def test_every_field_has_its_row(page: str) -> None:
     [
         f"1 to {texts.LONGEST_IDENTIFIER} of a-z",
         f"| {texts.LONGEST_NAME} characters |",
-        f"1 to {library_fields.HIGHEST_VERSION} |",
+        f"1 to {fields.HIGHEST_VERSION} |",
         f"{text_fields.LONGEST_LINE} characters",
         f"{text_fields.LONGEST_LICENSE} characters",
         f"{text_fields.LONGEST_TEXT} characters",
         f"{text_fields.MOST_TAGS} tags of {text_fields.LONGEST_TAG} characters",
-        f"{library_fields.MOST_SOURCES} sources of {text_fields.LONGEST_TEXT}",
-        f"{library_fields.MOST_MOTIONS}, together {library_fields.MOST_STEPS} steps",
-        f"1 to {library_fields.MOST_POSTURES} |",
-        f"({library_fields.SHORTEST_S:g} to {library_fields.LONGEST_S:g} s)",
+        f"{fields.MOST_SOURCES} sources of {text_fields.LONGEST_TEXT}",
+        f"{fields.MOST_MOTIONS}, together {fields.MOST_STEPS} steps",
+        f"1 to {fields.MOST_POSTURES} |",
+        f"({fields.SHORTEST_S:g} to {fields.LONGEST_S:g} s)",
         f"above {library_file.LARGEST_BYTES // 2**20} MiB",
     ],
 )

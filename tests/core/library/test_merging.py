@@ -8,7 +8,6 @@ from _libraries import ACTOR, random_posture, small_library
 from keymark.core.body.actor import Actor
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from keymark.core.library.library_file import library_from_json, library_to_json
 from keymark.core.library.merging import differing_names, join_libraries, merge_versions
 
 MINE = small_library()
@@ -60,7 +59,7 @@ def test_merging_adds_what_is_new_and_asks_for_the_rest(replaces: bool) -> None:
     assert [motion.name for motion in result.motions] == ["Steps", "Once", "Leap"]
     assert {motion.steps[0].posture for motion in result.motions} == {landing}
     assert (result.version, result.title) == (5, "Steps")
-    library_from_json(library_to_json(result), "here")
+    Library.from_json(result.to_json(), "here")
 
 
 def test_merging_with_a_part_of_itself_changes_nothing() -> None:
@@ -92,6 +91,6 @@ def test_two_libraries_become_a_third() -> None:
     assert (both.identifier, both.version, both.author) == ("both", 1, "A. Person, B. Person")
     assert both.license == "CC0-1.0 AND (CC-BY-4.0 OR MIT)"
     assert both.sources == (*MINE.sources, "Another.")
-    library_from_json(library_to_json(both), "here")
+    Library.from_json(both.to_json(), "here")
     with pytest.raises(InputError, match="identifier"):
         join_libraries(MINE, other, "../both", "Both")

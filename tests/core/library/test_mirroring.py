@@ -13,7 +13,6 @@ from keymark.core.body.mirror import MIRROR, mirrored
 from keymark.core.body.standing_posture import standing_posture
 from keymark.core.errors import InputError
 from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.library_file import library_from_json, library_to_json
 from keymark.core.library.mirroring import mirrored_library, mirrored_name, with_mirrored
 from keymark.core.library.motion_playback import sample_motion
 
@@ -41,16 +40,16 @@ def test_sides_in_names_are_exchanged(name: str, other: str) -> None:
 @given(libraries())
 def test_any_library_can_be_mirrored(library: Library) -> None:
     """The mirrored library is valid and reads back as it was written; so does the one with both sides."""
-    library = library_from_json(library_to_json(library), "here")
+    library = Library.from_json(library.to_json(), "here")
     for result in (mirrored_library(library), with_mirrored(library)):
-        written = library_to_json(result)
-        assert library_to_json(library_from_json(written, "here")) == written
+        written = result.to_json()
+        assert Library.from_json(written, "here").to_json() == written
 
 
 def test_mirrored_twice_is_the_same() -> None:
     """To the last byte, on an actor whose sides differ too."""
     uneven = replace(LIBRARY, actor=Actor(dict(ACTOR.segments_m) | {"shin.L": 0.4}))
-    assert library_to_json(mirrored_library(mirrored_library(uneven))) == library_to_json(uneven)
+    assert mirrored_library(mirrored_library(uneven)).to_json() == uneven.to_json()
     assert mirrored_library(uneven).actor.segments_m["shin.R"] == 0.4
     assert mirrored_library(uneven).identifier == "small_steps_mirrored"
 
@@ -75,7 +74,7 @@ def test_what_lacks_its_other_side_gets_it_and_nothing_twice() -> None:
     assert names[4:] == ["Right foot lands 2", "Stand on one leg (mirrored)", "Left foot lands 2"]
     assert [motion.name for motion in both.motions][2:] == ["Steps (mirrored)", "Once (mirrored)"]
     assert both.motions[2].steps[0].posture == "Right foot lands 2"
-    assert library_to_json(with_mirrored(both)) == library_to_json(both)
+    assert with_mirrored(both).to_json() == both.to_json()
 
 
 def test_uneven_sides_are_refused() -> None:

@@ -11,7 +11,6 @@ from keymark.core.errors import InputError
 from keymark.core.retarget.retarget_record import (
     RECORD_FILE,
     read_retarget_record,
-    record_to_json,
     write_retarget_record,
 )
 
@@ -39,13 +38,13 @@ def test_figures_have_five_digits(tmp_path: Path) -> None:
     [
         (("schema_version",), 2, "newer Keymark"),
         (("character", "file"), "", "character: file is ''"),
-        (("character", "sha256"), None, "sha256 is None; it must be a SHA-256 of 64 digits"),
+        (("character", "sha256"), None, "sha256 is null; it must be a SHA-256 of 64 digits"),
         (("map", "origin"), "guessed", "one of given, saved, recognized"),
         (("frames",), 0, "frames is 0"),
         (("fps",), 0, "fps is 0"),
         (("options", "legs"), "both feet", "one of fk, ik, both"),
         (("limbs", "tail"), "fk", "unknown field 'tail'"),
-        (("quality", "skate_mm_per_frame"), "low", "skate_mm_per_frame is 'low'"),
+        (("quality", "skate_mm_per_frame"), "low", "quality: skate_mm_per_frame is 'low'"),
         (("quality",), {f"f{n}": 0 for n in range(201)}, "at most 200"),
         (("doubts",), "none", "doubts is 'none'; it must be a list"),
         (("files", "../x"), "ab" * 32, "a file of this folder"),
@@ -53,7 +52,7 @@ def test_figures_have_five_digits(tmp_path: Path) -> None:
 )
 def test_every_mistake_is_named(tmp_path: Path, way: tuple[Any, ...], value: Any, said: str) -> None:
     """The sentence begins with the file."""
-    whole = json.loads(json.dumps(record_to_json(full_record())))
+    whole = json.loads(json.dumps(full_record().to_json()))
     holder = whole
     for key in way[:-1]:
         holder = holder[key]

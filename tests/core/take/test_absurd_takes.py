@@ -71,7 +71,10 @@ def far_keyframe(take: dict[str, Any], rows: list[dict[str, Any]]) -> None:
 REFUSED: dict[str, tuple[Change, str]] = {
     "frames": (lambda take, _: take.update(frame_count=10**6), "frame_count is 1000000"),
     "a keyframe far off": (far_keyframe, "keyframe 1000000 lies outside the clip"),
-    "too many keyframes": (many_keyframes(20_001), "keyframes has 20001 of them; at most 20000"),
+    "too many keyframes": (
+        many_keyframes(20_001),
+        "keyframes has 20001 of them; it must be a list of at most 20000",
+    ),
     "more keyframes than frames": (many_keyframes(30), "lies outside the clip"),
     "lens": (camera(lens_mm=1e-9), "lens_mm is 1e-09"),
     "telescope": (camera(lens_mm=1e5), "not one point of any keyframe lies in the camera's picture"),

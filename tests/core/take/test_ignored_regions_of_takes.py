@@ -95,7 +95,7 @@ def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("value", "sentence"),
     [
-        ({"box": [1, 2, 3, 4]}, "take.json: ignored_regions is .*; it must be a list of regions"),
+        ({"box": [1, 2, 3, 4]}, "take.json: ignored_regions is .*; it must be a list of at most 200 regions"),
         ([[1, 2, 3, 4]], r"ignored_regions\[0\] is \[1, 2, 3, 4\]; it must be an object"),
         ([BOX, {}], r"ignored_regions\[1\]: box is missing; it must be \[left, top, right, bottom\]"),
         ([{"box": [1, 2, 3]}], r"box is \[1, 2, 3\]; it must be \[left, top, right, bottom\] in pixels"),
@@ -120,7 +120,10 @@ def test_a_marker_under_an_ignored_region_is_not_seen(folder: Path) -> None:
         ([{**BOX, "frames": [1.5, 2]}], "frames is"),
         ([{**BOX, "frames": 3}], "frames is 3"),
         ([{**BOX, "frame": [1, 2]}], r"unknown field 'frame' \(is 'frames' meant\?\)"),
-        ([BOX] * (MOST_REGIONS + 1), f"has {MOST_REGIONS + 1} regions; at most {MOST_REGIONS} are read"),
+        (
+            [BOX] * (MOST_REGIONS + 1),
+            f"has {MOST_REGIONS + 1} of them; it must be a list of at most {MOST_REGIONS} regions",
+        ),
     ],
 )
 def test_a_mistake_is_one_sentence(folder: Path, value: Any, sentence: str) -> None:

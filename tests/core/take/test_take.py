@@ -176,7 +176,11 @@ MISTAKES: list[tuple[str, Callable[[dict[str, Any]], object], str]] = [
     ("color range", lambda v: v["markers"]["trunk"].update(color_srgb=[1, 2, 256]), "color_srgb is"),
     ("same color", lambda v: v["markers"].update({"head": v["markers"]["trunk"]}), "same color_srgb"),
     ("actor missing", lambda v: v.pop("actor"), "actor is missing"),
-    ("length missing", lambda v: v["actor"]["segments_m"].pop("trunk"), r"take\.json.*lacks trunk"),
+    (
+        "length missing",
+        lambda v: v["actor"]["segments_m"].pop("trunk"),
+        r"take\.json: actor.segments_m: trunk is missing",
+    ),
     ("length", lambda v: v["actor"]["segments_m"].update(trunk=50), r"take\.json.*trunk is 50"),
     ("height", lambda v: v.update(actor={"height_m": 175}), "height_m is 175"),
     (

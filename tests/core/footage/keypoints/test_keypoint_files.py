@@ -353,7 +353,7 @@ def broken(tmp_path: Path, kind: str) -> Path:
         ("a text", "it must be Keymark's own file"),
         ("nobody", "nobody is seen in any of its 12 frames"),
         ("nobody scored", "no point has a score above 0|nobody"),
-        ("empty", "a list with one entry a frame"),
+        ("empty", "frames has 0 of them; it must be a list of 1 to 1000000 entries, one a frame"),
         ("shares", "must be pixels of the clip"),
         ("larger picture", "outside the clip's picture"),
         ("in space", "points in space"),

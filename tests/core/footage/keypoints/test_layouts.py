@@ -65,4 +65,4 @@ def test_the_schema_knows_all_names(repository: Path) -> None:
     path = repository / "presets" / "schemas" / "keypoints.schema.json"
     schema = json.loads(path.read_text(encoding="utf-8"))
     assert tuple(schema["properties"]["layout"]["enum"]) == (*LAYOUTS, OWN)
-    assert tuple(schema["$defs"]["body_point"]["enum"]) == BODY_POINTS
+    assert tuple(schema["$defs"]["names"]["items"]["enum"]) == BODY_POINTS

@@ -12,19 +12,17 @@ from _characters import plain_character, plain_map
 from _fuzz import FUZZ, changed
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
-from keymark.core.retarget.maps.character_map import RoleBones
+from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.maps.character_map_file import (
     LARGEST_BYTES,
     map_digest,
-    map_from_json,
-    map_to_json,
     read_character_map,
     write_character_map,
 )
 from keymark.core.retarget.maps.map_check import check_map, missing_bones
 
 MAP = full_map()
-VALID = map_to_json(MAP)
+VALID = MAP.to_json()
 TEXT = json.dumps(VALID, ensure_ascii=False)
 
 
@@ -49,7 +47,7 @@ def test_what_is_left_out_has_a_default() -> None:
         "title": "X",
         "roles": {"hips": {"bones": ["a"]}},
     }
-    found = map_from_json(value, "here")
+    found = CharacterMap.from_json(value, "here")
     assert found.roles["hips"] == RoleBones(("a",), 1.0, "you")
     assert not (found.fk or found.ik or found.settings or found.soles or found.left_alone or found.root)
 
@@ -57,7 +55,7 @@ def test_what_is_left_out_has_a_default() -> None:
 def test_a_turn_that_is_nearly_one_is_made_one() -> None:
     """Rounded by hand to four digits, which an exact file is not."""
     value = VALID | {"rest_corrections": {"hips": [0.7071, 0.7071, 0, 0]}}
-    turn = map_from_json(value, "here").rest_corrections["hips"]
+    turn = CharacterMap.from_json(value, "here").rest_corrections["hips"]
     assert abs(np.linalg.norm(turn) - 1.0) < 1e-12
 
 
@@ -67,12 +65,12 @@ def test_a_turn_that_is_nearly_one_is_made_one() -> None:
 def test_a_changed_map_is_one_or_says_why_not(value: Any) -> None:
     """Whatever fields hold: no other error, no second line, nothing that could not be written again."""
     try:
-        found = map_from_json(value, "here")
+        found = CharacterMap.from_json(value, "here")
     except InputError as error:
         assert len(str(error).splitlines()) == 1 and str(error).isprintable() and len(str(error)) < 1500
         return
-    again = map_to_json(found)
-    assert map_to_json(map_from_json(again, "here")) == again
+    again = found.to_json()
+    assert CharacterMap.from_json(again, "here").to_json() == again
     json.dumps(again, allow_nan=False).encode()
 
 
@@ -151,7 +149,7 @@ def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> 
         holder = holder[key]
     holder[way[-1]] = value
     with pytest.raises(InputError, match=said) as caught:
-        map_from_json(whole, "anna.json")
+        CharacterMap.from_json(whole, "anna.json")
     assert str(caught.value).startswith("anna.json")
 
 
@@ -159,7 +157,7 @@ def test_a_control_needs_its_role() -> None:
     """A bone to key for nothing would be lost in silence."""
     roles = {name: value for name, value in VALID["roles"].items() if name != "hips"}
     with pytest.raises(InputError, match="fk: hips is keyed, but roles says no bone for it"):
-        map_from_json(VALID | {"roles": roles}, "anna.json")
+        CharacterMap.from_json(VALID | {"roles": roles}, "anna.json")
 
 
 def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
@@ -191,6 +189,6 @@ def test_a_map_without_a_thigh_is_not_enough() -> None:
     character = plain_character()
     mine = plain_map(character)
     half = replace(mine, roles={role: bones for role, bones in mine.roles.items() if role != "thigh.R"})
-    map_from_json(map_to_json(half), "half.json")
+    CharacterMap.from_json(half.to_json(), "half.json")
     with pytest.raises(InputError, match=r"gives no bones for thigh.R of 'Character'"):
         check_map(half, character)

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 from keymark.core.library.texts import LONGEST_NAME
-from keymark.core.retarget.maps import character_map_fields, character_map_file
+from keymark.core.retarget.maps import character_map, character_map_file
+from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.maps.character_map_file import read_character_map, write_character_map
 from keymark.core.retarget.roles import LIMBS, ROLES, SOURCES
 
@@ -29,7 +30,7 @@ def test_the_example_is_a_map_and_laid_out_as_one(page: str, tmp_path: Path) -> 
 def test_every_field_and_role_is_named(page: str) -> None:
     """No field of the header, no role, limb or source is left out."""
     header = page.split("## The map")[1].split("## Roles")[0]
-    assert [name for name in character_map_fields.HEADER if f"`{name}`" not in header] == []
+    assert [name for name in CharacterMap.ORDER if f"`{name}`" not in header] == []
     parts = {role.partition(".")[0] for role in ROLES}
     assert [name for name in (*parts, *LIMBS, *SOURCES) if f"`{name}`" not in page] == []
 
@@ -38,10 +39,10 @@ def test_every_field_and_role_is_named(page: str) -> None:
     "words",
     [
         f"| {LONGEST_NAME} characters |",
-        f"| {character_map_fields.MOST_SETTINGS} |",
-        f"| {character_map_fields.MOST_SOLE_POINTS} points each |",
-        f"up to {character_map_fields.LONGEST_BONE} characters",
-        f"1 to {character_map_fields.MOST_BONES}, from the hips",
+        f"| {character_map.MOST_SETTINGS} |",
+        f"| {character_map.MOST_SOLE_POINTS} points each |",
+        f"up to {character_map.LONGEST_BONE} characters",
+        f"1 to {character_map.MOST_BONES}, from the hips",
         f"above {character_map_file.LARGEST_BYTES // 2**20} MiB",
     ],
 )

@@ -1,0 +1,316 @@
+"""Kinds of values of JSON: each checks a value, converts it, and says in one sentence what it must be."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+from ..errors import InputError
+from .control_characters import is_control_character
+from .fields import Fields, is_number, listed
+from .inherited_fields import child_location
+from .json_file import shown
+
+_PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)
+"""A name that stands in sentences without quotation marks."""
+
+
+def refuse(where: str, name: str, value: Any, valid: str) -> NoReturn:
+    """Say in one sentence that a value is not what it must be."""
+    raise InputError(f"{where}: {name} is {'null' if value is None else shown(value)}; it must be {valid}")
+
+
+class Kind:
+    """What a value of JSON may be."""
+
+    valid: str
+    """Follows "it must be" in sentences."""
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """Check a value and convert it; `where` is the object's location and `name` the field's name.
+
+        Raises:
+            InputError: It is not what it must be.
+        """
+        raise NotImplementedError
+
+    def write(self, value: Any) -> Any:
+        """The value as JSON; the inverse of `read`."""
+        return value
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A number from `low` to `high`, both included."""
+
+    low: float
+    high: float
+    unit: str = ""
+    decimals: int | None = None
+    """Decimals that are written; None for all."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"a number from {self.low:g} to {self.high:g}{self.unit and ' ' + self.unit}"
+
+    def read(self, value: Any, where: str, name: str) -> float:
+        """See `Kind`."""
+        if not is_number(value) or not self.low <= value <= self.high:
+            refuse(where, name, value, self.valid)
+        return float(value)
+
+    def write(self, value: float) -> float:
+        """See `Kind`; there is no negative zero."""
+        return value if self.decimals is None else round(float(value), self.decimals) + 0.0
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number from `low` to `high`; 3.0 is one too."""
+
+    low: int
+    high: int
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"a whole number from {self.low} to {self.high}"
+
+    def read(self, value: Any, where: str, name: str) -> int:
+        """See `Kind`."""
+        if not is_number(value) or value != int(value) or not self.low <= value <= self.high:
+            refuse(where, name, value, self.valid)
+        return int(value)
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """True or false."""
+
+    valid: str = "true or false"
+
+    def read(self, value: Any, where: str, name: str) -> bool:
+        """See `Kind`."""
+        if not isinstance(value, bool):
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """A text that is not blank."""
+
+    longest: int
+    valid: str = ""
+    pattern: str = r"\S"
+    """A regular expression, of Python and JavaScript, that is found in it."""
+    one_line: bool = False
+    """Whether control characters are refused."""
+    fault: Callable[[str], str] = lambda text: ""
+    """What else is wrong with it, to follow "it"; empty for nothing."""
+    empty: bool = False
+    """Whether it may be empty."""
+
+    def __post_init__(self) -> None:
+        """Say the usual where nothing else is said."""
+        object.__setattr__(self, "valid", self.valid or f"a text of at most {self.longest} characters")
+
+    def read(self, value: Any, where: str, name: str) -> str:
+        """See `Kind`."""
+        if self.empty and value == "":
+            return ""
+        if not isinstance(value, str) or len(value) > self.longest:
+            refuse(where, name, value, self.valid)
+        fault = self.fault(value)
+        if fault:
+            raise InputError(f"{where}: {name} is {shown(value)}; it {fault}")
+        odd = self.one_line and any(map(is_control_character, value))
+        if odd or not value.strip() or not re.search(self.pattern, value):
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Anything(Kind):
+    """Any value, which is checked later."""
+
+    valid: str
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """See `Kind`."""
+        return value
+
+
+@dataclass(frozen=True)
+class Choice(Kind):
+    """One of some texts."""
+
+    names: tuple[str, ...]
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"one of {listed(self.names)}"
+
+    def read(self, value: Any, where: str, name: str) -> str:
+        """See `Kind`."""
+        if not isinstance(value, str) or value not in self.names:
+            refuse(where, name, value, self.valid)
+        return value
+
+
+@dataclass(frozen=True)
+class Nullable(Kind):
+    """Something, or null."""
+
+    item: Kind
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"{self.item.valid}, or null"
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """See `Kind`."""
+        return None if value is None else self.item.read(value, where, name)
+
+    def write(self, value: Any) -> Any:
+        """See `Kind`."""
+        return None if value is None else self.item.write(value)
+
+
+@dataclass(frozen=True)
+class Never(Kind):
+    """A field of other records of the kind, which must be left out."""
+
+    valid: str
+    """The sentence that says so."""
+
+    def read(self, value: Any, where: str, name: str) -> NoReturn:
+        """See `Kind`."""
+        raise InputError(f"{where}: {self.valid}")
+
+
+@dataclass(frozen=True)
+class Items(Kind):
+    """A list of `least` to `most` items, a tuple once it is read."""
+
+    of_what: str
+    """The items, in the plural."""
+    least: int
+    most: int
+    said: str = ""
+    """What the whole list must be; else a sentence names the item that is wrong."""
+    unique: str = ""
+    """What an item is, in the singular, where each may stand only once."""
+    item: Kind = field(default_factory=Kind)
+    """By default that of the annotated type."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        number = f"{self.least} to {self.most}" if self.least else f"at most {self.most}"
+        return self.said or f"a list of {number} {self.of_what}"
+
+    def read(self, value: Any, where: str, name: str) -> tuple[Any, ...]:
+        """See `Kind`."""
+        if not isinstance(value, list):
+            refuse(where, name, value, self.valid)
+        if not self.least <= len(value) <= self.most:
+            if self.said:
+                refuse(where, name, value, self.valid)
+            raise InputError(f"{where}: {name} has {len(value)} of them; it must be {self.valid}")
+        try:
+            items = [self.item.read(item, where, f"{name}[{index}]") for index, item in enumerate(value)]
+        except InputError:
+            if self.said:
+                refuse(where, name, value, self.valid)
+            raise
+        if self.unique:
+            twice = first_twice(items, name, self.unique)
+            if twice:
+                raise InputError(f"{where}: {twice}")
+        return tuple(items)
+
+    def write(self, value: Sequence[Any]) -> list[Any]:
+        """See `Kind`."""
+        return [self.item.write(item) for item in value]
+
+
+@dataclass(frozen=True)
+class ByName(Kind):
+    """An object of items of one kind, by name."""
+
+    of_what: str
+    """The items, in the plural."""
+    most: int = 0
+    """Most items; of no meaning where the names are known."""
+    names: tuple[str, ...] = ()
+    """All valid names, in their order; () for any."""
+    empty: str = ""
+    """What an empty object lacks; "" where it may be empty."""
+    needs: tuple[str, ...] = ()
+    """Names that must be there."""
+    strict: bool = True
+    """Whether other than the known names are refused."""
+    key: Kind | None = None
+    """What a name must be."""
+    item: Kind = field(default_factory=Kind)
+    """By default that of the annotated type."""
+    others: Mapping[str, Kind] = field(default_factory=dict, hash=False)
+    """Kinds of the names that differ."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"an object of {self.of_what}"
+
+    def read(self, value: Any, where: str, name: str) -> dict[str, Any]:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        child = Fields(value, child_location(where, name))
+        if self.names and self.strict:
+            child.refuse_others(self.names)
+        if not self.names and len(value) > self.most:
+            raise InputError(f"{child.where} has {len(value)} {self.of_what}; at most {self.most} are read")
+        if self.empty and not value:
+            raise InputError(f"{child.where} is empty; {self.empty}")
+        for key in self.needs:
+            child.required(key, self.item.valid)
+        if self.key is not None:
+            for key in value:
+                self.key.read(key, child.where, "a name")
+        return {
+            key: self.others.get(key, self.item).read(
+                value[key], child.source_of(key), key if _PLAIN.fullmatch(key) else shown(key)
+            )
+            for key in self.names or value
+            if key in value
+        }
+
+    def write(self, value: Mapping[str, Any]) -> dict[str, Any]:
+        """See `Kind`."""
+        return {key: self.item.write(value[key]) for key in self.names or value if key in value}
+
+
+def read_field(fields: Fields, name: str, kind: Kind, otherwise: Any) -> Any:
+    """The value of one field; `otherwise` where it is missing.
+
+    Raises:
+        InputError: It is not what it must be.
+    """
+    if not fields.has(name):
+        return otherwise
+    return kind.read(fields.values[name], fields.source_of(name), name)
+
+
+def first_twice(items: Sequence[Any], name: str, what: str) -> str:
+    """What of a list stands twice in it, as a clause that begins with the list's name; empty for nothing."""
+    seen: set[Any] = set()
+    for item in items:
+        if item in seen:
+            return f"{name} names the {what} {shown(item)} twice; each must stand once"
+        seen.add(item)
+    return ""

@@ -1,0 +1,186 @@
+"""Records: JSON objects declared once, as dataclasses whose annotations say what each field may hold.
+
+A field's annotation is `bool`, a `Record`, or `Annotated[type, kind]` with one of `kinds`; the
+docstring below it is its description in the JSON Schema, which `tools/make_schemas.py` writes. A field that
+may be missing has a default; null counts as missing. `Record.from_json` checks an object and makes the
+record, `to_json` is its inverse.
+"""
+
+import dataclasses
+import types
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from ..errors import InputError
+from .fields import Fields, listed
+from .inherited_fields import child_location
+from .json_file import shown
+from .kinds import ByName, Flag, Items, Kind, Nullable, Whole, read_field, refuse
+
+MISSING = dataclasses.MISSING
+
+
+class Record:
+    """Base of the dataclasses that are records."""
+
+    STRICT: ClassVar[bool] = False
+    """Whether unknown fields are refused: what they mean would be lost."""
+    SCHEMA: ClassVar[str] = ""
+    """The field `schema` of a file; empty where it has none."""
+    VERSION: ClassVar[int] = 0
+    """Newest `schema_version` that is read; 0 for objects that have none."""
+    SPARSE: ClassVar[bool] = True
+    """Whether fields that hold nothing are not written."""
+    TITLE: ClassVar[str] = ""
+    """What people call the file."""
+    ORDER: ClassVar[tuple[str, ...]] = ()
+    """The fields in the order of files; () for that of the class."""
+    REQUIRED: ClassVar[tuple[str, ...]] = ()
+    """Fields that files must have although they have a default."""
+
+    def mistake(self) -> str:
+        """What is wrong with the fields together, as a clause; empty for nothing."""
+        return ""
+
+    def to_json(self) -> dict[str, Any]:
+        """The record as a JSON object."""
+        value: dict[str, Any] = {"schema": self.SCHEMA} if self.SCHEMA else {}
+        value |= {"schema_version": self.VERSION} if self.VERSION else {}
+        for name, one in declared(type(self)).items():
+            item = one.kind.write(getattr(self, name))
+            if one.required or not self.SPARSE or item not in (None, "", [], {}):
+                value[name] = item
+        return value
+
+    @classmethod
+    def from_json(cls, value: Any, where: str) -> Self:
+        """Read a record from JSON that is not trusted; `where` begins sentences.
+
+        Raises:
+            InputError: It is not what it must be.
+        """
+        return read_record(cls, Fields.of(value, where))
+
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass(frozen=True)
+class Object(Kind):
+    """A record in a field."""
+
+    record: type[Record]
+    makes: type[Record] | None = None
+    """The class that is made of the fields; by default `record`."""
+    strict: bool = False
+    """Whether unknown fields are refused although they are not in other objects of the class."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        required = [name for name, one in declared(self.record).items() if one.required]
+        return f"an object with {listed(required, 5)}" if required else "an object"
+
+    def read(self, value: Any, where: str, name: str) -> Any:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        return read_record(self.record, Fields(value, child_location(where, name)), self.makes, self.strict)
+
+    def write(self, value: Record) -> dict[str, Any]:
+        """See `Kind`."""
+        return value.to_json()
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A declared field of a record."""
+
+    kind: Kind
+    required: bool
+    default: Any
+
+
+def declared(record: Any) -> Mapping[str, Declared]:
+    """The fields of a record, a class, by name."""
+    return _declared(record)
+
+
+@cache
+def _declared(record: Any) -> Mapping[str, Declared]:
+    hints = get_type_hints(record, include_extras=True)
+    found: dict[str, Declared] = {}
+    given = {field.name: field for field in dataclasses.fields(record)}
+    for field in [given[name] for name in record.ORDER or given]:
+        kind = kind_of(hints[field.name])
+        default = field.default if field.default_factory is MISSING else field.default_factory()
+        required = field.name in record.REQUIRED or (default is MISSING and not isinstance(kind, Nullable))
+        found[field.name] = Declared(kind, required, None if default is MISSING else default)
+    return found
+
+
+def kind_of(hint: Any) -> Kind:
+    """The kind of an annotation."""
+    if get_origin(hint) is Annotated:
+        base, *marks = get_args(hint)
+        (kind,) = (mark for mark in marks if isinstance(mark, Kind))
+        if isinstance(kind, Items | ByName) and type(kind.item) is Kind:
+            items = get_args(base)
+            return replace(kind, item=kind_of(items[1] if isinstance(kind, ByName) else items[0]))
+        return kind
+    if get_origin(hint) in (Union, types.UnionType):
+        (item,) = (one for one in get_args(hint) if one is not types.NoneType)
+        return Nullable(kind_of(item))
+    return Flag() if hint is bool else Object(hint)
+
+
+def read_record(record: type[R], fields: Fields, makes: type[Any] | None = None, strict: bool = False) -> R:
+    """Read a record from the fields of an object; `makes` and `strict` are those of `Object`.
+
+    Raises:
+        InputError: A field is missing, unknown or not what it must be.
+    """
+    known = declared(record)
+    if record.SCHEMA and fields.values.get("schema") != record.SCHEMA:
+        raise InputError(
+            f"{fields.where}: schema is {shown(fields.values.get('schema'))}; "
+            f'a {record.TITLE} has "{record.SCHEMA}" there'
+        )
+    if record.VERSION:
+        check_version(fields, record.VERSION)
+    if strict or record.STRICT:
+        header = [
+            name for name, given in (("schema", record.SCHEMA), ("schema_version", record.VERSION)) if given
+        ]
+        fields.refuse_others([*header, *known])
+    values = {}
+    for name, one in known.items():
+        if one.required:
+            fields.required(name, one.kind.valid)
+        values[name] = read_field(fields, name, one.kind, one.default)
+    try:
+        made: R = (makes or record)(**values)
+    except InputError as error:
+        raise InputError(f"{fields.where}: {error}") from error
+    mistake = record.mistake(made)
+    if mistake:
+        raise InputError(f"{fields.where}: {mistake}")
+    return made
+
+
+def check_version(fields: Fields, newest: int) -> None:
+    """Refuse the `schema_version` of a newer Keymark; `newest` is the highest that is read.
+
+    Raises:
+        InputError: It is newer, missing, or no version.
+    """
+    kind = Whole(1, 10**6)
+    fields.required("schema_version", kind.valid)
+    version = read_field(fields, "schema_version", kind, None)
+    if version > newest:
+        source = fields.source_of("schema_version")
+        raise InputError(
+            f"{source}: schema_version is {version}, made by a newer Keymark; this one reads up to {newest}"
+        )

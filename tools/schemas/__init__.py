@@ -1,0 +1,1 @@
+"""JSON Schemas made of declarations, for make_schemas.py."""
