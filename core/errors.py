@@ -1,17 +1,8 @@
 """Errors: unusable input, a failed conversion, or results that another process works on."""
 
-from typing import Any
-
-from .text import Sentence
-
 
 class KeymarkError(Exception):
     """Base of every error Keymark raises on purpose; its text is one sentence for a person."""
-
-    def __init__(self, sentence: str, /, **values: Any) -> None:
-        """Take a sentence, or a template and the values for its braces, by which Blender can translate it."""
-        self.sentence = Sentence(sentence, **values) if values else sentence
-        super().__init__(self.sentence)
 
 
 class InputError(KeymarkError):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..arrays import BoolArray
 from ..files.fields import listed
-from ..text import Sentence, pluralize
+from ..text import pluralize
 from .keypoint_fit import KeypointFit
 
 THROUGHOUT = 0.5
@@ -28,22 +28,14 @@ def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
         if len(doubted):
             named = listed([fit.keypoints.names[i] for i in doubted], MOST_NAMED)
             notes.append(
-                Sentence(
-                    "keypoints of {source} that lie elsewhere than in the keyframes are left out: {points}",
-                    source=source,
-                    points=named,
-                )
+                f"keypoints of {source} that lie elsewhere than in the keyframes are left out: {named}"
             )
         seen = fit.keypoints.seen & own & (fit.trust > 0.0)
         share = fit.thrown_out[seen].mean() if seen.any() else 0.0
         if share > MANY_THROWN_OUT:
             notes.append(
-                Sentence(
-                    "{share:.0%} of the keypoints of {source} lie far from where everything else has the "
-                    "performer and are thrown out; check whom and what they follow",
-                    share=share,
-                    source=source,
-                )
+                f"{share:.0%} of the keypoints of {source} lie far from where everything else has "
+                "the performer and are thrown out; check whom and what they follow"
             )
     return tuple(notes)
 
@@ -51,16 +43,13 @@ def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
 def _left_out(source: str, lag: int) -> str:
     if lag:
         when = f"about {pluralize(abs(lag), 'frame')} {'late' if lag > 0 else 'early'} by the keyframes"
-        return Sentence(
-            "the keypoints of {source} are {when} and are left out; check that they were made from this "
-            "clip, at its frame rate and from its first frame",
-            source=source,
-            when=when,
+        return (
+            f"the keypoints of {source} are {when} and are left out; check that they were made from "
+            "this clip, at its frame rate and from its first frame"
         )
-    return Sentence(
-        "the keypoints of {source} are not where the keyframes have the performer and are left out; check "
-        "that they are of this clip and this person",
-        source=source,
+    return (
+        f"the keypoints of {source} are not where the keyframes have the performer and are left out; "
+        "check that they are of this clip and this person"
     )
 
 
@@ -69,16 +58,7 @@ def _exchanged(source: str, swapped: BoolArray) -> list[str]:
     if not frames:
         return []
     if frames > THROUGHOUT * len(swapped):
-        return [
-            Sentence(
-                "{source} takes left for right throughout; the estimate exchanged its keypoints back",
-                source=source,
-            )
-        ]
+        return [f"{source} takes left for right throughout; the estimate exchanged its keypoints back"]
     return [
-        Sentence(
-            "{source} takes left for right in {frames}; the estimate exchanged them back",
-            source=source,
-            frames=pluralize(frames, "frame"),
-        )
+        (f"{source} takes left for right in {pluralize(frames, 'frame')}; the estimate exchanged them back")
     ]

@@ -7,7 +7,6 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.clip_notes import VARIABLE_RATE
 from ..take.take import Take
-from ..text import Sentence
 from .keyframe_evidence import KeyframeEvidence
 
 DOUBTED_LENS = 0.03
@@ -28,13 +27,8 @@ def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
         seen = int(tracks.visible[:, marker].sum())
         if seen < 0.5 * tracks.frame_count:
             notes.append(
-                Sentence(
-                    "marker {marker} was found in {seen} of {frames} frames only; check its color, or pose "
-                    "keyframes where it is hidden",
-                    marker=name,
-                    seen=seen,
-                    frames=tracks.frame_count,
-                )
+                f"marker {name} was found in {seen} of {tracks.frame_count} frames only; check its "
+                "color, or pose keyframes where it is hidden"
             )
     if tracks.variable_frame_rate:
         notes.append(VARIABLE_RATE)
@@ -47,37 +41,24 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
     if abs(lens / stated - 1.0) > DOUBTED_LENS:
         notes.append(
-            Sentence(
-                "the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that instead of "
-                "{stated:.1f} mm as stated; check the camera",
-                lens=lens,
-                stated=stated,
-            )
+            f"the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that "
+            f"instead of {stated:.1f} mm as stated; check the camera"
         )
     if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
         notes.append(
-            Sentence(
-                "the keyframes are about {frames:.0f} frames early or late by the footage; check the frames "
-                "they are set at",
-                frames=evidence.timing_frames,
-            )
+            f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the "
+            "footage; check the frames they are set at"
         )
     if evidence.posing_scale > DOUBTED_POSING:
         notes.append(
-            Sentence(
-                "the keyframes differ from the footage by much more than the usual posing error; check the "
-                "camera, the actor's lengths{and_what_is_seen}",
-                and_what_is_seen=_and_what_is_seen(take),
-            )
+            "the keyframes differ from the footage by much more than the usual posing error; check "
+            f"the camera, the actor's lengths{_and_what_is_seen(take)}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
         if distrust > DOUBTED_MARKER:
             notes.append(
-                Sentence(
-                    "marker {marker} is seldom where the keyframes put it and counts for little; check "
-                    "whether another thing has its color",
-                    marker=marker.name,
-                )
+                f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
+                "check whether another thing has its color"
             )
     return tuple(notes)
 
@@ -94,9 +75,10 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     if followed or not take.contours or take.markers or take.keypoints:
         return ()
     return (
-        Sentence(
-            "contours were not followed: too little of the background stands still; between keyframes the "
-            "motion is their interpolation alone; hold the camera still, or add keypoints or markers"
+        (
+            "contours were not followed: too little of the background stands still; between keyframes "
+            "the motion is their interpolation alone; hold the camera still, or add keypoints or "
+            "markers"
         ),
     )
 
@@ -107,11 +89,9 @@ def left_out_notes(take: Take, count: int) -> tuple[str, ...]:
     if count == 0:
         return ()
     return (
-        Sentence(
-            "{count} of {found} found keyframes were left out: interpolation between the posed ones is more "
-            "accurate there",
-            count=count,
-            found=found,
+        (
+            f"{count} of {found} found keyframes were left out: interpolation between the posed ones is "
+            "more accurate there"
         ),
     )
 
@@ -124,37 +104,23 @@ def found_notes(take: Take) -> tuple[str, ...]:
     posed, origin = len(take.keyframes) - len(found), _origin([said for _, said in found])
     if posed == 0:
         notes = [
-            Sentence(
-                "no keyframe was posed: the motion rests on {count} {origin}, other performers'; what the "
-                "footage does not show, depth above all, is like theirs",
-                count=len(found),
-                origin=origin,
+            (
+                f"no keyframe was posed: the motion rests on {len(found)} {origin}, other performers'; "
+                "what the footage does not show, depth above all, is like theirs"
             )
         ]
     else:
         matched = any(not said.is_composed for _, said in found)
         moved = ", changed the way the posed ones differ from them" if matched else ""
-        notes = [
-            Sentence(
-                "{posed} of {count} keyframes are posed; the others are {origin}{moved}",
-                posed=posed,
-                count=len(take.keyframes),
-                origin=origin,
-                moved=moved,
-            )
-        ]
+        notes = [f"{posed} of {len(take.keyframes)} keyframes are posed; the others are {origin}{moved}"]
     doubtful = [(keyframe, said) for keyframe, said in found if said.is_doubtful]
     if doubtful:
         worst = sorted(doubtful, key=lambda one: one[1].confidence)[:MOST_NAMED]
         frames = sorted(keyframe.index + take.frame_start for keyframe, _ in worst)
         named = listed([str(frame) for frame in frames], MOST_NAMED)
         notes.append(
-            Sentence(
-                "{doubtful} of {found} found keyframes are doubtful; pose frame {frames} to set them right",
-                doubtful=len(doubtful),
-                found=len(found),
-                frames=named,
-            )
+            f"{len(doubtful)} of {len(found)} found keyframes are doubtful; pose frame {named} to "
+            "set them right"
         )
     return tuple(notes)
 
@@ -172,17 +138,17 @@ def filter_notes(take: Take) -> tuple[str, ...]:
     notes: tuple[str, ...] = ()
     if take.keypoints:
         notes = (
-            Sentence(
-                "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; method "
-                "map (Whole Clip) follows both"
+            (
+                "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; "
+                "method map (Whole Clip) follows both"
             ),
         )
     if all(keyframe.matched is None for keyframe in take.keyframes):
         return notes
     return (
         *notes,
-        Sentence(
-            "method ekf (Fuzzy Kalman Filter) takes found keyframes for posed ones; method map (Whole Clip) "
-            "allows for the larger errors of found keyframes"
+        (
+            "method ekf (Fuzzy Kalman Filter) takes found keyframes for posed ones; method map (Whole "
+            "Clip) allows for the larger errors of found keyframes"
         ),
     )

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..text import Sentence
 from .association import Candidates, gather_candidates
 from .clips.clip_samples import ClipSamples
 from .colors.color_confusion import color_confusion
@@ -160,11 +159,9 @@ def _readout(
     """A marker's readout from its area (N,) in px, 0 where it is not detected."""
     sampled, found = len(area), int(np.count_nonzero(area))
     if complaint is not None or not found:
-        sentence = complaint or Sentence(
-            "{marker} is in none of the {sampled} sampled frames, or something larger has its color; pick "
-            "the color anew, or wear another",
-            marker=name,
-            sampled=sampled,
+        sentence = complaint or (
+            f"{name} is in none of the {sampled} sampled frames, or something larger has its color; "
+            "pick the color anew, or wear another"
         )
         return MarkerReadout(
             name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ..text import Sentence
-
 FEW = 0.6
 """Share of the sampled frames below which a marker is detected too seldom."""
 ENOUGH = 6
@@ -45,57 +43,33 @@ def marker_warnings(
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
-        Sentence(
-            "{marker} and {other} have colors too alike: {percent:.0f} % of {marker} would pass for {other}",
-            marker=name,
-            other=other,
-            percent=100.0 * share,
-        )
+        (f"{name} and {other} have colors too alike: {100.0 * share:.0f} % of {name} would pass for {other}")
         for other, share in likeness.claimed
         if share >= MUCH
     ]
     if likeness.background >= MUCH:
         sentences.append(
-            Sentence(
-                "the background has the color of {marker}: {percent:.0f} % of the marker would pass for "
-                "background",
-                marker=name,
-                percent=100.0 * likeness.background,
-            )
+            f"the background has the color of {name}: {100.0 * likeness.background:.0f} % of the "
+            "marker would pass for background"
         )
     if likeness.clutter >= MUCH:
         sentences.append(
-            Sentence(
-                "{percent:.0f} % of the pixels with the color of {marker} are something else in the picture",
-                percent=100.0 * likeness.clutter,
-                marker=name,
-            )
+            f"{100.0 * likeness.clutter:.0f} % of the pixels with the color of {name} are something "
+            "else in the picture"
         )
     if still:
         sentences.append(
-            Sentence(
-                "the color of {marker} also stays still {places} of the picture, which is surely no marker",
-                marker=name,
-                places=" and ".join(still),
-            )
+            f"the color of {name} also stays still {' and '.join(still)} of the picture, which is "
+            "surely no marker"
         )
     if sampled >= ENOUGH and found < FEW * sampled:
         sentences.append(
-            Sentence(
-                "{marker} is found in only {found} of {sampled} frames; if it is visible in one of the "
-                "others, pick its color there",
-                marker=name,
-                found=found,
-                sampled=sampled,
-            )
+            f"{name} is found in only {found} of {sampled} frames; if it is visible in one of the "
+            "others, pick its color there"
         )
     if grid_area < SMALL_PX:
         sentences.append(
-            Sentence(
-                "{marker} is small in the picture, so its position and direction are uncertain; film from "
-                "nearer",
-                marker=name,
-            )
+            f"{name} is small in the picture, so its position and direction are uncertain; film from nearer"
         )
     return tuple(sentences)
 
@@ -105,9 +79,8 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     if not alike:
         return []
     return [
-        Sentence(
-            "{marker} has almost the same color as {others}; only keyframes and paths tell them apart",
-            marker=name,
-            others=" and ".join(alike),
+        (
+            f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell "
+            "them apart"
         )
     ]

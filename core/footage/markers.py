@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array, Image
-from ..text import Sentence
 from .association import gather_candidates, viterbi_path
 from .clips.clip import Clip
 from .colors.streaming_color_learning import StreamingColorLearner
@@ -181,10 +180,9 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
     """Sentences on markers that look alike."""
     how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
     return tuple(
-        Sentence(
-            "markers {markers} have almost the same color; {how}",
-            markers=" and ".join(styles[marker].name for marker in group),
-            how=how,
+        (
+            f"markers {' and '.join((styles[marker].name for marker in group))} have almost the same "
+            f"color; {how}"
         )
         for group in groups
         if len(group) > 1

@@ -2,7 +2,6 @@
 
 from ..files.fields import listed
 from ..take.take import Take
-from ..text import Sentence
 from .found_poses import FoundPoses
 
 MOST_NAMED = 3
@@ -20,11 +19,7 @@ def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:
     for name in sorted(frames, key=lambda name: (-len(frames[name]), name))[:MOST_NAMED]:
         kind = "marker" if name in markers else "keypoint"
         notes.append(
-            Sentence(
-                "frame {frames}: no plausible pose explains {kind} {name}",
-                frames=listed([str(frame) for frame in frames[name]], MOST_NAMED),
-                kind=kind,
-                name=name,
-            )
+            f"frame {listed([str(frame) for frame in frames[name]], MOST_NAMED)}: no plausible pose "
+            f"explains {kind} {name}"
         )
     return tuple(notes)

@@ -22,7 +22,6 @@ from ..prior.interpolation import interpolate
 from ..prior.keyframes import Keyframe
 from ..progress import Job, Part, Progress, stretch, within
 from ..take.take import Take
-from ..text import Sentence
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
@@ -103,7 +102,7 @@ def pose_clip(
         postures,
         fit,
         composed.floor_m,
-        Sentence("the found poses explain {fit:.0%} of the footage", fit=fit),
+        f"the found poses explain {fit:.0%} of the footage",
         _contradictions(take, given, off),
         one,
         between,

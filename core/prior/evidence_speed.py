@@ -18,15 +18,14 @@ from ..footage.picture_motion import picture_motion
 from ..footage.region_tracks import RegionTracks
 from ..numerics.smoothing import columns_at, gaussian, usual_step
 from ..progress import Part
-from ..text import Sentence
 from .marker_speed import SMOOTHING_FRAMES, frame_times, marker_speed, point_speed
 
 OUTLIER_S = 0.17
 """Time of which a keypoint's path is the median: less than half of it a detector may be wrong."""
 JITTER_S = 0.067
 """Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
-FROM_PICTURES = Sentence("no marker or keypoint is seen, so the speed is how much the pictures change")
-FROM_NOTHING = Sentence("no marker or keypoint is seen and the camera moves, so keyframes are spaced evenly")
+FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
+FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes are spaced evenly"
 
 
 @dataclass(frozen=True, eq=False)

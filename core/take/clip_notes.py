@@ -5,16 +5,13 @@ import numpy as np
 from ..footage.clips.clip import Clip
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from ..text import Sentence
 from .take import Take
 
 NOTICEABLE_RATE = 0.02
 """Difference of two frame rates that is worth a note, as a share of the take's."""
 LONGEST_INTERVAL = 2.5
 """Time between two frames, as a multiple of the median, from which on frames seem to be missing."""
-VARIABLE_RATE = Sentence(
-    "the clip has a variable frame rate: keys lie at the true times, between whole frames"
-)
+VARIABLE_RATE = "the clip has a variable frame rate: keys lie at the true times, between whole frames"
 
 
 def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
@@ -25,13 +22,8 @@ def clip_notes(take: Take, clip: Clip, reading: Reading) -> tuple[str, ...]:
     short = tracks.frame_count < clip.frame_count
     if short and tracks.time_s[-1] * clip.fps < clip.frame_count - 1.5:
         notes.append(
-            Sentence(
-                "{clip} claims {claimed} frames, of which {decoded} can be decoded; it may be cut off or "
-                "damaged",
-                clip=clip.path.name,
-                claimed=clip.frame_count,
-                decoded=tracks.frame_count,
-            )
+            f"{clip.path.name} claims {clip.frame_count} frames, of which {tracks.frame_count} can "
+            "be decoded; it may be cut off or damaged"
         )
     return (*notes, *reading.frame_findings.notes(take.frame_start), *_gap_notes(take, tracks))
 
@@ -40,13 +32,9 @@ def rate_note(take: Take, clip: Clip) -> str | None:
     """A sentence where the clip's own frame rate differs from the take's; None where they agree."""
     if abs(clip.fps - take.fps) <= NOTICEABLE_RATE * take.fps:
         return None
-    return Sentence(
-        "{file} says {stated:g} frames per second, {clip} says {rate:g}; check that it is the take's own "
-        "clip",
-        file=take.file.name,
-        stated=take.fps,
-        clip=take.clip.name,
-        rate=clip.fps,
+    return (
+        f"{take.file.name} says {take.fps:g} frames per second, {take.clip.name} says {clip.fps:g}; "
+        "check that it is the take's own clip"
     )
 
 
@@ -57,9 +45,8 @@ def _gap_notes(take: Take, tracks: RegionTracks) -> tuple[str, ...]:
         return ()
     before = int(intervals.argmax())
     return (
-        Sentence(
-            "{seconds:.2f} s are missing after frame {frame}; check the keyframes after it",
-            seconds=intervals[before],
-            frame=before + take.frame_start,
+        (
+            f"{intervals[before]:.2f} s are missing after frame {before + take.frame_start}; check the "
+            "keyframes after it"
         ),
     )

@@ -14,7 +14,7 @@ from ..footage.keypoints.people import People
 from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import SPEED_M_PER_S
-from ..text import Sentence, pluralize
+from ..text import pluralize
 from .take import Take
 
 MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}
@@ -207,11 +207,10 @@ def _said_by(take: Take, prior: Posture | None, tracks: RegionTracks | None, han
     return "the performer is taken to be the largest who is there longest; click on another to change it"
 
 
-def _elsewhere(source: str) -> Sentence:
-    return Sentence(
-        "{source}: nobody in it is where most of the posed keyframes have the performer, so it is left out; "
-        "it must be of this clip",
-        source=source,
+def _elsewhere(source: str) -> str:
+    return (
+        f"{source}: nobody in it is where most of the posed keyframes have the performer, so it is left "
+        "out; it must be of this clip"
     )
 
 
@@ -223,22 +222,11 @@ def _notes(people: People, chosen: IndexArray, why: str) -> tuple[str, ...]:
     notes = []
     if several:
         notes.append(
-            Sentence(
-                "{source}: up to {most} people in {frames}; {why}",
-                source=people.source,
-                most=people.most_people,
-                frames=pluralize(several, "frame"),
-                why=why,
-            )
+            f"{people.source}: up to {people.most_people} people in {pluralize(several, 'frame')}; {why}"
         )
     if left_out:
         notes.append(
-            Sentence(
-                "{source}: {left_out} of {count} frames with people show somebody else than the performer "
-                "and are left out",
-                source=people.source,
-                left_out=left_out,
-                count=int((counts > 0).sum()),
-            )
+            f"{people.source}: {left_out} of {int((counts > 0).sum())} frames with people show "
+            "somebody else than the performer and are left out"
         )
     return tuple(notes)

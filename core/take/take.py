@@ -9,7 +9,6 @@ from ..footage.ignored_regions import IgnoredRegion
 from ..footage.keypoints.people import People
 from ..footage.marker_style import MarkerStyle
 from ..prior.keyframes import Keyframe
-from ..text import Sentence
 from .description import TAKE_FILE
 
 POORLY_FITTED_M = 0.06
@@ -68,11 +67,10 @@ class Take:
     def notes(self) -> tuple[str, ...]:
         """Sentences on keyframes that are usable but look wrong."""
         return tuple(
-            Sentence(
-                "keyframe {frame}: its points are {distance:.0f} cm on average from any posture of this "
-                "actor; check them and the actor's lengths",
-                frame=keyframe.index + self.frame_start,
-                distance=100 * keyframe.residual_m,
+            (
+                f"keyframe {keyframe.index + self.frame_start}: its points are "
+                f"{100 * keyframe.residual_m:.0f} cm on average from any posture of this actor; check "
+                "them and the actor's lengths"
             )
             for keyframe in self.keyframes
             if keyframe.residual_m > POORLY_FITTED_M

@@ -4,7 +4,6 @@ import bpy
 
 from ...core.body.actor import Actor
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, idle
 from ..shell.takes import active_take, find_take, has_lost_actor
@@ -34,11 +33,11 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         if has_lost_actor(take):
             restore_actor(context, take)
-            say(self, "INFO", "The actor is back, with its keyframes and its motion")
+            self.report({"INFO"}, "The actor is back, with its keyframes and its motion")
             return
         set_lengths(take.armature, Body(Actor(panel_lengths(take.lengths))))
         give_notices(take, "actor", "lengths")
-        say(self, "INFO", "The actor has these lengths now; keyframes and pose are kept")
+        self.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_apply_lengths,))

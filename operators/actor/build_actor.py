@@ -4,7 +4,6 @@ import bpy
 
 from ...core.body.actor import Actor
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import ensure_take, find_take
 
@@ -51,12 +50,7 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
         had_actor = size_actor(context, take, body)
         take.stature = self.stature
         if has_keyframes(take):
-            say(
-                self,
-                "INFO",
-                "The actor is {height:.4g} m tall now; its keyframes are kept",
-                height=self.stature,
-            )
+            self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now; its keyframes are kept")
             return
         stance = performers_stance(context.scene, take, body) if self.place else None
         if stance is not None:
@@ -65,18 +59,17 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
 
     def _report_stance(self, had_actor: bool, stands: bool, is_seen: bool) -> None:
         if is_seen:
-            say(self, "INFO", "The actor stands where the performer is seen in this frame")
+            self.report({"INFO"}, "The actor stands where the performer is seen in this frame")
         elif stands:
-            say(
-                self,
-                "INFO",
-                "The actor stands in the middle of the picture; with markers or keypoints it would stand at "
-                "the performer",
+            self.report(
+                {"INFO"},
+                "The actor stands in the middle of the picture; with markers or keypoints it would "
+                "stand at the performer",
             )
         elif had_actor:
-            say(self, "INFO", "The actor is {height:.4g} m tall now", height=self.stature)
+            self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now")
         else:
-            say(self, "INFO", "The actor stands at the world's origin")
+            self.report({"INFO"}, "The actor stands at the world's origin")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_build_actor,))

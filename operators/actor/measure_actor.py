@@ -2,14 +2,13 @@
 
 import bpy
 
-from ...core.text import Sentence
 from ..keypoints.evidence import scene_evidence
 from ..overlays.measuring import Clicks, show
 from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import bones_editable, camera, footage, idle
@@ -76,7 +75,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
-            say(self, "WARNING", "That is not on the footage; click in the picture")
+            self.report({"WARNING"}, "That is not on the footage; click in the picture")
             return {"RUNNING_MODAL"}
         if self._clicks.head is None:
             self._clicks.head = pixel
@@ -88,9 +87,9 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
 
     def _ask(self, context: bpy.types.Context) -> None:
         if self._clicks.head is None:
-            wanted = label("Click on the top of the head   |   Esc: Cancel")
+            wanted = "Click on the top of the head   |   Esc: Cancel"
         else:
-            wanted = label("Now click on the floor between the feet   |   Esc: Cancel")
+            wanted = "Now click on the floor between the feet   |   Esc: Cancel"
         context.workspace.status_text_set(wanted)
         redraw_footage(context)
 
@@ -118,17 +117,16 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         if not has_keyframes(take):
             write_posture(take.armature, measured.posture)
         if not measured.stands:
-            sentence = Sentence(
-                "The footage does not fit a performer who stands upright, so the lengths are little better "
-                "than average; go to a frame in which the performer stands, and check the height"
+            sentence = (
+                "The footage does not fit a performer who stands upright, so the lengths are little "
+                "better than average; go to a frame in which the performer stands, and check the height"
             )
             give_notices(take, "actor", "lengths", (warn(self, sentence),))
         else:
-            say(
-                self,
-                "INFO",
-                "The performer stands {distance:.2f} m from the camera; unseen lengths are average",
-                distance=measured.distance_m,
+            self.report(
+                {"INFO"},
+                f"The performer stands {measured.distance_m:.2f} m from the camera; unseen lengths are "
+                "average",
             )
 
 

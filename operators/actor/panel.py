@@ -3,7 +3,6 @@
 import bpy
 
 from ..bridge.actor_bones import is_actor
-from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, has_lost_actor, kept_actions
@@ -19,7 +18,7 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
         """How tall the actor is."""
-        return "" if take.armature is None else label("{height:.4g} m", height=take.stature)
+        return "" if take.armature is None else f"{take.stature:.4g} m"
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
@@ -34,13 +33,13 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
         column.prop(take, "stature")
         row = column.row(align=True)
         row.scale_y = 1.2
-        text = label("Build Actor") if take.armature is None else label("Use Average Proportions")
+        text = "Build Actor" if take.armature is None else "Use Average Proportions"
         row.operator("keymark.build_actor", text=text, icon="OUTLINER_OB_ARMATURE", translate=False)
         column.operator("keymark.measure_actor", text="Measure in This Frame", icon="ARROW_LEFTRIGHT")
         column.separator()
         column.prop(take, "armature")
         if take.armature is not None and not is_actor(take.armature):
-            sentence = label("This is no actor of Keymark's; choose it in the step Character instead")
+            sentence = "This is no actor of Keymark's; choose it in the step Character instead"
             draw_sentence(column, context, sentence, "ERROR")
 
 
@@ -48,11 +47,11 @@ def _draw_lost(layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy
     """Draw that the actor is gone, what of it is kept, and the button that brings it back."""
     box = layout.box().column()
     if take.keyframe_action is not None and take.motion_action is not None:
-        sentence = label("The actor is gone from the scene; its keyframes and its motion are kept")
+        sentence = "The actor is gone from the scene; its keyframes and its motion are kept"
     elif kept_actions(take):
-        sentence = label("The actor is gone from the scene; its keyframes are kept")
+        sentence = "The actor is gone from the scene; its keyframes are kept"
     else:
-        sentence = label("The actor is gone from the scene")
+        sentence = "The actor is gone from the scene"
     draw_sentence(box, context, sentence, "ERROR")
     box.operator("keymark.apply_lengths", text="Bring Actor Back", icon="LOOP_BACK")
 

@@ -38,16 +38,14 @@ def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tup
     """
     if armature_object is None or armature_object.type != "ARMATURE":
         name = "nothing" if armature_object is None else f"'{armature_object.name}'"
-        raise InputError("{name} is not an armature; select the actor's armature", name=name)
+        raise InputError(f"{name} is not an armature; select the actor's armature")
     models = bone_models(Body(Actor.from_stature(ANY_STATURE_M), skeleton))
     bones = armature_object.data.bones
     missing = [model.name for model in models if model.name not in bones]
     if missing:
         raise InputError(
-            "armature '{armature}' lacks the bones {missing}; build an actor with Keymark and keep its "
-            "bones' names",
-            armature=armature_object.name,
-            missing=", ".join(missing),
+            f"armature '{armature_object.name}' lacks the bones {', '.join(missing)}; build an actor "
+            "with Keymark and keep its bones' names"
         )
     return _as_rolled(models, bones)
 
@@ -100,10 +98,8 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     misfit = float(np.abs(matrix @ lengths - vector).max())
     if misfit > LARGEST_MISFIT * body.actor.stature_m:
         raise InputError(
-            "armature '{armature}' has bones {misfit:.0f} mm off Keymark's skeleton; build an actor with "
-            "Keymark and change its lengths only",
-            armature=armature_object.name,
-            misfit=1000 * misfit,
+            f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's "
+            "skeleton; build an actor with Keymark and change its lengths only"
         )
     return body
 

@@ -26,17 +26,11 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
             magic = file.read(8)
     except OSError as error:
         raise InputError(
-            "{path}: cannot be read ({strerror}); it must be a .blend",
-            path=path,
-            strerror=error.strerror or error,
+            f"{path}: cannot be read ({(error.strerror or error)}); it must be a .blend"
         ) from error
     if largest_bytes is not None and size > largest_bytes:
         raise InputError(
-            "{path}: has {size:.0f} MiB; a .blend of {what} has at most {largest_bytes} MiB",
-            path=path,
-            size=size / 2**20,
-            what=what,
-            largest_bytes=largest_bytes >> 20,
+            f"{path}: has {size / 2**20:.0f} MiB; a .blend of {what} has at most {largest_bytes >> 20} MiB"
         )
     if not magic.startswith(BLEND_MAGIC):
-        raise InputError("{path}: is no .blend; it must be a file that Blender saved", path=path)
+        raise InputError(f"{path}: is no .blend; it must be a file that Blender saved")

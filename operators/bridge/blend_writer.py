@@ -30,23 +30,17 @@ def write_blend(
     try:
         (data or bpy.data).libraries.write(str(path), blocks, compress=True, **options)
     except (RuntimeError, OSError) as error:
-        raise ConversionError(
-            "{where}: Blender could not write the file ({reason})", where=where, reason=one_line(error)
-        ) from error
+        raise ConversionError(f"{where}: Blender could not write the file ({one_line(error)})") from error
     names = {block.name for block in blocks}
     try:
         with bpy.data.libraries.load(str(path)) as (found, _):
             there = {name for kind in dir(found) for name in getattr(found, kind)}
     except (RuntimeError, OSError) as error:
         raise ConversionError(
-            "{where}: Blender could not write the whole file ({reason}); the disk may be full",
-            where=where,
-            reason=one_line(error),
+            f"{where}: Blender could not write the whole file ({one_line(error)}); the disk may be full"
         ) from error
     if not names <= there:
-        raise ConversionError(
-            "{where}: Blender has left out {names}", where=where, names=", ".join(sorted(names - there))
-        )
+        raise ConversionError(f"{where}: Blender has left out {', '.join(sorted(names - there))}")
 
 
 def one_line(error: Exception) -> str:

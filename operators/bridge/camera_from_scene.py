@@ -40,17 +40,12 @@ def read_lens(footage: Footage) -> Camera:
     data = camera_object.data
     if data.type != "PERSP":
         raise InputError(
-            "camera '{camera}' is of type {type}; footage needs a perspective one",
-            camera=camera_object.name,
-            type=data.type,
+            f"camera '{camera_object.name}' is of type {data.type}; footage needs a perspective one"
         )
     if scene.render.pixel_aspect_x != scene.render.pixel_aspect_y:
         raise InputError(
-            "scene '{scene}' has the pixel aspect {pixel_aspect_x:g} to {pixel_aspect_y:g}; only square "
-            "pixels are supported",
-            scene=scene.name,
-            pixel_aspect_x=scene.render.pixel_aspect_x,
-            pixel_aspect_y=scene.render.pixel_aspect_y,
+            f"scene '{scene.name}' has the pixel aspect {scene.render.pixel_aspect_x:g} to "
+            f"{scene.render.pixel_aspect_y:g}; only square pixels are supported"
         )
     width, height = clip.size
     sensor_width, unit = _horizontal_sensor(data, width, height)
@@ -88,9 +83,7 @@ def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
     }
     if any(untouched.get(tracking.distortion_model, ())):
         raise InputError(
-            "clip '{clip}' has the distortion model {distortion_model}; choose Polynomial",
-            clip=clip.name,
-            distortion_model=tracking.distortion_model,
+            f"clip '{clip.name}' has the distortion model {tracking.distortion_model}; choose Polynomial"
         )
     return (0.0, 0.0, 0.0)
 

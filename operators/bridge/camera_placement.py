@@ -9,20 +9,19 @@ from mathutils import Matrix
 from ...core.arrays import Array
 from ...core.footage.camera import Camera
 from ...core.footage.camera_placement import CameraPlacement
-from ...core.text import Sentence
 from .camera_from_scene import read_lens
 from .footage import Footage
 from .footage_camera import may_move
 
 
-def fixed_reason(camera_object: bpy.types.Object | None) -> Sentence | None:
+def fixed_reason(camera_object: bpy.types.Object | None) -> str | None:
     """Why a camera's pose cannot be set; None if it can."""
     if camera_object is None:
-        return Sentence("Choose the camera that the footage was taken with first")
+        return "Choose the camera that the footage was taken with first"
     if camera_object.library is not None or camera_object.data.library is not None:
-        return Sentence("The camera is linked; make it local first (Object > Relations)")
+        return "The camera is linked; make it local first (Object > Relations)"
     if may_move(camera_object):
-        return Sentence("The camera is animated or constrained, which says where it is")
+        return "The camera is animated or constrained, which says where it is"
     return None
 
 

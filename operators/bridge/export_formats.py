@@ -11,7 +11,6 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import ConversionError
-from ...core.text import Sentence
 
 BVH_ORDER = "ZXY"
 """One order of rotation channels for all joints: some readers take the first joint's for all."""
@@ -32,15 +31,15 @@ class ExportFormat:
     addon: str = ""
     """Name of the add-on, as in the Preferences."""
 
-    def missing(self) -> Sentence | None:
+    def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
         if self.operator_type:
             if hasattr(bpy.types, self.operator_type):
                 return None
-            return Sentence("Enable the add-on {addon} in the Preferences", addon=self.addon)
+            return f"Enable the add-on {self.addon} in the Preferences"
         if bpy.app.build_options.usd:
             return None
-        return Sentence("This Blender is built without {format}", format=self.name)
+        return f"This Blender is built without {self.name}"
 
 
 def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
@@ -64,9 +63,7 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
-            raise ConversionError(
-                "{path}: Blender's BVH exporter failed ({reason})", path=path, reason=str(error).strip()
-            ) from error
+            raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
 def _write_fbx(_: bpy.types.Object, path: Path) -> None:

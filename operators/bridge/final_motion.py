@@ -60,10 +60,8 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
     last = int(np.floor(max((r[1] for r in ranges), default=0.0) + ROUNDING))
     if last <= first:
         raise InputError(
-            "Action '{action}' has no motion of '{armature}' over two frames or more; reconstruct the "
-            "motion first",
-            action=action.name,
-            armature=armature_object.name,
+            f"Action '{action.name}' has no motion of '{armature_object.name}' over two frames or more; "
+            "reconstruct the motion first"
         )
     return np.arange(first, last + 1, dtype=np.float64)
 

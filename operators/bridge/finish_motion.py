@@ -17,7 +17,6 @@ from ...core.finish.natural_extremities import natural_extremities
 from ...core.finish.planted_feet import PlantedFeet, plant_feet, point_tolerances
 from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
-from ...core.text import Sentence
 from .actor_lengths import read_body
 from .extremity_curves import turned_extremities
 from .final_motion import (
@@ -147,14 +146,13 @@ def _planting_notes(
     rig: Rig, shown: RigPose, body: Body, before: Posture, planted: PlantedFeet
 ) -> tuple[str, ...]:
     if not planted.contacts:
-        return (Sentence("No foot rests long enough to be planted; raise Foot Stray to hold feet that sway"),)
+        return ("No foot rests long enough to be planted; raise Foot Stray to hold feet that sway",)
     beyond_m = largest_leg_distance_m(rig, shown, body, before)
     if beyond_m <= NOTICEABLE_M:
         return ()
     return (
-        Sentence(
-            "The motion goes up to {distance:.0f} mm beyond what the skeleton's legs can do; planting the "
-            "feet uses the nearest posture",
-            distance=1000.0 * beyond_m,
+        (
+            f"The motion goes up to {1000.0 * beyond_m:.0f} mm beyond what the skeleton's legs can do; "
+            "planting the feet uses the nearest posture"
         ),
     )

@@ -28,9 +28,7 @@ class Footage:
             InputError: There is none.
         """
         if self.movie_clip is None:
-            raise InputError(
-                "the take in scene '{scene}' has no footage; load a clip first", scene=self.scene.name
-            )
+            raise InputError(f"the take in scene '{self.scene.name}' has no footage; load a clip first")
         return self.movie_clip
 
     @property
@@ -42,8 +40,8 @@ class Footage:
         """
         if self.camera_object is None or self.camera_object.type != "CAMERA":
             raise InputError(
-                "the take in scene '{scene}' has no camera; add one where the footage was taken from",
-                scene=self.scene.name,
+                f"the take in scene '{self.scene.name}' has no camera; add one where the footage was "
+                "taken from"
             )
         return self.camera_object
 
@@ -96,8 +94,7 @@ def clip_path(clip: bpy.types.MovieClip) -> Path:
     path = Path(bpy.path.abspath(clip.filepath, library=clip.library))
     if not path.exists():
         raise InputError(
-            "{path}: the footage is not there; say where it is now with Find Clip in the Footage panel",
-            path=path,
+            f"{path}: the footage is not there; say where it is now with Find Clip in the Footage panel"
         )
     return path
 

@@ -28,17 +28,11 @@ def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = 
     width, height = footage.clip.size
     x, y = np.floor(np.asarray(pixel, dtype=np.float64)).astype(int)
     if not (0 <= x < width and 0 <= y < height):
-        raise InputError(
-            "pixel ({x}, {y}) lies outside the footage, which is {width} x {height} pixels",
-            x=x,
-            y=y,
-            width=width,
-            height=height,
-        )
+        raise InputError(f"pixel ({x}, {y}) lies outside the footage, which is {width} x {height} pixels")
     at = footage.scene.frame_current if scene_frame is None else scene_frame
     image = FrameReader(footage.open()).image_at((at - footage.first_frame) / footage.rate)
     if image is None:
-        raise InputError("the footage has no frame at scene frame {at}; go to one it has", at=at)
+        raise InputError(f"the footage has no frame at scene frame {at}; go to one it has")
     around = image[max(0, y - REACH_PX) : y + REACH_PX + 1, max(0, x - REACH_PX) : x + REACH_PX + 1]
     blue, green, red = (round(float(value)) for value in np.median(around.reshape(-1, 3), axis=0))
     return red, green, blue

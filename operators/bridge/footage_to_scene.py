@@ -28,15 +28,12 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
     try:
         clip = bpy.data.movieclips.load(stored_path(file), check_existing=True)
     except RuntimeError as error:
-        raise InputError(
-            "{file}: Blender cannot read this clip; name a video or numbered images", file=file
-        ) from error
+        raise InputError(f"{file}: Blender cannot read this clip; name a video or numbered images") from error
     if not clip.frame_duration:  # Blender gives what it cannot decode a size, but no frames
         if clip not in before:
             bpy.data.movieclips.remove(clip)
         raise InputError(
-            "{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images",
-            file=file,
+            f"{file}: Blender cannot decode this clip; convert it to H.264 or to numbered images"
         )
     return clip
 

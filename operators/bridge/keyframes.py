@@ -12,7 +12,6 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
-from ...core.text import Sentence
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import moved_paths, posture_columns
@@ -97,20 +96,14 @@ def read_keyframes(
             reading = read_posture(armature_object, body)
             if reading.furthest_m > NOTICEABLE_M:
                 notes.append(
-                    Sentence(
-                        "Keyframe {frame:g}: the pose goes {distance:.0f} mm beyond what the skeleton can "
-                        "do; the nearest posture is used",
-                        frame=frame,
-                        distance=1000 * reading.furthest_m,
-                    )
+                    f"Keyframe {frame:g}: the pose goes {1000 * reading.furthest_m:.0f} mm beyond "
+                    "what the skeleton can do; the nearest posture is used"
                 )
             if index not in found or apart < found[index][0]:
                 residual = float(np.mean(reading.distance_m))
                 found[index] = (apart, Keyframe(index, reading.posture, residual, matches.get(frame)))
     if outside:
-        notes.append(
-            Sentence("Keys at {frames} lie outside the footage and are not used", frames=", ".join(outside))
-        )
+        notes.append(f"Keys at {', '.join(outside)} lie outside the footage and are not used")
     return PosedKeyframes(tuple(found[index][1] for index in sorted(found)), tuple(notes))
 
 

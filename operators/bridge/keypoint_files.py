@@ -31,7 +31,7 @@ def read_keypoint_file(
     """
     state = file_state(path)
     if state is None:
-        raise InputError("{path}: the keypoints are not there; load them from where they are now", path=path)
+        raise InputError(f"{path}: the keypoints are not there; load them from where they are now")
     return _read(path, state, frame_count, size, fps, frame_start)
 
 

@@ -46,11 +46,9 @@ def export_motion(
             try:
                 export_format.write(armature_object, beside)
             except RuntimeError as error:
-                raise ConversionError(
-                    "{path}: the exporter failed ({reason})", path=path, reason=str(error).strip()
-                ) from error
+                raise ConversionError(f"{path}: the exporter failed ({str(error).strip()})") from error
             if not beside.exists():
-                raise ConversionError("{path}: the exporter wrote nothing", path=path)
+                raise ConversionError(f"{path}: the exporter wrote nothing")
 
         write_atomically(path, write)
 
@@ -83,10 +81,7 @@ def _only(
         _set_mode("OBJECT", mode)
         chosen.hide_set(False, view_layer=layer)
         if not chosen.visible_get(view_layer=layer):
-            raise InputError(
-                "'{chosen}' is hidden with its collection; show it to export its motion",
-                chosen=chosen.name,
-            )
+            raise InputError(f"'{chosen.name}' is hidden with its collection; show it to export its motion")
         for one in selected:
             one.select_set(False, view_layer=layer)
         for one in (*along, chosen):

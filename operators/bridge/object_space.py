@@ -48,10 +48,8 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
     if scale <= 0.0 or uneven or np.linalg.det(linear) < 0.0:
         scales = ", ".join(f"{value:.4g}" for value in np.sqrt(np.diag(squared)))
         raise InputError(
-            "armature '{armature}' is scaled by {scales} along its axes or mirrored; give it one positive "
-            "scale, or apply the scale (Ctrl+A)",
-            armature=armature_object.name,
-            scales=scales,
+            f"armature '{armature_object.name}' is scaled by {scales} along its axes or mirrored; give "
+            "it one positive scale, or apply the scale (Ctrl+A)"
         )
     return ObjectSpace(linear / scale, matrix[:3, 3], scale)
 

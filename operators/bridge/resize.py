@@ -57,9 +57,8 @@ def _check_own(armature_object: bpy.types.Object) -> None:
     data = armature_object.data
     if armature_object.library is not None or data.library is not None or data.override_library is not None:
         raise InputError(
-            "armature '{armature}' comes from another file; change its lengths there, or make it local "
-            "(Object > Relations > Make Local)",
-            armature=armature_object.name,
+            f"armature '{armature_object.name}' comes from another file; change its lengths there, or "
+            "make it local (Object > Relations > Make Local)"
         )
 
 
@@ -74,7 +73,7 @@ def _editing(
         layer = bpy.context.view_layer
     active = layer.objects.active
     if active is not None and active.mode not in ("OBJECT", "POSE"):
-        raise InputError("leave the mode that '{active}' is in first (Tab)", active=active.name)
+        raise InputError(f"leave the mode that '{active.name}' is in first (Tab)")
     mode = "OBJECT" if active is None else active.mode
     hidden = armature_object.hide_get(view_layer=layer)
     with bpy.context.temp_override(scene=scene, view_layer=layer):

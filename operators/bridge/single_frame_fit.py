@@ -133,16 +133,11 @@ def frame_in_footage(
     if abs(float(frames[index]) - current) > NEAREST + 1e-6:
         if frames[0] < current < frames[-1]:
             raise InputError(
-                "the footage, whose rate varies, has no frame of its own at {current:g}; go to frame "
-                "{frames}",
-                current=current,
-                frames=round(float(frames[index])),
+                f"the footage, whose rate varies, has no frame of its own at {current:g}; go to frame "
+                f"{round(float(frames[index]))}"
             )
         raise InputError(
-            "frame {current:g} lies outside the footage, whose frames are {first:g} to {last:g}",
-            current=current,
-            first=frames[0],
-            last=frames[-1],
+            f"frame {current:g} lies outside the footage, whose frames are {frames[0]:g} to {frames[-1]:g}"
         )
     return FrameInFootage(footage, evidence, reading, frames, index)
 
@@ -244,9 +239,7 @@ def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
     wanted = " and ".join(
         name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
     )
-    return InputError(
-        "none of the {wanted} is seen in frame {frame}; pose the actor by hand", wanted=wanted, frame=shown
-    )
+    return InputError(f"none of the {wanted} is seen in frame {shown}; pose the actor by hand")
 
 
 def _keyframes(

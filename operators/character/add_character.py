@@ -4,7 +4,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import idle
 from ..shell.takes import active_take
 from .characters import add_character, candidates, may_be_character
@@ -52,11 +52,11 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         if character.problem:
             warn(self, character.problem)
         elif chosen is None:
-            say(self, "INFO", "Choose the character's armature")
+            self.report({"INFO"}, "Choose the character's armature")
         elif all_doubts(character):
-            say(self, "WARNING", "Check the bones of '{name}': some are doubtful", name=chosen.name)
+            self.report({"WARNING"}, f"Check the bones of '{chosen.name}': some are doubtful")
         else:
-            say(self, "INFO", "Recognized the bones of '{name}'", name=chosen.name)
+            self.report({"INFO"}, f"Recognized the bones of '{chosen.name}'")
 
     def _chosen(self, context: bpy.types.Context) -> bpy.types.Object | None:
         """The armature to add; None where it is left to the person.
@@ -70,9 +70,8 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         named = bpy.data.objects.get(self.armature)
         if not may_be_character(named):
             raise InputError(
-                "'{armature}' is no armature of a character in this file; give the name of an armature's "
-                "object that is no actor of Keymark's",
-                armature=self.armature,
+                f"'{self.armature}' is no armature of a character in this file; give the name of an "
+                "armature's object that is no actor of Keymark's"
             )
         return named
 

@@ -5,7 +5,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take
 from .characters import add_character, find_character
@@ -14,9 +14,7 @@ from .requirements import take
 
 def rigify(context: bpy.types.Context) -> str | None:
     """Blender brings Rigify along."""
-    return (
-        None if has_rigify() else label("This Blender comes without the add-on Rigify; install Rigify first")
-    )
+    return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
 
 
 class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
@@ -34,9 +32,9 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         return context.window_manager.invoke_confirm(
             self,
             event,
-            title=label("Enable the add-on Rigify?"),
-            message=label("It comes with Blender and makes the rig; it stays enabled in the preferences"),
-            confirm_text=label("Enable and Add"),
+            title="Enable the add-on Rigify?",
+            message="It comes with Blender and makes the rig; it stays enabled in the preferences",
+            confirm_text="Enable and Add",
         )
 
     def run(self, context: bpy.types.Context) -> None:
@@ -51,8 +49,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         except RuntimeError as error:  # an operator's own error report
             reason = str(error).removeprefix("Error: ").strip()
             raise InputError(
-                "Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here",
-                reason=reason,
+                f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
             ) from error
         chosen = find_character(context.scene)
         if chosen is None or chosen.armature is not None:
@@ -62,7 +59,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         if chosen.problem:
             warn(self, chosen.problem)
         else:
-            say(self, "INFO", "Recognized the bones of '{name}'", name=rig.name)
+            self.report({"INFO"}, f"Recognized the bones of '{rig.name}'")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_add_rigify_human,))

@@ -40,10 +40,7 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
         shown = role_named(active_character(context.scene).character_map, chain_role(self.role))
         if self.index >= len(shown.bones):
             raise InputError(
-                "the role {role} has {bones} bones; there is no number {index}",
-                role=self.role,
-                bones=len(shown.bones),
-                index=self.index,
+                f"the role {self.role} has {len(shown.bones)} bones; there is no number {self.index}"
             )
         if len(shown.bones) == 1:
             shown.bones[0].bone = ""

@@ -5,7 +5,6 @@ import bpy
 from ...core.errors import InputError
 from ...core.retarget.roles import REQUIRED
 from ..bridge.actor_bones import is_actor
-from ..shell.messages import label
 from ..shell.takes import find_take
 from .map_conversion import map_of
 from .map_properties import PART_TITLES, PARTS, role_title
@@ -53,7 +52,7 @@ def active_character(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     """
     character = find_character(scene)
     if character is None:
-        raise InputError("scene '{scene}' has no character; add one to the take first", scene=scene.name)
+        raise InputError(f"scene '{scene.name}' has no character; add one to the take first")
     return character
 
 
@@ -120,7 +119,7 @@ def few(names: list[str]) -> str:
     """The first names of a list, and how many more there are."""
     shown = ", ".join(names[:MOST_NAMED])
     more = len(names) - MOST_NAMED
-    return label("{names} and {count} more", names=shown, count=more) if more > 0 else shown
+    return f"{shown} and {more} more" if more > 0 else shown
 
 
 def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:

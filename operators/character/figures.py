@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-from ..shell.messages import label
-
 if TYPE_CHECKING:
     from ...core.retarget.quality import Quality
 
@@ -12,15 +10,13 @@ def figures(quality: "Quality") -> list[str]:
     """Lines on feet, floor, hands (or limbs, where the hands reach nothing) and keys."""
     lines = []
     if quality.skate_mm is not None:
-        lines.append(label("Feet slide {way:.2f} mm a frame", way=quality.skate_mm))
+        lines.append(f"Feet slide {quality.skate_mm:.2f} mm a frame")
     if quality.penetration_mm is not None:
-        lines.append(label("Soles at most {depth:.1f} mm below floor", depth=quality.penetration_mm))
+        lines.append(f"Soles at most {quality.penetration_mm:.1f} mm below floor")
     if quality.hands_mm is not None:
-        lines.append(label("Hands {distance:.0f} mm from what they reach", distance=quality.hands_mm))
+        lines.append(f"Hands {quality.hands_mm:.0f} mm from what they reach")
     elif quality.arms_deg is not None and quality.legs_deg is not None:
-        lines.append(
-            label("Arms {arms:.1f}°, legs {legs:.1f}° off", arms=quality.arms_deg, legs=quality.legs_deg)
-        )
+        lines.append(f"Arms {quality.arms_deg:.1f}°, legs {quality.legs_deg:.1f}° off")
     if quality.keys is not None and quality.dense_keys is not None:
-        lines.append(label("{keys} keys instead of {dense}", keys=quality.keys, dense=quality.dense_keys))
+        lines.append(f"{quality.keys} keys instead of {quality.dense_keys}")
     return lines

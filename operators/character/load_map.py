@@ -5,7 +5,6 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import label, say, tooltip
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import show_map
@@ -36,8 +35,8 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip: of the map at hand, or of the file browser."""
         if properties.title:
-            return tooltip("Use this map from your library folder, which names this armature's bones")
-        return tooltip("Load which bones play which role from a file, instead of what was recognized")
+            return "Use this map from your library folder, which names this armature's bones"
+        return "Load which bones play which role from a file, instead of what was recognized"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the file, in the user's own folder, unless a map is named."""
@@ -53,9 +52,7 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
 
         character = active_character(context.scene)
         named = (
-            self.title
-            if self.title and not self.filepath
-            else chosen_file(self, label("a character map, .json"))
+            self.title if self.title and not self.filepath else chosen_file(self, "a character map, .json")
         )
         found = find_map(named, map_folders())
         character_map = found.character_map
@@ -65,7 +62,7 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
         show_map(character.character_map, character_map)
         show_doubts(character)
         character.problem = character.suggested = ""
-        say(self, "INFO", "Loaded '{title}'", title=character_map.title)
+        self.report({"INFO"}, f"Loaded '{character_map.title}'")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_map,))

@@ -5,7 +5,6 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.character.read_character import make_override, needs_override
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of, show_map
@@ -17,11 +16,7 @@ def linked(context: bpy.types.Context) -> str | None:
     unmet = armature(context)
     if unmet is not None:
         return unmet
-    return (
-        None
-        if needs_override(active_character(context.scene).armature)
-        else label("The character is not linked")
-    )
+    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
 
 
 class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
@@ -45,7 +40,7 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
         character.armature = overridden
         if known.roles:
             show_map(character.character_map, known)
-        say(self, "INFO", "'{name}' can be animated now", name=overridden.name)
+        self.report({"INFO"}, f"'{overridden.name}' can be animated now")
 
 
 def _override_instance(
@@ -64,10 +59,8 @@ def _override_instance(
     found = next((each for each in overrides if each.override_library.reference == original), None)
     if made is None or found is None:
         raise InputError(
-            "Blender makes no library override of collection '{collection}', which holds '{original}'; "
-            "append it instead",
-            collection=collection.name,
-            original=original.name,
+            f"Blender makes no library override of collection '{collection.name}', which holds "
+            f"'{original.name}'; append it instead"
         )
     return found
 

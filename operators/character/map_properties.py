@@ -6,13 +6,12 @@ Bones are kept by name, so that a bone that was renamed or removed is said and n
 import bpy
 
 from ...core.retarget.roles import CHAINS, LIMBS, MIDDLE, SOURCES
-from ..shell.messages import pgettext_n
 
 SOURCE_WORDS = {
-    "preset": pgettext_n("Preset"),
-    "names": pgettext_n("Names"),
-    "shape": pgettext_n("Shape"),
-    "you": pgettext_n("You"),
+    "preset": "Preset",
+    "names": "Names",
+    "shape": "Shape",
+    "you": "You",
 }
 """Labels of where a role's bones come from."""
 KINDS = (
@@ -23,11 +22,11 @@ KINDS = (
 PARTS = {"trunk": MIDDLE, **{limb: LIMBS[limb] for limb in ("arm.L", "arm.R", "leg.L", "leg.R")}}
 """Roles of the parts of the body, as the panel shows them."""
 PART_TITLES = {
-    "trunk": pgettext_n("Trunk"),
-    "arm.L": pgettext_n("Left Arm"),
-    "arm.R": pgettext_n("Right Arm"),
-    "leg.L": pgettext_n("Left Leg"),
-    "leg.R": pgettext_n("Right Leg"),
+    "trunk": "Trunk",
+    "arm.L": "Left Arm",
+    "arm.R": "Right Arm",
+    "leg.L": "Left Leg",
+    "leg.R": "Right Leg",
 }
 
 

@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.messages import label
 from ..shell.panel import draw_sentence
 from .characters import full_title, missing_roles
 from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
@@ -20,7 +19,7 @@ def draw_map(
     column = layout.column()
     column.operator("keymark.recognize_character", icon="VIEWZOOM")
     if character.suggested:
-        text = label("Use '{title}'", title=character.suggested)
+        text = f"Use '{character.suggested}'"
         use = column.operator("keymark.load_map", text=text, icon="FILE_TICK", translate=False)
         use.title = character.suggested
     row = column.row(align=True)
@@ -30,7 +29,7 @@ def draw_map(
         draw_sentence(column, context, doubt.text, "ERROR", MOST_LINES)
     missing = [full_title(role) for role in missing_roles(character)]
     if len(character_map.roles) and missing:
-        draw_sentence(column, context, label("Without a bone: {roles}", roles=", ".join(missing)), "ERROR")
+        draw_sentence(column, context, f"Without a bone: {', '.join(missing)}", "ERROR")
     if not len(character_map.roles):
         return
     _draw_parts(layout, context, character)
@@ -66,9 +65,9 @@ def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyG
     facts = header.row()
     facts.alignment = "RIGHT"
     facts.active = False
-    source = label(SOURCE_WORDS[least.source])
+    source = SOURCE_WORDS[least.source]
     if least.source != "you":
-        source = label("{source} {percent:.0f} %", source=source, percent=100.0 * least.confidence)
+        source = f"{source} {100.0 * least.confidence:.0f} %"
     facts.label(text=source, translate=False)
 
 
@@ -132,19 +131,14 @@ def _draw_controls(
         return
     column, armature = body.column(align=True), character.armature.data
     for role, entry in keyed:
-        _draw_control(column, armature, entry, "control", label(role_title(role.name)))
+        _draw_control(column, armature, entry, "control", role_title(role.name))
     for name in controls:
-        _draw_control(column, armature, limb, name, label(limb.bl_rna.properties[name].name))
+        _draw_control(column, armature, limb, name, limb.bl_rna.properties[name].name)
     if limb is not None and limb.switch_bone:
-        _draw_control(column, armature, limb, "switch_bone", label("Switch"))
+        _draw_control(column, armature, limb, "switch_bone", "Switch")
         split = column.split(factor=LABEL_SHARE)
         split.label(text="")
-        values = label(
-            "{property}: IK {ik:g}, FK {fk:g}",
-            property=limb.switch_property,
-            ik=limb.switch_ik,
-            fk=limb.switch_fk,
-        )
+        values = f"{limb.switch_property}: IK {limb.switch_ik:g}, FK {limb.switch_fk:g}"
         split.label(text=values, translate=False)
 
 

@@ -5,7 +5,6 @@ import bpy
 from ...core.errors import InputError
 from ..finish.asset_details import mark_motion_asset
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import active_take
 from .characters import active_character, shown_result
@@ -27,8 +26,10 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
             raise InputError("the result's Action has been deleted; retarget the motion again")
         mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
         if made.outdated:
-            say(self, "WARNING", "The character's motion is of an earlier one; retarget it for the newest")
-        say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=made.action.name)
+            self.report(
+                {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
+            )
+        self.report({"INFO"}, f"'{made.action.name}' is an asset now; save the .blend to keep it")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mark_result_asset,))

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import idle
 from .characters import active_character, few, full_title
 from .map_conversion import map_of, show_map
@@ -35,7 +34,7 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
         after, missing = mirrored_map(read_character(character.armature), before, self.side)
         if missing:
             names = few([full_title(role) for role in missing])
-            say(self, "WARNING", "No bones were found that mirror those for {roles}", roles=names)
+            self.report({"WARNING"}, f"No bones were found that mirror those for {names}")
         if after == before:
             return {"CANCELLED"}
         doubts = {

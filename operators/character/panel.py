@@ -3,7 +3,6 @@
 import bpy
 
 from ..bridge.character.read_character import needs_override
-from ..shell.messages import label
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -25,7 +24,7 @@ class KEYMARK_UL_characters(RowList, bpy.types.UIList):
         """Draw one character."""
         row = layout.row(align=True)
         done = any(result.action is not None for result in item.results)
-        name = item.armature.name if item.armature is not None else label("No Armature")
+        name = item.armature.name if item.armature is not None else "No Armature"
         row.label(text=name, icon="ACTION" if done else "ARMATURE_DATA", translate=False)
         if item.problem or item.armature is None or any(result.outdated for result in item.results):
             row.label(text="", icon="ERROR")
@@ -48,11 +47,11 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             return
         column = _draw_choice(self, take, character)
         if character.armature is None:
-            draw_sentence(column, context, label("Choose the armature that is to move"), "FORWARD")
+            draw_sentence(column, context, "Choose the armature that is to move", "FORWARD")
             column.operator("keymark.add_rigify_human", icon="ARMATURE_DATA")
             return
         if needs_override(character.armature):
-            draw_sentence(column, context, label("It is linked; an override can be animated here"), "LINKED")
+            draw_sentence(column, context, "It is linked; an override can be animated here", "LINKED")
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
         elif character.problem:
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES)
@@ -123,7 +122,7 @@ def _draw_results(
         return
     lines = column.column(align=True)
     if chosen.outdated:
-        draw_sentence(lines, context, label("Motion is newer: retarget again"), "ERROR")
+        draw_sentence(lines, context, "Motion is newer: retarget again", "ERROR")
     for line in chosen.lines:
         draw_sentence(lines, context, line.text, "ERROR" if line.level == "ERROR" else "DOT")
     column.operator("keymark.mark_result_asset", icon="ASSET_MANAGER")

@@ -7,7 +7,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION
-from ..shell.messages import label, say, tooltip
 from ..shell.requirements import idle
 from .bone_under_mouse import bone_under
 from .characters import active_character, find_character, full_title
@@ -31,7 +30,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip, which says where the role's bone comes from."""
         known = told(context, properties.role)
-        asked = tooltip("Click on the bone in the viewport to choose it")
+        asked = "Click on the bone in the viewport to choose it"
         return f"{known}. {asked}" if known else asked
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -72,7 +71,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def _take(self, context: bpy.types.Context, bone: str | None) -> set[str]:
         """Give the bone to the role; wait on where there is none."""
         if bone is None:
-            say(self, "WARNING", "That is no bone of the character; click on one")
+            self.report({"WARNING"}, "That is no bone of the character; click on one")
             return {"RUNNING_MODAL"}
         self.bone = bone
         self.cancel(context)
@@ -82,15 +81,11 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         role = full_title(self.role)
         active = active_bone_of(active_character(context.scene))
         if under:
-            words = label("{role}: {bone}   |   Esc: Cancel", role=role.capitalize(), bone=under)
+            words = f"{role.capitalize()}: {under}   |   Esc: Cancel"
         elif active is not None:
-            words = label(
-                "Click on the bone: {role}   |   Enter: {bone}, the active one   |   Esc: Cancel",
-                role=role,
-                bone=active,
-            )
+            words = f"Click on the bone: {role}   |   Enter: {active}, the active one   |   Esc: Cancel"
         else:
-            words = label("Click on the bone: {role}   |   Esc: Cancel", role=role)
+            words = f"Click on the bone: {role}   |   Esc: Cancel"
         context.workspace.status_text_set(words)
 
     def cancel(self, context: bpy.types.Context) -> None:

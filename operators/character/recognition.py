@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.roles import ROLES
 from ..library import user_folder
-from ..shell.messages import translated
+from ..shell.messages import capitalized
 from .characters import may_be_character, other_with
 from .map_conversion import clear_map, map_of, show_map
 from .results import drop_results_of_others
@@ -27,7 +27,7 @@ def recognize_bones(character: bpy.types.PropertyGroup) -> None:
     if not may_be_character(armature_object):
         raise _not_a_character(armature_object)
     found = recognize(read_character(armature_object))
-    by_role = {_role_of(sentence): translated(sentence) for sentence in found.doubts}
+    by_role = {_role_of(sentence): capitalized(sentence) for sentence in found.doubts}
     show_map(character.character_map, found.character_map, by_role)
     show_doubts(character, tuple(sentence for sentence in found.doubts if not _role_of(sentence)))
     character.problem = ""
@@ -38,7 +38,7 @@ def show_doubts(character: bpy.types.PropertyGroup, doubts: tuple[str, ...] = ()
     character.doubts.clear()
     for sentence in doubts:
         line = character.doubts.add()
-        line.text, line.level = translated(sentence), "ERROR"
+        line.text, line.level = capitalized(sentence), "ERROR"
 
 
 def all_doubts(character: bpy.types.PropertyGroup) -> list[str]:
@@ -73,7 +73,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
             recognize_bones(character)
             suggest_map(character)
         except KeymarkError as error:
-            character.problem = translated(error.sentence)
+            character.problem = capitalized(str(error))
 
 
 def suggest_map(character: bpy.types.PropertyGroup) -> None:
@@ -95,9 +95,8 @@ def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
         return InputError("no armature is chosen; choose the character's")
     name = armature_object.name
     if armature_object.type != "ARMATURE":
-        return InputError("'{name}' is no armature; choose the character's", name=name)
+        return InputError(f"'{name}' is no armature; choose the character's")
     return InputError(
-        "'{name}' is an actor of Keymark's, which shows the motion already; choose the armature of another "
-        "character",
-        name=name,
+        f"'{name}' is an actor of Keymark's, which shows the motion already; choose the armature of "
+        "another character"
     )

@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import idle
 from .characters import active_character
 from .recognition import all_doubts, recognize_bones
@@ -27,7 +27,7 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
             warn(self, doubt)
         if doubts:
             return
-        say(self, "INFO", "Recognized the bones of '{name}'", name=character.armature.name)
+        self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_recognize_character,))

@@ -24,9 +24,7 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
         chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
             raise InputError(
-                "there is no result number {index}; the character has {results}",
-                index=self.index,
-                results=len(chosen.results),
+                f"there is no result number {self.index}; the character has {len(chosen.results)}"
             )
         chosen.results.remove(self.index)
         chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))

@@ -3,7 +3,6 @@
 import bpy
 
 from ..bridge.character.read_character import needs_override
-from ..shell.messages import label
 from ..shell.takes import active_take, find_take
 from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
 from .source_motion import missing_source
@@ -11,12 +10,12 @@ from .source_motion import missing_source
 
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
-    return None if find_take(context.scene) is not None else label("Load the footage or open a take first")
+    return None if find_take(context.scene) is not None else "Load the footage or open a take first"
 
 
 def character(context: bpy.types.Context) -> str | None:
     """A character is chosen."""
-    return None if find_character(context.scene) is not None else label("Add a character first")
+    return None if find_character(context.scene) is not None else "Add a character first"
 
 
 def armature(context: bpy.types.Context) -> str | None:
@@ -25,9 +24,9 @@ def armature(context: bpy.types.Context) -> str | None:
     if chosen is None:
         return character(context)
     if chosen.armature is None:
-        return label("Choose the character's armature first")
+        return "Choose the character's armature first"
     if chosen.armature.type != "ARMATURE":
-        return label("'{name}' is no armature; choose the character's", name=chosen.armature.name)
+        return f"'{chosen.armature.name}' is no armature; choose the character's"
     return None
 
 
@@ -38,9 +37,9 @@ def editable(context: bpy.types.Context) -> str | None:
         return unmet
     chosen = active_character(context.scene).armature
     if needs_override(chosen):
-        return label("'{name}' is linked; make a library override of it first", name=chosen.name)
+        return f"'{chosen.name}' is linked; make a library override of it first"
     if chosen.name not in context.scene.objects:
-        return label("'{name}' is not in this scene; add it, or choose another armature", name=chosen.name)
+        return f"'{chosen.name}' is not in this scene; add it, or choose another armature"
     return None
 
 
@@ -51,16 +50,16 @@ def recognized(context: bpy.types.Context) -> str | None:
         return unmet
     chosen = active_character(context.scene)
     if not len(chosen.character_map.roles):
-        return label("Recognize the character's bones first")
+        return "Recognize the character's bones first"
     missing = [full_title(role) for role in missing_roles(chosen)]
     if missing:
-        return label("Choose the bones of {roles} first", roles=few(missing))
+        return f"Choose the bones of {few(missing)} first"
     lost = lost_bones(chosen)
     if lost:
-        return label(
-            "'{name}' has no bone {bones} any more; recognize its bones again, or choose others",
-            name=chosen.armature.name,
-            bones=few([f"'{bone}'" for bone in lost]),
+        bones = few([f"'{bone}'" for bone in lost])
+        return (
+            f"'{chosen.armature.name}' has no bone {bones} any more; recognize its bones again, or choose "
+            "others"
         )
     return None
 
@@ -77,4 +76,4 @@ def result(context: bpy.types.Context) -> str | None:
     if chosen is None:
         return character(context)
     made = any(each.action is not None for each in chosen.results)
-    return None if made else label("Retarget the motion first")
+    return None if made else "Retarget the motion first"

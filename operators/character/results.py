@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import bpy
 
-from ..shell.messages import translated
+from ..shell.messages import capitalized
 from .characters import shown_result
 from .source_motion import SourceMotion
 
@@ -62,7 +62,7 @@ def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: I
     for level, sentences in (("INFO", figures), ("ERROR", notes)):
         for sentence in sentences:
             line = result.lines.add()
-            line.text, line.level = translated(sentence), level
+            line.text, line.level = capitalized(sentence), level
 
 
 def is_shown(character: bpy.types.PropertyGroup, result: bpy.types.PropertyGroup) -> bool:

@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import stretch
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
 from .characters import active_character
@@ -87,7 +87,7 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         show_lines(listed, figures(result.retargeted.quality), result.retargeted.notes)
         for note in result.retargeted.notes:
             warn(self, note)
-        say(self, "INFO", "'{name}' performs '{action}'", name=character.armature.name, action=action.name)
+        self.report({"INFO"}, f"'{character.armature.name}' performs '{action.name}'")
 
 
 def _uid(block: bpy.types.ID | None) -> int:

@@ -4,7 +4,6 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.retarget.roles import ROLES
-from ..shell.messages import label
 from .characters import find_character, full_title
 from .map_conversion import role_named
 from .map_properties import SOURCE_WORDS, is_chain
@@ -28,20 +27,15 @@ def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: s
         InputError: There is no such role or place in it, or no such bone.
     """
     if role not in ROLES:
-        raise InputError("there is no role '{role}'; roles are {roles}", role=role, roles=", ".join(ROLES))
+        raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
     if bone not in character.armature.data.bones:
         raise InputError(
-            "'{armature}' has no bone '{bone}'; give the name of one of its bones",
-            armature=character.armature.name,
-            bone=bone,
+            f"'{character.armature.name}' has no bone '{bone}'; give the name of one of its bones"
         )
     shown = role_named(character.character_map, role)
     if index >= len(shown.bones):
         raise InputError(
-            "the role {role} has {bones} bones, so there is no number {index}; add a bone first",
-            role=role,
-            bones=len(shown.bones),
-            index=index,
+            f"the role {role} has {len(shown.bones)} bones, so there is no number {index}; add a bone first"
         )
     shown.bones[index].bone = bone
 
@@ -61,14 +55,12 @@ def told(context: bpy.types.Context, role: str) -> str:
     if shown.doubt:
         return shown.doubt[:1].upper() + shown.doubt[1:]
     if not any(entry.bone for entry in shown.bones):
-        return label("{role}: no bone", role=full_title(role).capitalize())
+        return f"{full_title(role).capitalize()}: no bone"
     if shown.source == "you":
-        return label("{role}: chosen by you", role=full_title(role).capitalize())
-    return label(
-        "{role}: found by {source}, {percent:.0f} % sure",
-        role=full_title(role).capitalize(),
-        source=SOURCE_WORDS[shown.source].lower(),
-        percent=100.0 * shown.confidence,
+        return f"{full_title(role).capitalize()}: chosen by you"
+    return (
+        f"{full_title(role).capitalize()}: found by {SOURCE_WORDS[shown.source].lower()}, "
+        f"{100.0 * shown.confidence:.0f} % sure"
     )
 
 
@@ -79,5 +71,5 @@ def chain_role(role: str) -> str:
         InputError: It is one bone's.
     """
     if role not in ROLES or not is_chain(role):
-        raise InputError("'{role}' is no chain of bones; spine and neck are", role=role)
+        raise InputError(f"'{role}' is no chain of bones; spine and neck are")
     return role

@@ -7,7 +7,6 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.error_reports import reported
-from ..shell.messages import say
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of
@@ -64,7 +63,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
         character.character_map.title = _title(character)
         path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), SUFFIX))
         write_character_map(path, map_of(character.character_map))
-        say(self, "INFO", "Wrote {path}", path=path)
+        self.report({"INFO"}, f"Wrote {path}")
 
 
 def _title(character: bpy.types.PropertyGroup) -> str:

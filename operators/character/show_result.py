@@ -24,7 +24,7 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
         """Assign the Action, and choose the result."""
         character = active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
-            raise InputError("there is no result number {index}; retarget the motion again", index=self.index)
+            raise InputError(f"there is no result number {self.index}; retarget the motion again")
         assign_action(character.armature, character.results[self.index].action)
         character.active_result = self.index
 

@@ -6,7 +6,6 @@ import bpy
 
 from ...core.errors import InputError
 from ..bridge.actor_bones import is_actor
-from ..shell.messages import label
 
 
 @dataclass(frozen=True)
@@ -42,15 +41,15 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
     """What is missing for a character to perform, as a sentence; None where nothing is."""
     kind, actor = _kind(take, character), _actor(take, character)
     if kind == "ACTION" and character.source_action is None:
-        return label("Choose the Action that the character is to perform")
+        return "Choose the Action that the character is to perform"
     if kind == "FINAL" and take.finish.action is None:
-        return label("Bake the final Action first, or choose another motion")
+        return "Bake the final Action first, or choose another motion"
     if kind == "MOTION" and take.motion_action is None:
-        return label("Reconstruct the motion first")
+        return "Reconstruct the motion first"
     if actor is None:
-        return label("The motion's actor is gone; choose its armature in the step Actor")
+        return "The motion's actor is gone; choose its armature in the step Actor"
     if not is_actor(actor):
-        return label("'{name}' is no actor of Keymark's; choose the motion's actor", name=actor.name)
+        return f"'{actor.name}' is no actor of Keymark's; choose the motion's actor"
     return None
 
 

@@ -8,7 +8,7 @@ import bpy
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.outdated import finished_again
 from ..shell.requirements import actor, idle, motion
@@ -68,14 +68,10 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         assign_action(armature_object, settings.action)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         give_notices(take, "finish", "bake", [warn(self, note) for note in finished.notes])
-        say(
-            self,
-            "INFO",
-            "Baked {after} keys of {before} into '{action}', at most {distance:.1f} mm off",
-            after=settings.keys_after,
-            before=settings.keys_before,
-            action=settings.action.name,
-            distance=settings.furthest_mm,
+        self.report(
+            {"INFO"},
+            f"Baked {settings.keys_after} keys of {settings.keys_before} into '{settings.action.name}', "
+            f"at most {settings.furthest_mm:.1f} mm off",
         )
 
 

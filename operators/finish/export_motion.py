@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ..bridge.export_formats import FORMATS
 from ..bridge.motion_export import export_motion
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, tooltip, warn_if_outdated
+from ..shell.messages import warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 
@@ -36,7 +36,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """The chosen format's own tooltip."""
-        return tooltip(FORMATS[properties.format].description)
+        return FORMATS[properties.format].description
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for the file."""
@@ -63,7 +63,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         chosen = FORMATS[self.format]
         missing = chosen.missing()
         if missing:
-            raise InputError("{chosen} cannot be written: {missing}", chosen=chosen.name, missing=missing)
+            raise InputError(f"{chosen.name} cannot be written: {missing}")
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
         frames = motion_frames(take.armature, action, read_body(take.armature, HUMAN))
@@ -71,7 +71,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         span = int(frames[0]), int(frames[-1])
         export_motion(context.scene, take.armature, action, span, chosen, path)
         warn_if_outdated(self, take)
-        say(self, "INFO", "Wrote {path}", path=path)
+        self.report({"INFO"}, f"Wrote {path}")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_export_motion,))

@@ -3,7 +3,7 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, warn_if_outdated
+from ..shell.messages import warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 from .asset_details import mark_motion_asset
@@ -23,7 +23,7 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
         action = take.finish.action or take.motion_action
         mark_motion_asset(context, take, action, action)
         warn_if_outdated(self, take)
-        say(self, "INFO", "'{action}' is an asset now; save the .blend to keep it", action=action.name)
+        self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_mark_asset,))

@@ -3,7 +3,7 @@
 import bpy
 
 from ..bridge.export_formats import FORMATS
-from ..shell.messages import label, translated
+from ..shell.messages import capitalized
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -19,7 +19,7 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
         """How many keys the final Action has."""
         done = take.finish.action is not None
-        return label("{count} keys", count=take.finish.keys_after) if done else ""
+        return f"{take.finish.keys_after} keys" if done else ""
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
@@ -56,21 +56,21 @@ def _draw_result(
     column.separator()
     row = column.row(align=True)
     for which, action, text in (
-        ("MOTION", take.motion_action, label("Motion")),
-        ("FINAL", settings.action, label("Final")),
+        ("MOTION", take.motion_action, "Motion"),
+        ("FINAL", settings.action, "Final"),
     ):
         depress = action is not None and action == shown
         row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
     lines = column.column(align=True)
     if settings.outdated:
-        draw_sentence(lines, context, label("The motion is newer: bake again"), "ERROR")
-    kept = label("{after} keys instead of {before}", after=settings.keys_after, before=settings.keys_before)
+        draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")
+    kept = f"{settings.keys_after} keys instead of {settings.keys_before}"
     draw_sentence(lines, context, kept, "KEYFRAME_HLT")
     if settings.furthest_mm > 0.0:
-        off = label("At most {distance:.1f} mm off", distance=settings.furthest_mm)
+        off = f"At most {settings.furthest_mm:.1f} mm off"
         draw_sentence(lines, context, off, "DRIVER_DISTANCE")
     if settings.rests:
-        rests = label("Feet planted: {count} rests", count=settings.rests)
+        rests = f"Feet planted: {settings.rests} rests"
         draw_sentence(lines, context, rests, "PINNED")
 
 
@@ -108,7 +108,7 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
             row.enabled = missing is None
             row.operator("keymark.export_motion", text=listed.name, icon="EXPORT").format = kind
             if missing is not None:
-                column.label(text=translated(missing), icon="INFO", translate=False)
+                column.label(text=capitalized(missing), icon="INFO", translate=False)
 
 
 class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import bpy
 
 from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
-from ..shell.messages import translated
+from ..shell.messages import capitalized
 from ..shell.placement_guess import NO_GUESS
 from ..shell.takes import find_take
 
@@ -17,7 +17,7 @@ def still_camera(context: bpy.types.Context) -> str | None:
     """The take's camera stands still, and can be set."""
     take = find_take(context.scene)
     reason = fixed_reason(take.camera if take else None)
-    return None if reason is None else translated(reason)
+    return None if reason is None else capitalized(reason)
 
 
 def confirm_placement(take: bpy.types.PropertyGroup) -> None:

@@ -4,7 +4,6 @@ import bpy
 
 from ..bridge.camera_placement import fixed_reason
 from ..bridge.footage_camera import may_move, solver_constraint
-from ..shell.messages import label
 from ..shell.panel import draw_sentence
 from ..shell.placement_guess import placement_is_guess
 from .drawn_lines import HEIGHT, VERTICAL
@@ -21,7 +20,7 @@ def draw_camera(
     if camera.name not in scene.objects:
         column.label(text="Camera is not in the scene", icon="ERROR")
     if lens_is_guess(take):
-        text = label("Lens is a guess: {lens:.1f} mm", lens=take.guessed_lens_mm)
+        text = f"Lens is a guess: {take.guessed_lens_mm:.1f} mm"
         _draw_guess(column, text, "keymark.keep_lens")
     reason = fixed_reason(camera)
     fields = column.column()
@@ -34,7 +33,7 @@ def draw_camera(
     elif may_move(camera):
         column.label(text="Camera moves; its animation is used", icon="ANIM")
     elif reason is not None:
-        draw_sentence(column, context, label(reason), "LINKED")
+        draw_sentence(column, context, reason, "LINKED")
     else:
         _draw_tools(column, context, take)
     column.prop(scene.keymark.overlays, "show_floor_grid")
@@ -45,7 +44,7 @@ def _draw_tools(
 ) -> None:
     """Draw whether the place is a guess, the tools that find it, and what they found."""
     if placement_is_guess(take):
-        _draw_guess(column, label("Height and tilt are a guess"), "keymark.keep_camera")
+        _draw_guess(column, "Height and tilt are a guess", "keymark.keep_camera")
     buttons = column.column(align=True)
     buttons.operator("keymark.camera_from_lines", text="From Lines", icon="MOD_EDGESPLIT").kind = VERTICAL
     buttons.operator("keymark.camera_from_lines", text="From the Performer", icon="USER").kind = HEIGHT

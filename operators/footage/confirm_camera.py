@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label
 from ..shell.placement_guess import placement_is_guess
 from ..shell.takes import active_take, find_take
 from .camera_fields import confirm_placement
@@ -12,9 +11,7 @@ from .camera_fields import confirm_placement
 def guessed_placement(context: bpy.types.Context) -> str | None:
     """The camera's placement is a guess."""
     take = find_take(context.scene)
-    return (
-        None if take is not None and placement_is_guess(take) else label("The camera's place is not a guess")
-    )
+    return None if take is not None and placement_is_guess(take) else "The camera's place is not a guess"
 
 
 class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):

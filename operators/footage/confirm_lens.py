@@ -3,14 +3,13 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label
 from ..shell.takes import active_take, find_take
 
 
 def guessed_lens(context: bpy.types.Context) -> str | None:
     """The take's lens is a guess."""
     take = find_take(context.scene)
-    return None if take is not None and take.guessed_lens_mm > 0.0 else label("The lens is not a guess")
+    return None if take is not None and take.guessed_lens_mm > 0.0 else "The lens is not a guess"
 
 
 class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):

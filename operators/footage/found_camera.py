@@ -7,7 +7,6 @@ import numpy as np
 
 from ...core.errors import InputError
 from ..bridge.camera_placement import still_camera, write_found_camera
-from ..shell.messages import label
 from ..shell.takes import footage_of
 from .camera_fields import confirm_placement
 from .take_footage import lens_is_guess
@@ -71,10 +70,10 @@ def values(fit: "CameraFit") -> str:
     """The camera found, with the deviations of what the picture determines."""
     placement = fit.placement
     parts = (
-        _value(fit, "height", label("Height"), "{:.2f}{} m", placement.height_m),
-        _value(fit, "tilt", label("Tilt"), "{:.1f}{}°", np.degrees(placement.tilt_rad)),
-        _value(fit, "roll", label("Roll"), "{:.1f}{}°", np.degrees(placement.roll_rad)),
-        _value(fit, "lens", label("Lens"), "{:.1f}{} mm", fit.camera.lens_mm),
+        _value(fit, "height", "Height", "{:.2f}{} m", placement.height_m),
+        _value(fit, "tilt", "Tilt", "{:.1f}{}°", np.degrees(placement.tilt_rad)),
+        _value(fit, "roll", "Roll", "{:.1f}{}°", np.degrees(placement.roll_rad)),
+        _value(fit, "lens", "Lens", "{:.1f}{} mm", fit.camera.lens_mm),
     )
     return "   ".join(parts)
 
@@ -82,25 +81,25 @@ def values(fit: "CameraFit") -> str:
 def deviations(fit: "CameraFit") -> str:
     """The deviations alone, of what the picture determines."""
     shown = {
-        "height": label("height ±\N{NO-BREAK SPACE}{std:.2f} m", std=fit.std["height"]),
-        "tilt": label("tilt ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["tilt"])),
-        "roll": label("roll ±\N{NO-BREAK SPACE}{std:.1f}°", std=np.degrees(fit.std["roll"])),
-        "lens": label("lens ±\N{NO-BREAK SPACE}{std:.1f} mm", std=fit.std["lens"]),
+        "height": f"height ± {fit.std['height']:.2f} m",
+        "tilt": f"tilt ± {np.degrees(fit.std['tilt']):.1f}°",
+        "roll": f"roll ± {np.degrees(fit.std['roll']):.1f}°",
+        "lens": f"lens ± {fit.std['lens']:.1f} mm",
     }
-    return label("Found: {parts}", parts=", ".join(shown[name] for name in shown if name not in fit.kept))
+    return f"Found: {', '.join(shown[name] for name in shown if name not in fit.kept)}"
 
 
 def doubts(fit: "CameraFit", lens_is_guess: bool) -> list[str]:
     """Sentences on what was not found and how it would be, and on a contradiction."""
     open_ones = [name for name in HINTS if name in fit.kept and (name != "lens" or lens_is_guess)]
-    sentences = [label(HINTS[name]) for name in open_ones]
+    sentences = [HINTS[name] for name in open_ones]
     if fit.excess > MOST_EXCESS:
-        sentences.insert(0, label(CONTRADICTION, px=fit.misfit_px))
+        sentences.insert(0, CONTRADICTION.format(px=fit.misfit_px))
     return sentences
 
 
 def _value(fit: "CameraFit", name: str, title: str, form: str, value: float) -> str:
     spread = fit.std[name] if name in ("height", "lens") else float(np.degrees(fit.std[name]))
     digits = 2 if name == "height" else 1
-    sure = f" ({label('kept')})" if name in fit.kept else ""
+    sure = f" ({'kept'})" if name in fit.kept else ""
     return f"{title} {form.format(value, '' if name in fit.kept else f' ± {spread:.{digits}f}')}{sure}"

@@ -4,7 +4,6 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import label, say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .startup_cube import hide_startup_cube
@@ -57,7 +56,7 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
-        path = chosen_file(self, label("a video, or one image of a numbered sequence"))
+        path = chosen_file(self, "a video, or one image of a numbered sequence")
         clip = load_footage(path)
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(path))
@@ -69,21 +68,15 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
 
     def _report_footage(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
         clip = take.clip
-        say(
-            self,
-            "INFO",
-            "Loaded {name}: {count} frames of {width} x {height} pixels",
-            name=clip.name,
-            count=clip.frame_duration,
-            width=clip.size[0],
-            height=clip.size[1],
+        self.report(
+            {"INFO"},
+            f"Loaded {clip.name}: {clip.frame_duration} frames of {clip.size[0]} x {clip.size[1]} pixels",
         )
         if lens_is_guess(take):
-            say(
-                self,
-                "INFO",
-                "The lens is a guess: {lens:.1f} mm; set it in the Footage panel if you know it",
-                lens=take.guessed_lens_mm,
+            self.report(
+                {"INFO"},
+                f"The lens is a guess: {take.guessed_lens_mm:.1f} mm; set it in the Footage panel if "
+                "you know it",
             )
 
 

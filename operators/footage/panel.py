@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.messages import label
 from ..shell.panel import draw_sentence, side_by_side
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
@@ -18,7 +17,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
         """How long the clip is."""
-        return label("{count} frames", count=take.clip.frame_duration) if take.clip is not None else ""
+        return f"{take.clip.frame_duration} frames" if take.clip is not None else ""
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
@@ -37,7 +36,7 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
             draw_camera(column, context, take)
         column.separator()
         row = column.row(align=True)
-        text = label("Load Footage") if take.clip is None else label("Replace Clip")
+        text = "Load Footage" if take.clip is None else "Replace Clip"
         row.operator("keymark.load_footage", text=text, icon="FILE_MOVIE", translate=False)
         row.menu("KEYMARK_MT_clips", text="", icon="DOWNARROW_HLT")
         row = side_by_side(column)
@@ -70,11 +69,11 @@ def _draw_clip(column: bpy.types.UILayout, context: bpy.types.Context, take: bpy
         return  # Blender knows no size of a missing clip
     facts = column.column(align=True)
     facts.active = False
-    size = label("{width} x {height} px", width=clip.size[0], height=clip.size[1])
-    extent = label("{count} frames at {rate:.5g} fps", count=clip.frame_duration, rate=state.rate)
+    size = f"{clip.size[0]} x {clip.size[1]} px"
+    extent = f"{clip.frame_duration} frames at {state.rate:.5g} fps"
     draw_sentence(facts, context, f"{size}, {extent}", "INFO")
     if state.variable_rate:
-        draw_sentence(column, context, label("Variable rate: keys lie between frames"), "ERROR")
+        draw_sentence(column, context, "Variable rate: keys lie between frames", "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_MT_clips, KEYMARK_PT_footage))

@@ -3,10 +3,9 @@
 import bpy
 
 from ...core.errors import InputError
-from ...core.text import Sentence
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import chosen_file
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -43,12 +42,11 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         from ..bridge.footage_to_scene import clip_file, stored_path
 
         take = active_take(context.scene)
-        clip, path = take.clip, chosen_file(self, label("the video, or one image of the sequence"))
+        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
         if clip.library is not None:
             raise InputError(
-                "clip '{clip}' is linked from {library}; find it in that file, or load it here",
-                clip=clip.name,
-                library=clip.library.filepath,
+                f"clip '{clip.name}' is linked from {clip.library.filepath}; find it in that file, or "
+                "load it here"
             )
         found = Clip.open(path)
         size, count = (clip.size[0], clip.size[1]), clip.frame_duration
@@ -61,18 +59,11 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
         differs = all(size) and (found.size != size or clip.frame_duration != count)
         if not differs:
             give_notices(take, "footage", "clip")
-            say(self, "INFO", "Found {name}", name=clip.name)
+            self.report({"INFO"}, f"Found {clip.name}")
             return
-        sentence = Sentence(
-            "{file} has {count} frames of {width} x {height} pixels, the clip had {old_count} of "
-            "{old_width} x {old_height}; check that it is the right one",
-            file=path.name,
-            count=clip.frame_duration,
-            width=found.size[0],
-            height=found.size[1],
-            old_count=count,
-            old_width=size[0],
-            old_height=size[1],
+        sentence = (
+            f"{path.name} has {clip.frame_duration} frames of {found.size[0]} x {found.size[1]} pixels, "
+            f"the clip had {count} of {size[0]} x {size[1]}; check that it is the right one"
         )
         give_notices(take, "footage", "clip", (warn(self, sentence),))
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say
 from ..shell.requirements import idle
 from ..shell.takes import add_take, find_take
 from .take_footage import give_footage, look_through_camera, show_range, take_name
@@ -13,7 +12,7 @@ from .take_footage import give_footage, look_through_camera, show_range, take_na
 
 def any_clip(_context: bpy.types.Context) -> str | None:
     """The file has a clip."""
-    return None if bpy.data.movieclips else label("This file has no clip; load the footage")
+    return None if bpy.data.movieclips else "This file has no clip; load the footage"
 
 
 class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
@@ -41,12 +40,9 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:
-            say(
-                self,
-                "ERROR",
-                "This file has no clip '{name}'; it has {names}",
-                name=self.clip,
-                names=", ".join(each.name for each in clips),
+            self.report(
+                {"ERROR"},
+                f"This file has no clip '{self.clip}'; it has {', '.join(each.name for each in clips)}",
             )
             return {"CANCELLED"}
         take = None if self.as_new_take else find_take(scene)

@@ -5,7 +5,6 @@ import bpy
 from ...core.body.human import HUMAN
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import SAME_FRAME, invalidate_keyed_frames, keyframes_of
-from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle, keyframes
 from ..shell.takes import active_take
 from .corrections import set_corrected, shown_pose
@@ -31,7 +30,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
-        return tooltip(next(text for name, _, text in DIRECTIONS if name == properties.direction))
+        return next(text for name, _, text in DIRECTIONS if name == properties.direction)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Copy everything but the place."""
@@ -44,16 +43,16 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
         if neighbor is None:
             if self.direction == "NEXT":
-                say(self, "INFO", "There is no keyframe after this frame")
+                self.report({"INFO"}, "There is no keyframe after this frame")
             else:
-                say(self, "INFO", "There is no keyframe before this frame")
+                self.report({"INFO"}, "There is no keyframe before this frame")
             return {"CANCELLED"}
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
             go_to(neighbor)
             there = read_posture(take.armature, body).posture
         set_corrected(self, context, take, Posture(HUMAN, here.translation, there.rotations, there.angles))
-        say(self, "INFO", "Pose of frame {frame:g}, at the place of this one", frame=neighbor)
+        self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
         return None
 
 

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.job_progress import job_is_running
-from ..shell.messages import label
 from ..shell.panel import TakePanel, side_by_side
 from ..shell.takes import active_take
 from .corrections import DRAGGING
@@ -35,8 +34,8 @@ def _flipped(take: bpy.types.PropertyGroup) -> str:
     if take.armature is not None and take.armature.mode == "POSE":
         limbs = selected_limbs(take)
         if len(limbs) == 1:
-            return label("Flip {limb}", limb=label(TITLES[limbs[0]]))
-    return label("Flip Depth")
+            return f"Flip {TITLES[limbs[0]]}"
+    return "Flip Depth"
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PT_keyframes_correct,))

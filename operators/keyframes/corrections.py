@@ -7,7 +7,6 @@ import bpy
 from ...core.body.human import HUMAN
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, keyframes_of
 from ..shell.keyframe_action import show_keyframes
-from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.takes import footage_of
 from .key_pose import key_pose
@@ -62,4 +61,4 @@ def set_corrected(
         return
     improved = key_pose(context, take)
     if improved:
-        say(operator, "INFO", "{count} found keyframes around this one were posed anew", count=improved)
+        operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")

@@ -13,7 +13,6 @@ from ..overlays import handles
 from ..shell.error_reports import reported
 from ..shell.footage_clicks import NAVIGATION
 from ..shell.job_progress import job_is_running
-from ..shell.messages import label
 from ..shell.redraw import redraw_editors, redraw_sidebars_soon
 from ..shell.requirements import actor, all_met, idle
 from ..shell.takes import find_take
@@ -34,7 +33,7 @@ DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |  
 def not_dragging(context: bpy.types.Context) -> str | None:
     """Joints are not being dragged already."""
     running = job_is_running(context, DRAGGING)
-    return label("Joints can be dragged already; Enter in the viewport ends it") if running else None
+    return "Joints can be dragged already; Enter in the viewport ends it" if running else None
 
 
 class KEYMARK_OT_drag_joints(bpy.types.Operator):
@@ -203,10 +202,10 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
 
 def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = False) -> None:
     """Show in the status bar what keys do now, with no joint, over one or while it is dragged."""
-    words = label(IDLE_KEYS)
+    words = IDLE_KEYS
     if joint:
-        title = label(point_title(joint))
-        words = label(DRAG_KEYS, joint=title) if dragged else label(HOVER_KEYS, joint=title, keys=words)
+        title = point_title(joint)
+        words = DRAG_KEYS.format(joint=title) if dragged else HOVER_KEYS.format(joint=title, keys=words)
     context.workspace.status_text_set(words)
 
 

@@ -9,7 +9,6 @@ from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.keyframe_action import show_keyframes
-from ..shell.messages import say
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
@@ -75,33 +74,27 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         offer_poses(take, scene.frame_current_final, found.candidates)
         note_contradictions(take, scene.frame_current_final, found.contradictions)
         if found.contradictions:
-            say(
-                self,
-                "WARNING",
-                "No plausible pose explains {names} here; check what else looks like it, or pose the frame",
-                names=", ".join(found.contradictions),
+            self.report(
+                {"WARNING"},
+                f"No plausible pose explains {', '.join(found.contradictions)} here; check what else "
+                "looks like it, or pose the frame",
             )
         elif not np.isfinite(found.residual_px).any():
-            say(
-                self,
-                "WARNING",
+            self.report(
+                {"WARNING"},
                 "Seen from the camera, the body hides the markers that this frame shows; check the pose",
             )
         elif len(found.candidates) > 1:
-            say(
-                self,
-                "INFO",
-                "{chance:.0%} sure, {others} more in the panel; look at it from the side too, then store it",
-                chance=found.candidates[0].confidence,
-                others=len(found.candidates) - 1,
+            self.report(
+                {"INFO"},
+                f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the "
+                "panel; look at it from the side too, then store it",
             )
         else:
-            say(
-                self,
-                "INFO",
-                "Off by {after:.1f} pixels; look at it from the side too, as little tells the depth, then "
-                "store it",
-                after=float(np.nanmean(found.residual_px)),
+            self.report(
+                {"INFO"},
+                f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels; look at it from the side "
+                "too, as little tells the depth, then store it",
             )
 
 

@@ -4,7 +4,6 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.job_progress import job_is_running
-from ..shell.messages import label, say
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.takes import active_take
 from .corrections import DRAGGING, camera_now, set_corrected, shown_pose
@@ -41,7 +40,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         take, scene = active_take(context.scene), context.scene
         limbs = selected_limbs(take) if self.limb == SELECTED else [self.limb]
         if not limbs:
-            say(self, "WARNING", "Select a bone of an arm, a leg or the trunk first")
+            self.report({"WARNING"}, "Select a bone of an arm, a leg or the trunk first")
             return {"CANCELLED"}
         from .flip_ways import next_way
 
@@ -54,10 +53,8 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
                 posture, number, count = found
                 said.append(_said(limb, number, count))
         if not said:
-            say(
-                self,
-                "WARNING",
-                "The selected part lies flat in the picture, or its joints allow no other way",
+            self.report(
+                {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
             )
             return {"CANCELLED"}
         set_corrected(self, context, take, posture)
@@ -66,10 +63,10 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
 
 
 def _said(limb: str, number: int, count: int) -> str:
-    title = label(TITLES[limb])
+    title = TITLES[limb]
     if number == 0:
-        return label("{limb} as it was", limb=title)
-    return label("{limb}: way {number} of {count}", limb=title, number=number, count=count)
+        return f"{title} as it was"
+    return f"{title}: way {number} of {count}"
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_flip_depth,))

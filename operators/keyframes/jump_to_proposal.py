@@ -4,13 +4,12 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
-from ..shell.messages import label, say, tooltip
 from ..shell.takes import find_take
 
 
 def proposals(context: bpy.types.Context) -> str | None:
     """The take has proposed keyframes."""
-    return None if proposed_frames(find_take(context.scene)) else label("Propose keyframes first")
+    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
 
 
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
@@ -39,10 +38,10 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
         if properties.skip_posed:
-            return tooltip("Go to the next proposed keyframe that is not posed yet")
+            return "Go to the next proposed keyframe that is not posed yet"
         if properties.direction == "NEXT":
-            return tooltip("Go to the next proposed keyframe")
-        return tooltip("Go to the previous proposed keyframe")
+            return "Go to the next proposed keyframe"
+        return "Go to the previous proposed keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Go to the frame; if there is none, stay and report it."""
@@ -50,7 +49,7 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
         if not frames:
-            say(self, "INFO", "All proposed keyframes are posed")
+            self.report({"INFO"}, "All proposed keyframes are posed")
             return {"CANCELLED"}
         ahead = [frame for frame in frames if frame > scene.frame_current]
         behind = [frame for frame in frames if frame < scene.frame_current]
@@ -61,10 +60,10 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         elif self.direction == "PREVIOUS" and behind:
             scene.frame_set(behind[-1])
         elif self.direction == "NEXT":
-            say(self, "INFO", "There is no proposed keyframe after this frame")
+            self.report({"INFO"}, "There is no proposed keyframe after this frame")
             return {"CANCELLED"}
         else:
-            say(self, "INFO", "There is no proposed keyframe before this frame")
+            self.report({"INFO"}, "There is no proposed keyframe before this frame")
             return {"CANCELLED"}
         return None
 

@@ -3,7 +3,6 @@
 import bpy
 
 from ...core.body.limbs import TRUNK, limb_of
-from ..shell.messages import label
 from ..shell.takes import find_take
 
 TITLES = {
@@ -35,7 +34,7 @@ def limb_selected(context: bpy.types.Context) -> str | None:
     if take is None or take.armature is None:
         return None  # another requirement's
     if take.armature.mode != "POSE" or not selected_limbs(take):
-        return label("Select a bone of an arm, a leg or the trunk in Pose Mode first")
+        return "Select a bone of an arm, a leg or the trunk in Pose Mode first"
     return None
 
 

@@ -14,7 +14,6 @@ from ..shell.keyed_frames import (
     proposed_frames,
     unposed_proposals,
 )
-from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -32,7 +31,7 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
         """How many keyframes there are."""
-        return label("{count} keyed", count=len(keyframes_of(take))) if take.keyframe_action else ""
+        return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
 
     def draw_step(self, context: bpy.types.Context) -> None:
         """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
@@ -85,19 +84,17 @@ def _draw_posed(
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     found = len(matched_frames(take))
     if found:
-        text = label("{posed} posed, {found} found", posed=posed, found=found)
+        text = f"{posed} posed, {found} found"
         draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
         return
     if not proposed:
-        text = label("{posed} posed; none proposed yet", posed=posed)
+        text = f"{posed} posed; none proposed yet"
         draw_sentence(layout, context, text, "INFO")
         return
     done = proposed - left
-    text = label("{done} of {count} posed", done=done, count=proposed)
+    text = f"{done} of {proposed} posed"
     if posed > done:
-        text = label(
-            "{done} of {count} posed, {more} elsewhere", done=done, count=proposed, more=posed - done
-        )
+        text = f"{done} of {proposed} posed, {posed - done} elsewhere"
     draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
 
 
@@ -111,15 +108,15 @@ def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyG
             row.label(text="Motion shown", icon="ERROR")
         row.operator("keymark.show_action", text="Show Keyframes").which = "KEYFRAMES"
     elif any(round(posed) == frame for posed in posed_frames(take)):
-        layout.label(text=label("Frame {frame} is posed", frame=frame), icon="KEYFRAME_HLT", translate=False)
+        layout.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        text = label("Frame {frame} is found, not posed", frame=frame)
+        text = f"Frame {frame} is found, not posed"
         layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
-        text = label("Frame {frame} is proposed, not posed yet", frame=frame)
+        text = f"Frame {frame} is proposed, not posed yet"
         layout.label(text=text, icon="KEYFRAME", translate=False)
     else:
-        layout.label(text=label("Frame {frame} is not posed", frame=frame), icon="DOT", translate=False)
+        layout.label(text=f"Frame {frame} is not posed", icon="DOT", translate=False)
 
 
 class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):

@@ -9,7 +9,7 @@ from ...core.progress import within
 from ..bridge.scene_frames import scene_frames
 from ..keypoints.evidence import scene_evidence
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.requirements import all_colors, footage, idle
 from ..shell.results import keep_reading, keep_speed, reading_of
@@ -84,7 +84,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         take.proposals.clear()
         for frame in result.frames:
             take.proposals.add().frame = frame
-        say(self, "INFO", "{count} keyframes proposed", count=len(result.frames))
+        self.report({"INFO"}, f"{len(result.frames)} keyframes proposed")
         notes = [warn(self, result.note)] if result.note else []
         give_notices(take, "keyframes", "proposals", notes)
 

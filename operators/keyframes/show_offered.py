@@ -7,7 +7,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import offered_at
 from ..shell.keyframe_action import show_keyframes
-from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take, find_take
 
@@ -30,11 +29,9 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
-            return tooltip(str(cls.__doc__))
+            return str(cls.__doc__)
         said = candidate_title(offered, offered.candidates[properties.candidate])
-        return tooltip(
-            "{candidate}. Pose the actor like this; nothing is keyed until you store it", candidate=said
-        )
+        return f"{said}. Pose the actor like this; nothing is keyed until you store it"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Set the pose."""
@@ -44,16 +41,13 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         take, frame = active_take(context.scene), context.scene.frame_current_final
         offered = offered_at(take, frame)
         if offered is None:
-            say(self, "ERROR", "Frame {frame:g} offers no poses; fit it to the footage first", frame=frame)
+            self.report({"ERROR"}, f"Frame {frame:g} offers no poses; fit it to the footage first")
             return {"CANCELLED"}
         if self.candidate >= len(offered.candidates):
-            say(
-                self,
-                "ERROR",
-                "Frame {frame:g} offers {count} poses; candidate must be 0 to {last}",
-                frame=frame,
-                count=len(offered.candidates),
-                last=len(offered.candidates) - 1,
+            self.report(
+                {"ERROR"},
+                f"Frame {frame:g} offers {len(offered.candidates)} poses; candidate must be 0 to "
+                f"{len(offered.candidates) - 1}",
             )
             return {"CANCELLED"}
         show_keyframes(take)

@@ -3,11 +3,10 @@
 import bpy
 
 from ...core.body.human import HUMAN
-from ...core.text import Sentence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
@@ -42,37 +41,24 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         give_notices(take, "keyframes", about)
         improved = key_pose(context, take)
         if read.furthest_m > NOTICEABLE_M:
-            sentence = Sentence(
-                "Stored at frame {frame:g}; the pose goes {beyond:.0f} mm beyond what the skeleton can do, "
-                "and its nearest posture will be used",
-                frame=frame,
-                beyond=1000.0 * read.furthest_m,
+            sentence = (
+                f"Stored at frame {frame:g}; the pose goes {1000.0 * read.furthest_m:.0f} mm beyond "
+                "what the skeleton can do, and its nearest posture will be used"
             )
             give_notices(take, "keyframes", about, (warn(self, sentence),), frame=frame)
         elif improved:
-            say(
-                self,
-                "INFO",
-                "Stored a keyframe at frame {frame:g}; {improved} found ones around it were posed anew",
-                frame=frame,
-                improved=improved,
+            self.report(
+                {"INFO"},
+                f"Stored a keyframe at frame {frame:g}; {improved} found ones around it were posed anew",
             )
         elif was_found:
-            say(
-                self,
-                "INFO",
-                "Stored a keyframe at frame {frame:g}; it was found, and counts as posed now",
-                frame=frame,
+            self.report(
+                {"INFO"}, f"Stored a keyframe at frame {frame:g}; it was found, and counts as posed now"
             )
         elif switched:
-            say(
-                self,
-                "INFO",
-                "Stored a keyframe at frame {frame:g}; the actor shows the keyframes now",
-                frame=frame,
-            )
+            self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}; the actor shows the keyframes now")
         else:
-            say(self, "INFO", "Stored a keyframe at frame {frame:g}", frame=frame)
+            self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

@@ -9,7 +9,6 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import points_to_follow
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, say, tooltip
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of
@@ -56,9 +55,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Return the tooltip for the direction."""
         said = next(text for name, _, text in FACINGS if name == properties.facing)
-        return tooltip(
-            "{said}, at the same place; the pose is fitted to the footage again", said=tooltip(said)
-        )
+        return f"{said}, at the same place; the pose is fitted to the footage again"
 
     def run(self, context: bpy.types.Context) -> None:
         """Turn the pose, fit it, and set the likeliest."""
@@ -77,9 +74,9 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         set_corrected(self, context, take, chosen)
         said = next(name for value, name, _ in FACINGS if value == self.facing)
         if fitted is None:
-            say(self, "INFO", "Turned: {facing}; not fitted to the footage", facing=label(said))
+            self.report({"INFO"}, f"Turned: {said}; not fitted to the footage")
         else:
-            say(self, "INFO", "Turned and fitted: {facing}", facing=label(said))
+            self.report({"INFO"}, f"Turned and fitted: {said}")
 
 
 def _fitted(

@@ -38,12 +38,7 @@ class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
         """
         take = active_take(context.scene)
         if (self.owner, self.track) not in {(owner, track.name) for owner, track in clip_tracks(take.clip)}:
-            raise InputError(
-                "clip '{clip}' has no track '{track}' of object '{owner}'",
-                clip=take.clip.name,
-                track=self.track,
-                owner=self.owner,
-            )
+            raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")
         assign(take, self.owner, self.track, "" if self.point == NO_POINT else self.point)
         redraw_footage(context)
 

@@ -3,14 +3,13 @@
 from ...core.body.human import HUMAN
 from ...core.footage.keypoints.body_points import FACE, FEET, HANDS, SPINE
 from ..markers.properties import segment_title
-from ..shell.messages import label, pgettext_n
 
 Item = tuple[str, str, str]
 
 COLUMNS = (
-    (pgettext_n("Joints"), HUMAN.point_names),
-    (pgettext_n("Head and Trunk"), (*FACE, *SPINE)),
-    (pgettext_n("Hands and Feet"), (*HANDS, *FEET)),
+    ("Joints", HUMAN.point_names),
+    ("Head and Trunk", (*FACE, *SPINE)),
+    ("Hands and Feet", (*HANDS, *FEET)),
 )
 """Heading and points of each column."""
 NO_POINT = "NONE"
@@ -24,7 +23,7 @@ def body_point_items(without: str = "") -> list[Item]:
     """
     items: list[Item] = [(NO_POINT, without, "")] if without else []
     for heading, points in COLUMNS:
-        items.append(("", label(heading), ""))
+        items.append(("", heading, ""))
         items += [(point, segment_title(point), "") for point in points]
     return items
 

@@ -26,7 +26,7 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import FootageView, view_of_footage_under
-from ..shell.messages import label, say, tooltip, warn
+from ..shell.messages import warn
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take
@@ -72,14 +72,12 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Describe the button by the lines it begins with."""
         if properties.kind == HEIGHT:
-            return tooltip(
-                "Find the camera from the performer: click on the floor between the feet, then on the top of "
-                "the head, where the performer stands upright; in other frames too, nearer and farther away; "
-                "keypoints of somebody who stands or walks do so as well"
+            return (
+                "Find the camera from the performer: click on the floor between the feet, then on the "
+                "top of the head, where the performer stands upright; in other frames too, nearer and "
+                "farther away; keypoints of somebody who stands or walks do so as well"
             )
-        return tooltip(
-            "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
-        )
+        return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Wait for lines, beginning with those that were drawn before."""
@@ -149,11 +147,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         try:
             drawing.fit = self._fit(active_take(context.scene), drawing.complete, drawing.stature_m)
         except KeymarkError as error:
-            warn(self, error.sentence)
-        wanted = label(REQUESTS[drawing.kind])
+            warn(self, str(error))
+        wanted = REQUESTS[drawing.kind]
         if drawing.of_performer and drawing.kind == HEIGHT:
-            wanted = label(PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST)
-        request = label(KEYS, request=wanted)
+            wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
+        request = KEYS.format(request=wanted)
         context.workspace.status_text_set(request)
         redraw_footage(context)
 
@@ -191,9 +189,9 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         fit = self._fit(take, read_lines(take), take.stature)
         if fit is None:
-            raise InputError("take '{take}' has no lines to find its camera by; draw some", take=take.name)
+            raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
         write_fit(take, fit)
-        say(self, "INFO", "{values}", values=values(fit))
+        self.report({"INFO"}, f"{values(fit)}")
 
     def _fit(
         self, take: bpy.types.PropertyGroup, lines: list[DrawnLine], stature_m: float

@@ -10,7 +10,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.cancel_on_esc import cancel_click
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
-from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -40,7 +39,7 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         if not footage_is_shown(self, context, active_take(context.scene)):
             return {"CANCELLED"}
         context.window.cursor_modal_set("CROSSHAIR")
-        context.workspace.status_text_set(label("Click on the performer   |   Esc: Cancel"))
+        context.workspace.status_text_set("Click on the performer   |   Esc: Cancel")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -73,13 +72,13 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
         if found is None:
             raise InputError(
-                "no detector sees anybody in frame {frame_current}; go to one in which the performer is seen",
-                frame_current=context.scene.frame_current,
+                f"no detector sees anybody in frame {context.scene.frame_current}; go to one in which "
+                "the performer is seen"
             )
         point, pixel = found
         set_click(take, point, pixel)
         redraw_footage(context)
-        say(self, "INFO", "The performer is known by the point {point}", point=label(point_title(point)))
+        self.report({"INFO"}, f"The performer is known by the point {point_title(point)}")
 
 
 def nearest_point(

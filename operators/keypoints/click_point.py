@@ -10,7 +10,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.click_sequence import ClickSequence
 from ..shell.footage_clicks import footage_is_shown
 from ..shell.footage_request import FootageRequest, side_of, stop_asking
-from ..shell.messages import label, say
 from ..shell.redraw import redraw_footage, redraw_sidebars_soon
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -58,8 +57,8 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
         """The point that is chosen in the panel."""
         point = active_take(context.scene).follow.clicked_point
-        title = label("Click on: {point}", point=label(point_title(point)))
-        return FootageRequest(title, side_of(point)), label(KEYS)
+        title = f"Click on: {point_title(point)}"
+        return FootageRequest(title, side_of(point)), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         """Set the point, and ask for the next one; the same points may be clicked on in other frames."""
@@ -86,7 +85,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         self.cancel(context)
         if not changed:
             return {"CANCELLED"}
-        say(self, "INFO", "{count} points are clicked on in this frame", count=len(clicked_here(take)))
+        self.report({"INFO"}, f"{len(clicked_here(take))} points are clicked on in this frame")
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -113,11 +112,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
             x, y = self.pixel
             raise InputError(
-                "pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels",
-                x=x,
-                y=y,
-                width=width,
-                height=height,
+                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
             )
         set_click(take, self.point, tuple(self.pixel))
         redraw_footage(context)

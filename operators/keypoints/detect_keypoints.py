@@ -9,7 +9,7 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -73,13 +73,10 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         redraw_footage(bpy.context)
         for note in found.notes:
             warn(self, note)
-        say(
-            self,
-            "INFO",
-            "Somebody is seen in {seen} of {count} frames; the keypoints are in {file}",
-            seen=found.seen_frames,
-            count=len(found.people.frames),
-            file=result.output.name,
+        self.report(
+            {"INFO"},
+            f"Somebody is seen in {found.seen_frames} of {len(found.people.frames)} frames; the "
+            f"keypoints are in {result.output.name}",
         )
 
 
@@ -93,9 +90,7 @@ def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
 
     wanted = sidecar_file(clip, KEYPOINT_FILE)
     if not access(wanted.parent, W_OK | X_OK):
-        raise InputError(
-            "{parent}: cannot be written; the keypoints belong beside the clip", parent=wanted.parent
-        )
+        raise InputError(f"{wanted.parent}: cannot be written; the keypoints belong beside the clip")
     known = {keypoint_path(entry) for entry in take.follow.files}
     names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, MOST_TRIED))]
     return next((name for name in names if name in known or not name.exists()), wanted)

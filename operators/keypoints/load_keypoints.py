@@ -9,7 +9,7 @@ from ...core.errors import InputError
 from ...core.progress import run
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_path
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
@@ -64,14 +64,10 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         redraw_footage(context)
         for note in people.notes:
             warn(self, note)
-        say(
-            self,
-            "INFO",
-            "Loaded {points} points of {source}, in {found} of {count} frames",
-            points=len(people.names),
-            source=people.source,
-            found=sum(len(frame.pixel) > 0 for frame in people.frames),
-            count=len(people.frames),
+        self.report(
+            {"INFO"},
+            f"Loaded {len(people.names)} points of {people.source}, in "
+            f"{sum(len(frame.pixel) > 0 for frame in people.frames)} of {len(people.frames)} frames",
         )
 
 

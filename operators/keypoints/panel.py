@@ -4,7 +4,7 @@ import bpy
 
 from ..bridge.footage_camera import may_move
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
-from ..shell.messages import count_label, label, translated
+from ..shell.messages import capitalized
 from ..shell.panel import RowList, draw_progress, draw_sentence, property_column
 from ..shell.preferences import EXTENSION, preferences
 from ..shell.shown_frame import clip_index
@@ -59,7 +59,7 @@ class KEYMARK_UL_tracks(bpy.types.UIList):
         point = point_of(take, data.name, item.name)
         row = layout.split(factor=0.45)
         row.label(text=item.name, translate=False, icon="TRACKER" if point else "BLANK1")
-        text = point_title(point) if point else label("Not Followed")
+        text = point_title(point) if point else "Not Followed"
         entry = row.operator_menu_enum("keymark.assign_track", "point", text=text)
         entry.owner, entry.track = data.name, item.name
 
@@ -126,9 +126,7 @@ class Tracks:
         layout.active = take.follow.use_tracks
         objects = [each for each in take.clip.tracking.objects if len(each.tracks)] if take.clip else []
         if not objects:
-            hint = label(
-                "Track elbows, wrists, knees or ankles in the Movie Clip editor, and name the tracks"
-            )
+            hint = "Track elbows, wrists, knees or ankles in the Movie Clip editor, and name the tracks"
             draw_sentence(layout, context, hint, "INFO")
             return
         for each in objects:
@@ -137,7 +135,11 @@ class Tracks:
             rows = min(max(len(each.tracks), FEWEST_ROWS), MOST_ROWS)
             source = (each, "tracks", take.follow, "active_track")
             layout.template_list("KEYMARK_UL_tracks", each.name, *source, rows=rows)
-        text = count_label(len(assigned_tracks(take)), "1 track is followed", "{count} tracks are followed")
+        text = (
+            "1 track is followed"
+            if len(assigned_tracks(take)) == 1
+            else f"{len(assigned_tracks(take))} tracks are followed"
+        )
         layout.label(text=text, translate=False)
 
 
@@ -159,11 +161,11 @@ class Contours:
         take, layout = active_take(context.scene), self.layout
         layout.active = take.follow.use_contours
         if take.camera is None:
-            sentence = label("Contours need the camera of the footage")
+            sentence = "Contours need the camera of the footage"
         elif may_move(take.camera):
-            sentence = label("The camera moves, so that no background stands still: they cannot be used")
+            sentence = "The camera moves, so that no background stands still: they cannot be used"
         else:
-            sentence = label("The camera stands still: the body is told from the background in any clothes")
+            sentence = "The camera stands still: the body is told from the background in any clothes"
         draw_sentence(layout, context, sentence, "INFO")
 
 
@@ -256,10 +258,10 @@ def _draw_file(
     here = people_at(people, clip_index(take))
     layout.label(text=seen_label(here), translate=False, icon="INFO")
     for note in people.notes:
-        draw_sentence(layout, context, translated(note), "ERROR")
+        draw_sentence(layout, context, capitalized(note), "ERROR")
     if people.most_people > 1:
         row = layout.row(align=True)
-        text = count_label(len(here.pixel), "1 person here", "{count} people here")
+        text = "1 person here" if len(here.pixel) == 1 else f"{len(here.pixel)} people here"
         row.label(text=text, translate=False, icon="COMMUNITY")
         row.operator("keymark.click_performer", text="Click Performer")
     if reading.has_hints:

@@ -5,7 +5,6 @@ import numpy as np
 
 from ..bridge.footage_camera import may_move
 from ..bridge.track_keypoints import tracks_at
-from ..shell.messages import label
 from ..shell.takes import footage_of
 from .assigned_tracks import assigned_tracks
 from .clicks import clicked_here
@@ -16,48 +15,46 @@ def seen_label(frame: FrameKeypoints) -> str:
     """What a source sees in a frame, of the person of whom it sees most: `27 of 33 points, score 0.91`."""
     seen = np.isfinite(frame.pixel).all(axis=-1)
     if not seen.any():
-        return label("Nobody in this frame")
+        return "Nobody in this frame"
     row = int(seen.sum(axis=-1).argmax())
-    return label(
-        "{seen} of {count} points, score {score:.2f}",
-        seen=int(seen[row].sum()),
-        count=len(frame.names),
-        score=float(frame.score[row][seen[row]].mean()),
+    return (
+        f"{int(seen[row].sum())} of {len(frame.names)} points, score "
+        f"{float(frame.score[row][seen[row]].mean()):.2f}"
     )
 
 
 def keypoints_label(take: bpy.types.PropertyGroup) -> str:
     """How many points all files and clicks see in the current frame, as in `27 of 33`; empty without any."""
     if not take.follow.use_keypoints:
-        return label("Off")
+        return "Off"
     sources = [each for each in keypoints_at(take, take.id_data.frame_current) if not each.is_tracked]
     if not sources:
         return ""
     seen = sum(each.seen_count for each in sources)
-    return label("{seen} of {count}", seen=seen, count=sum(len(each.names) for each in sources))
+    return f"{seen} of {sum(len(each.names) for each in sources)}"
 
 
 def tracks_label(take: bpy.types.PropertyGroup) -> str:
     """How many of the assigned tracks are seen in the current frame: `4 of 6`; empty without any."""
     if not take.follow.use_tracks:
-        return label("Off")
+        return "Off"
     assigned = assigned_tracks(take)
     if not assigned:
         return ""
     scene = take.id_data
     seen = len(tracks_at(footage_of(scene, take), scene.frame_current, assigned))
-    return label("{seen} of {count}", seen=seen, count=len(assigned))
+    return f"{seen} of {len(assigned)}"
 
 
 def contours_label(take: bpy.types.PropertyGroup) -> str:
     """Whether contours can be followed."""
     if not take.follow.use_contours:
-        return label("Off")
+        return "Off"
     if take.camera is None:
         return ""
-    return label("Camera moves") if may_move(take.camera) else label("Camera stands still")
+    return "Camera moves" if may_move(take.camera) else "Camera stands still"
 
 
 def clicked_label(take: bpy.types.PropertyGroup) -> str:
     """How many points were clicked on in the current frame, and in all."""
-    return label("{here} here, {count} in all", here=len(clicked_here(take)), count=len(take.follow.clicks))
+    return f"{len(clicked_here(take))} here, {len(take.follow.clicks)} in all"

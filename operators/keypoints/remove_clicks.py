@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take
@@ -29,7 +28,7 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
         points = [self.point] if self.point else clicked_here(take)
         removed = [point for point in points if remove_click(take, point, here)]
         if not removed:
-            say(self, "INFO", "Nothing was clicked on in this frame")
+            self.report({"INFO"}, "Nothing was clicked on in this frame")
             return {"CANCELLED"}
         redraw_footage(context)
         return None

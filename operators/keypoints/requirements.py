@@ -3,7 +3,6 @@
 import bpy
 
 from ...core.errors import InputError
-from ..shell.messages import label
 from ..shell.preferences import preferred_detector
 from ..shell.takes import find_take
 from .evidence import has_contours, has_keypoints
@@ -15,12 +14,8 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
     if take is None or _has_points(take) or has_contours(take):
         return None  # a take without footage says so itself
     if take.follow.use_contours and take.camera is not None:
-        return label(
-            "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
-        )
-    return label(
-        "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
-    )
+        return "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
+    return "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
 
 
 def detector(context: bpy.types.Context) -> str | None:
@@ -29,13 +24,13 @@ def detector(context: bpy.types.Context) -> str | None:
         named = preferred_detector()
     except InputError as error:
         return str(error)
-    return None if named is not None else label("Name a detector in Keymark's preferences first")
+    return None if named is not None else "Name a detector in Keymark's preferences first"
 
 
 def keypoint_files(context: bpy.types.Context) -> str | None:
     """The take has a file of keypoints."""
     take = find_take(context.scene)
-    return None if take and len(take.follow.files) else label("Load keypoints first")
+    return None if take and len(take.follow.files) else "Load keypoints first"
 
 
 def points_to_follow(context: bpy.types.Context) -> str | None:
@@ -43,7 +38,7 @@ def points_to_follow(context: bpy.types.Context) -> str | None:
     take = find_take(context.scene)
     if take is None or _has_points(take):
         return None
-    return label("Load keypoints, assign tracks or add markers first; this needs more than contours")
+    return "Load keypoints, assign tracks or add markers first; this needs more than contours"
 
 
 def _has_points(take: bpy.types.PropertyGroup) -> bool:

@@ -4,7 +4,6 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.redraw import refresh_asset_browsers
 from ..shell.requirements import idle, registered_library
 from .registry import chosen_identifier
@@ -32,20 +31,14 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
         library = load_registered(self.library or chosen_identifier(context))
         if library.identifier in assets_by_library(bpy.data.actions):
-            raise InputError("library '{library}' is in this file already", library=library.title)
+            raise InputError(f"library '{library.title}' is in this file already")
         if bpy.data.filepath:
             file = catalog_file()
             for catalog in dict.fromkeys(catalog_of(library, posture) for posture in library.postures):
                 ensure_catalog(file, catalog)
         count = len(add_assets(library))
         refresh_asset_browsers(context)
-        say(
-            self,
-            "INFO",
-            "'{title}' is in this file now: {count} pose assets",
-            title=library.title,
-            count=count,
-        )
+        self.report({"INFO"}, f"'{library.title}' is in this file now: {count} pose assets")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_edit_library,))

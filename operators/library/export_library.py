@@ -8,7 +8,6 @@ import bpy
 from ...core.errors import InputError
 from ...core.library.texts import identifier_from
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import idle
 from ..shell.takes import find_take
 from .licenses import suggest
@@ -107,7 +106,7 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
             path = path.with_name(path.name + SUFFIXES[self.format])
         write_library_file(path, library, asset_root(path.parent))
         count = len(library.postures)
-        say(self, "INFO", "Wrote {count} postures to {path}", count=count, path=path)
+        self.report({"INFO"}, f"Wrote {count} postures to {path}")
 
     def _title(self, context: bpy.types.Context) -> str:
         take = find_take(context.scene)

@@ -7,7 +7,6 @@ import bpy
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
 from ..shell.file_browser import browse, chosen_file
-from ..shell.messages import label, say
 from ..shell.requirements import idle
 from .registry import refresh
 
@@ -47,7 +46,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
         from ..bridge.library.library_file import read_libraries
         from .registry_files import find_registered, write_to_registry
 
-        libraries = read_libraries(chosen_file(self, label("a keyframe library, .json or .blend")))
+        libraries = read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
         new = []
         for library in libraries:
             there = find_registered(library.identifier)
@@ -59,21 +58,16 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
         refresh(libraries[0].identifier)  # the list points to it
         titles = ", ".join(f"'{library.title}'" for library in new)
         if new:
-            say(self, "INFO", "Loaded {titles}", titles=titles)
+            self.report({"INFO"}, f"Loaded {titles}")
         else:
-            say(self, "INFO", "Nothing to load: the library is at hand already")
+            self.report({"INFO"}, "Nothing to load: the library is at hand already")
 
 
 def _conflict(new: "Library", there: "Library") -> str:
-    return label(
-        "'{title}' ({identifier}) is there in version {version} by {author}, and this is version "
-        "{new_version} by {new_author}; load it with Replace, or give it another identifier",
-        title=there.title,
-        identifier=there.identifier,
-        version=there.version,
-        author=there.author,
-        new_version=new.version,
-        new_author=new.author,
+    return (
+        f"'{there.title}' ({there.identifier}) is there in version {there.version} by {there.author}, "
+        f"and this is version {new.version} by {new.author}; load it with Replace, or give it another "
+        "identifier"
     )
 
 

@@ -4,7 +4,7 @@ import bpy
 
 from ...core.library.texts import identifier_from
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, warn_if_outdated
+from ..shell.messages import warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 from .licenses import suggest
@@ -88,7 +88,8 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         warn_if_outdated(self, take)
         (learned,) = library.motions
         count, seconds = len(library.postures), learned.duration_s
-        say(self, "INFO", A_CYCLE if learned.cyclic else ONCE, title=title, count=count, seconds=seconds)
+        said = A_CYCLE if learned.cyclic else ONCE
+        self.report({"INFO"}, said.format(title=title, count=count, seconds=seconds))
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_learn_library,))

@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.messages import count_label, label
 from ..shell.panel import RowList, SubPanel, draw_sentence
 from .registry import chosen_entry
 from .user_folder import own_folder
@@ -61,10 +60,10 @@ def _draw_facts(
     """Draw the facts of a registered library."""
     column = layout.column(align=True)
     column.scale_y = 0.85
-    postures = count_label(item.postures, "1 posture", "{count} postures")
-    motions = count_label(item.motions, "1 motion", "{count} motions")
+    postures = "1 posture" if item.postures == 1 else f"{item.postures} postures"
+    motions = "1 motion" if item.motions == 1 else f"{item.motions} motions"
     column.label(text=f"{postures}, {motions}", icon="INFO", translate=False)
-    by = label("Version {version} by {author}", version=item.version, author=item.author)
+    by = f"Version {item.version} by {item.author}"
     column.label(text=by, icon="BLANK1", translate=False)
     column.label(text=item.license, icon="BLANK1", translate=False)
     if item.description:

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import idle
 from .registry import refresh
 
@@ -20,7 +19,7 @@ class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
         """Read the folders."""
         refresh()
         count = len(context.window_manager.keymark_shelf.libraries)
-        say(self, "INFO", "{count} keyframe libraries are at hand", count=count)
+        self.report({"INFO"}, f"{count} keyframe libraries are at hand")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_refresh_shelf,))

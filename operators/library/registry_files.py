@@ -89,14 +89,12 @@ def _own_file(folder: Path, identifier: str) -> Path:
     damaged = next((each for each in there if each.path == found and each.library is None), None)
     if other is not None:
         raise InputError(
-            "{file}: holds the library '{library}', which would be lost; give that file another name first",
-            file=found,
-            library=other.title,
+            f"{found}: holds the library '{other.title}', which would be lost; give that file another "
+            "name first"
         )
     if damaged is not None:
         raise InputError(
-            "{file}: holds something that is no library, which would be lost; give that file another name "
-            "first",
-            file=found,
+            f"{found}: holds something that is no library, which would be lost; give that file another "
+            "name first"
         )
     return found

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.takes import ensure_take
 from .new_markers import append_marker, next_segment
 
@@ -20,7 +19,7 @@ class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
         take = ensure_take(context.scene)
         segment = next_segment(take)
         if segment is None:
-            say(self, "ERROR", "Every body part has a marker already")
+            self.report({"ERROR"}, "Every body part has a marker already")
             return {"CANCELLED"}
         append_marker(take, segment)
         return None

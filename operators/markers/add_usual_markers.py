@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.takes import ensure_take
 from .new_markers import USUAL_SEGMENTS, append_marker
 
@@ -21,7 +20,7 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
         marked = {marker.segment for marker in take.markers}
         missing = [segment for segment in USUAL_SEGMENTS if segment not in marked]
         if not missing:
-            say(self, "INFO", "Trunk, forearms and shins have markers already")
+            self.report({"INFO"}, "Trunk, forearms and shins have markers already")
             return {"CANCELLED"}
         first = len(take.markers)
         for segment in missing:

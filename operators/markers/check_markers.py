@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -56,7 +56,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
         for sentence in warnings:
             warn(self, sentence)
         if not warnings:
-            say(self, "INFO", "All {count} markers with a color are found well", count=len(result.styles))
+            self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_check_markers,))

@@ -6,7 +6,6 @@ what it sees in this frame.
 
 import bpy
 
-from ..shell.messages import label
 from ..shell.panel import draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
@@ -23,8 +22,8 @@ class KEYMARK_PT_follow(StepPanel, bpy.types.Panel):
         """What is followed, beside the contours."""
         follow = take.follow
         used = (
-            (label("Markers"), follow.use_markers and len(take.markers)),
-            (label("Keypoints"), follow.use_keypoints and (len(follow.files) or len(follow.clicks))),
+            ("Markers", follow.use_markers and len(take.markers)),
+            ("Keypoints", follow.use_keypoints and (len(follow.files) or len(follow.clicks))),
         )
         return ", ".join(name for name, is_used in used if is_used)
 
@@ -57,7 +56,7 @@ def _draw_hint(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     take = active_take(context.scene)
     if len(take.markers) or len(take.follow.files) or len(take.follow.clicks):
         return
-    hint = label("Any clothes will do: detect or load keypoints. Five strong colors tell most")
+    hint = "Any clothes will do: detect or load keypoints. Five strong colors tell most"
     draw_sentence(layout, context, hint, "INFO")
 
 

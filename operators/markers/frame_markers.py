@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.messages import count_label, label
 from ..shell.results import reading_of
 from ..shell.shown_frame import clip_index
 
@@ -16,5 +15,5 @@ def markers_label(take: bpy.types.PropertyGroup) -> str:
     names = tuple(marker.name for marker in take.markers)
     index = clip_index(take)
     if reading is None or reading.tracks.names != names or not 0 <= index < reading.tracks.frame_count:
-        return count_label(count, "1 marker", "{count} markers")
-    return label("{seen} of {count}", seen=int(reading.tracks.visible[index].sum()), count=count)
+        return "1 marker" if count == 1 else f"{count} markers"
+    return f"{int(reading.tracks.visible[index].sum())} of {count}"

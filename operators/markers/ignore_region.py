@@ -11,7 +11,7 @@ from ..shell.footage_clicks import footage_is_shown
 from ..shell.footage_request import FootageRequest, follow_mouse, stop_asking
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take
@@ -91,8 +91,8 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         """What to brush over."""
         brush = brush_at_work()
         radius = 0.0 if brush is None else brush.radius_px
-        detail = label("as a wall or a chair of a marker's color")
-        return FootageRequest(label("Brush over what is no marker"), detail, radius), label(KEYS)
+        detail = "as a wall or a chair of a marker's color"
+        return FootageRequest("Brush over what is no marker", detail, radius), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         """Begin a stroke."""
@@ -144,7 +144,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
             show_masks(bpy.context, True)
         for sentence in write_left_out(scene, result):
             warn(self, sentence)
-        say(self, "INFO", "Brushed regions are never a marker: {count} more", count=len(result.more))
+        self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
 
     def _move(self, context: bpy.types.Context, brush: Brush, event: bpy.types.Event) -> None:
         """Go on with the stroke; beside the picture it pauses."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take
 from .ignored_check import LeftOut, leave_out, write_left_out
@@ -40,7 +40,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
         """Store the areas and the readouts."""
         for sentence in write_left_out(scene, result):
             warn(self, sentence)
-        say(self, "INFO", "Still areas are never a marker: {count} more", count=len(result.more))
+        self.report({"INFO"}, f"Still areas are never a marker: {len(result.more)} more")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_ignore_still_areas,))

@@ -8,7 +8,7 @@ from ...core.errors import InputError
 from ...core.progress import within
 from ..bridge.footage import Footage
 from ..footage.take_footage import update_clip_digest
-from ..shell.messages import translated
+from ..shell.messages import capitalized
 from .mask_previews import keep_preview
 
 if TYPE_CHECKING:
@@ -77,10 +77,10 @@ def write_readouts(
         marker.sampled, marker.found = readout.sampled, readout.found
         marker.area, marker.area_share = readout.area_px, readout.area_share
         marker.distinctness = readout.distinctness
-        marker.warning = "\n".join(translated(sentence) for sentence in readout.warnings)
+        marker.warning = "\n".join(capitalized(sentence) for sentence in readout.warnings)
         marker.still_areas.clear()
         for box in readout.still_boxes:
             marker.still_areas.add().box = box
         marker.checked_clip = take.clip_state.contents
     keep_preview(take, styles, check)
-    return [translated(sentence) for readout in check.readouts for sentence in readout.warnings]
+    return [capitalized(sentence) for readout in check.readouts for sentence in readout.warnings]

@@ -28,9 +28,7 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
         twice = next((value for value in values if values.count(value) > 1), None)
         if twice is not None:
-            raise InputError(
-                "two markers have the {kind} '{twice}'; each needs its own", kind=kind, twice=twice
-            )
+            raise InputError(f"two markers have the {kind} '{twice}'; each needs its own")
     return styles
 
 
@@ -60,9 +58,7 @@ def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb])
     unknown = set(colors) - {style.name for style in styles}
     if unknown:
         known = ", ".join(style.name for style in styles)
-        raise InputError(
-            "no marker is called '{unknown}'; the markers are {known}", unknown=min(unknown), known=known
-        )
+        raise InputError(f"no marker is called '{min(unknown)}'; the markers are {known}")
     return tuple(
         replace(style, color_srgb=colors.get(style.name, style.color_srgb))
         for style in styles

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
-from ..shell.messages import label
 from ..shell.panel import (
     RowList,
     draw_progress,
@@ -62,7 +61,7 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
         row.prop(item, "name", text="", emboss=False, icon="BRUSH_DATA" if len(item.stroke) else "MESH_PLANE")
         status = row.row()
         status.alignment = "RIGHT"
-        text = f"{item.first_frame} - {item.last_frame}" if item.some_frames else label("All Frames")
+        text = f"{item.first_frame} - {item.last_frame}" if item.some_frames else "All Frames"
         status.label(text=text, translate=False)
 
 
@@ -101,12 +100,12 @@ def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     """Draw the list, the active marker, and the operators of both."""
     take = active_take(context.scene)
     if not len(take.markers):
-        _draw_pick(layout, context, label("Pick Markers"))
+        _draw_pick(layout, context, "Pick Markers")
         layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
         layout.operator("keymark.add_marker", icon="ADD")
         return
     picked = all(marker.is_picked for marker in take.markers)
-    _draw_pick(layout, context, label("Pick All Anew") if picked else label("Pick Markers"))
+    _draw_pick(layout, context, "Pick All Anew" if picked else "Pick Markers")
     row = layout.row()
     row.template_list("KEYMARK_UL_markers", "", take, "markers", take, "active_marker", rows=5)
     buttons = row.column(align=True)
@@ -170,11 +169,11 @@ def _draw_marker(
     readout = layout.column(align=True)
     _row(
         readout,
-        label("Found In"),
-        label("{found} of {sampled} frames", found=marker.found, sampled=marker.sampled),
+        "Found In",
+        f"{marker.found} of {marker.sampled} frames",
     )
-    _row(readout, label("Area"), f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
-    _row(readout, label("Distinct"), f"{100.0 * marker.distinctness:.0f}%")
+    _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
+    _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():
         draw_sentence(layout, context, sentence, icon="ERROR")
 

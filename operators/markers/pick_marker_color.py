@@ -11,7 +11,7 @@ from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_request import ask, follow_mouse, stop_asking
 from ..shell.footage_view import pixel_under
 from ..shell.job_operator import JobOperator
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.requirements import footage, idle, markers
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -74,7 +74,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         context.window_manager.keymark_progress.show("", 0.0)
         self._masks_before = show_masks(context, False)  # the footage itself is what is clicked on
         context.window.cursor_modal_set("EYEDROPPER")
-        ask(context, request_for(segment), label("Esc: Cancel"))
+        ask(context, request_for(segment), "Esc: Cancel")
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -93,7 +93,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
         if pixel is None:
-            sentence = label("That is not on the footage; click on a marker in it   |   Esc: Cancel")
+            sentence = "That is not on the footage; click on a marker in it   |   Esc: Cancel"
             context.workspace.status_text_set(sentence)
             return {"RUNNING_MODAL"}
         self.pixel = pixel
@@ -138,14 +138,10 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         update_shown_masks(scene)
         for sentence in marker.warning.splitlines():
             warn(self, sentence)
-        say(
-            self,
-            "INFO",
-            "Marker {name} has the color {color}, found in {found} of {sampled} frames",
-            name=marker.name,
-            color=result.color,
-            found=marker.found,
-            sampled=marker.sampled,
+        self.report(
+            {"INFO"},
+            f"Marker {marker.name} has the color {result.color}, found in {marker.found} of "
+            f"{marker.sampled} frames",
         )
 
     def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:

@@ -13,7 +13,7 @@ from ..shell.error_reports import reported
 from ..shell.footage_clicks import footage_is_shown
 from ..shell.footage_request import FootageRequest, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
-from ..shell.messages import label, say, warn
+from ..shell.messages import warn
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
@@ -98,7 +98,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
         """The next marker."""
-        keys = label(KEYS, number=len(self._colors) + 1, count=len(self._asked))
+        keys = KEYS.format(number=len(self._colors) + 1, count=len(self._asked))
         return request_for(self._asked[self._here][1]), keys
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
@@ -190,7 +190,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         update_shown_masks(scene)
         for sentence in warnings:
             warn(self, sentence)
-        say(self, "INFO", "{count} markers are picked", count=len(result.colors))
+        self.report({"INFO"}, f"{len(result.colors)} markers are picked")
 
     def _begin_to_look(self, context: bpy.types.Context) -> None:
         """Begin to look for the colors picked so far."""

@@ -7,7 +7,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import state_of
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
 from .improve_neighbors import improve_neighbors
@@ -30,7 +29,7 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         match = chosen_match(take)
         invalidate_keyed_frames()
         if state_of(take, match) != "FOUND":
-            say(self, "INFO", "Frame {frame:g} is no found keyframe any more", frame=match.frame)
+            self.report({"INFO"}, f"Frame {match.frame:g} is no found keyframe any more")
             return {"CANCELLED"}
         frame = round(match.frame, 3)
         take_over(take.armature, take.keyframe_action, HUMAN, (frame,))
@@ -38,15 +37,12 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         improved = improve_neighbors(context, take, frame)
         if improved:
-            say(
-                self,
-                "INFO",
-                "Frame {frame:g} counts as posed now; {improved} found ones around it were posed anew",
-                frame=frame,
-                improved=improved,
+            self.report(
+                {"INFO"},
+                f"Frame {frame:g} counts as posed now; {improved} found ones around it were posed anew",
             )
         else:
-            say(self, "INFO", "Frame {frame:g} counts as posed now", frame=frame)
+            self.report({"INFO"}, f"Frame {frame:g} counts as posed now")
         return None
 
 

@@ -4,7 +4,6 @@ import bpy
 
 from ...core.library.several_libraries import COMPOSED
 from ..overlays.style import candidate_icon
-from ..shell.messages import label
 from .candidate_titles import candidate_title
 
 PERCENT_UNITS = 2.1
@@ -12,7 +11,7 @@ PERCENT_UNITS = 2.1
 
 def percent(share: float) -> str:
     """A probability in percent."""
-    return label("{percent:.0f} %", percent=100.0 * share)
+    return f"{100.0 * share:.0f} %"
 
 
 def draw_candidates_head(
@@ -20,7 +19,7 @@ def draw_candidates_head(
 ) -> None:
     """Draw which frame they are of, and how they are looked at."""
     head = layout.row(align=True)
-    head.label(text=label("Frame {frame:g} may show", frame=match.frame), translate=False)
+    head.label(text=f"Frame {match.frame:g} may show", translate=False)
     head.prop(context.scene.keymark.overlays, "show_candidates", text="", icon="GHOST_ENABLED")
     aside = context.space_data.region_3d.view_perspective != "CAMERA"
     head.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
@@ -41,9 +40,7 @@ def draw_candidates(
         row = layout.row(align=True)
         button = row.operator(
             operator,
-            text=label(
-                "{number}  {candidate}", number=index + 1, candidate=candidate_title(match, candidate)
-            ),
+            text=f"{index + 1}  {candidate_title(match, candidate)}",
             translate=False,
             icon=candidate_icon(index),
             depress=is_shown and index == match.chosen,

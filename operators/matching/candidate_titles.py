@@ -5,7 +5,6 @@ from math import degrees
 import bpy
 
 from ...core.library.several_libraries import COMPOSED
-from ..shell.messages import label
 
 NOTICEABLE_TURN_DEG = 15.0
 LIMBS = {"arm.L": "left arm", "arm.R": "right arm", "leg.L": "left leg", "leg.R": "right leg"}
@@ -22,13 +21,13 @@ def candidate_title(match: bpy.types.PropertyGroup, candidate: bpy.types.Propert
     turn = _turn(degrees(candidate.turned))
     if match.library != COMPOSED:
         named = str(candidate.name)
-        return label("{turn}: {posture}", turn=turn, posture=named) if turn else named[:1].upper() + named[1:]
+        return f"{turn}: {named}" if turn else named[:1].upper() + named[1:]
     limbs = ", ".join(_limbs(candidate.limbs.split()))
     if turn:
-        return label("{turn}: {limbs}", turn=turn, limbs=limbs) if limbs else turn
+        return f"{turn}: {limbs}" if limbs else turn
     if limbs:
-        return label("Other {limbs}", limbs=limbs)
-    return label("As found") if candidate == match.candidates[0] else label("Nearly as found")
+        return f"Other {limbs}"
+    return "As found" if candidate == match.candidates[0] else "Nearly as found"
 
 
 def _turn(angle_deg: float) -> str:
@@ -36,10 +35,10 @@ def _turn(angle_deg: float) -> str:
     if abs(angle_deg) < NOTICEABLE_TURN_DEG:
         return ""
     if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
-        return label("Turned round")
+        return "Turned round"
     if angle_deg > 0.0:
-        return label("{angle:.0f}° left", angle=angle_deg)
-    return label("{angle:.0f}° right", angle=-angle_deg)
+        return f"{angle_deg:.0f}° left"
+    return f"{-angle_deg:.0f}° right"
 
 
 def _limbs(names: list[str]) -> list[str]:
@@ -47,5 +46,5 @@ def _limbs(names: list[str]) -> list[str]:
     words = []
     for pair, both in PAIRS.items():
         there = [name for name in pair if name in names]
-        words += [label(both)] if len(there) == len(pair) else [label(LIMBS[name]) for name in there]
+        words += [both] if len(there) == len(pair) else [LIMBS[name] for name in there]
     return words

@@ -14,7 +14,7 @@ from ..bridge.matched_keyframes import remove_keyframes, take_over
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import state_of
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, posed_frames
-from ..shell.messages import translated
+from ..shell.messages import capitalized
 from ..shell.results import keep_reading, keep_speed
 from ..shell.takes import actor_of, take_by_identifier
 from .match_edits import add_candidate, add_match, key_matches
@@ -55,7 +55,7 @@ class FoundResult:
         clear_found(take)
         matching, found = take.matching, self.found
         matching.fit, matching.floor_found = found.fit, found.floor_m
-        matching.reason = translated(found.reason)
+        matching.reason = capitalized(found.reason)
         posed, frames = posed_frames(take), self.clip.frames
         decided = [match.frame for match in matching.matches]
         free = [

@@ -5,7 +5,6 @@ import bpy
 from ..shell.base_operator import BaseOperator
 from ..shell.found_frames import doubtful_matches, match_at
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.messages import say, tooltip
 from ..shell.requirements import matches
 from ..shell.takes import active_take
 
@@ -34,14 +33,14 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """Tooltip with the direction."""
         if properties.only_doubtful:
-            return tooltip(
+            return (
                 "Go to the most doubtful found keyframe: first those in which something that is seen "
-                "contradicts, then the least sure ones. Accept it, take another candidate, or correct the "
-                "pose and store it; pressed once more, it goes on to the next"
+                "contradicts, then the least sure ones. Accept it, take another candidate, or correct "
+                "the pose and store it; pressed once more, it goes on to the next"
             )
         if properties.direction == "NEXT":
-            return tooltip("Go to the next found keyframe")
-        return tooltip("Go to the previous found keyframe")
+            return "Go to the next found keyframe"
+        return "Go to the previous found keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Choose it in the list, which goes there."""
@@ -49,7 +48,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         wanted = self._doubtful(take) if self.only_doubtful else self._in_order(context.scene, take)
         if wanted is None:
-            say(self, "INFO", "No found keyframe is in doubt")
+            self.report({"INFO"}, "No found keyframe is in doubt")
             return {"CANCELLED"}
         take.matching.shown_match = wanted
         return None

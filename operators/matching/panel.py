@@ -5,7 +5,6 @@ import bpy
 from ...core.library.several_libraries import COMPOSED
 from ..shell.contradictions import contradictions_at
 from ..shell.found_frames import DOUBTFUL, count_found, state_of
-from ..shell.messages import label, pgettext_n
 from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
@@ -13,7 +12,7 @@ from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_h
 SURE = 0.8
 """Confidence above which a found keyframe is ticked."""
 FRAME_UNITS = 1.6
-STATES = {"POSED": ("KEYFRAME_HLT", pgettext_n("posed")), "GONE": ("X", pgettext_n("no key"))}
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
 """Icon and words of what is no found keyframe any more."""
 
 
@@ -35,7 +34,7 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         icon, words = how_sure(take, item) if is_found else STATES[state]
         shown = item.candidate
         named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
-        row.label(text=shown.name if named else label(words), icon=icon, translate=False)
+        row.label(text=shown.name if named else words, icon=icon, translate=False)
         if named and shown.mirrored:
             row.label(text="", icon="MOD_MIRROR")
         if is_found:
@@ -48,13 +47,13 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
 def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
     """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
     if match.by_hand:
-        return "VIEW_PAN", pgettext_n("chosen")
+        return "VIEW_PAN", "chosen"
     if contradictions_at(take, match.frame):
-        return "ERROR", pgettext_n("contradicted")
+        return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
-        return "QUESTION", pgettext_n("doubtful")
+        return "QUESTION", "doubtful"
     sure = match.confidence >= SURE
-    return ("CHECKMARK", pgettext_n("sure")) if sure else ("DOT", pgettext_n("likely"))
+    return ("CHECKMARK", "sure") if sure else ("DOT", "likely")
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
@@ -92,9 +91,9 @@ def _draw_counts(
 ) -> None:
     """Draw how many were found, how many of them are in doubt, and the reason that was given."""
     count, doubtful = count_found(take)
-    words = label("{count} found, none of them doubtful", count=count)
+    words = f"{count} found, none of them doubtful"
     if doubtful:
-        words = label("{count} found, {doubtful} of them doubtful", count=count, doubtful=doubtful)
+        words = f"{count} found, {doubtful} of them doubtful"
     layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
     if take.matching.reason:
         draw_sentence(layout, context, take.matching.reason, "BLANK1")
@@ -106,7 +105,7 @@ def _draw_jumps(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> No
     doubtful = count_found(take)[1]
     going = row.row(align=True)
     going.enabled = doubtful > 0
-    words = label("Next Doubtful ({count})", count=doubtful) if doubtful else label("None Doubtful")
+    words = f"Next Doubtful ({doubtful})" if doubtful else "None Doubtful"
     jump = going.operator("keymark.jump_to_match", text=words, translate=False)
     jump.direction, jump.only_doubtful = "NEXT", True
     row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"

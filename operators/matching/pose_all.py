@@ -13,7 +13,7 @@ from ..keypoints.requirements import points_to_follow
 from ..shell.found_frames import count_found, doubtful_matches
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import proposed_frames
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.takes import active_take
 from .properties import FloorSettings
@@ -82,15 +82,12 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         count, doubtful = count_found(take)
         if doubtful:
             take.matching.shown_match = doubtful_matches(take)[0]
-            say(
-                self,
-                "WARNING",
-                "{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown",
-                count=count,
-                doubtful=doubtful,
+            self.report(
+                {"WARNING"},
+                f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown",
             )
         else:
-            say(self, "INFO", "{count} keyframes found, none of them doubtful", count=count)
+            self.report({"INFO"}, f"{count} keyframes found, none of them doubtful")
 
 
 def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":

@@ -8,7 +8,6 @@ from ...core.body.human import HUMAN
 from ...core.library.several_libraries import EVERY_LIBRARY
 from ..library.registry import library_items
 from ..shell.found_frames import match_at
-from ..shell.messages import label
 
 if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
@@ -32,7 +31,7 @@ def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | N
     rows = [every, *(item[:4] for item in library_items(matching, context))]
     name = matching.library_name
     if name and all(name != row[0] for row in rows):
-        rows.append((name, name, label("This library is not there any more; import it again"), "ERROR"))
+        rows.append((name, name, "This library is not there any more; import it again", "ERROR"))
     _entries[:] = [(*row, number) for number, row in enumerate(rows)]
     return _entries
 

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
 from .matches import undecided_matches
@@ -23,11 +22,11 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
 
         scene, take = context.scene, active_take(context.scene)
         if not undecided_matches(take):
-            say(self, "INFO", "All found keyframes are yours by now; nothing was removed")
+            self.report({"INFO"}, "All found keyframes are yours by now; nothing was removed")
             return {"CANCELLED"}
         count = clear_found(take)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        say(self, "INFO", "Removed {count} found keyframes", count=count)
+        self.report({"INFO"}, f"Removed {count} found keyframes")
         return None
 
 

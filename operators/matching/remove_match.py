@@ -7,7 +7,6 @@ from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
 from ..shell.found_frames import state_of
 from ..shell.keyed_frames import invalidate_keyed_frames
-from ..shell.messages import say
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take
 from .matches import chosen_match
@@ -37,7 +36,7 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         removed = matching.shown_match
         matching.matches.remove(removed)
         matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
-        say(self, "INFO", "Removed the found keyframe at frame {frame:g}", frame=frame)
+        self.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_remove_match,))

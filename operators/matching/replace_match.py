@@ -4,7 +4,6 @@ import bpy
 
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
-from ..shell.messages import say, tooltip
 from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take, find_take
 from .candidate_titles import candidate_title
@@ -33,14 +32,12 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
         if matching is None or matching.shown_match >= len(matching.matches):
-            return tooltip(str(cls.__doc__))
+            return str(cls.__doc__)
         match = matching.matches[matching.shown_match]
         if properties.candidate >= len(match.candidates):
-            return tooltip(str(cls.__doc__))
+            return str(cls.__doc__)
         said = candidate_title(match, match.candidates[properties.candidate])
-        return tooltip(
-            "{candidate}. Key this posture instead; what is keyed at the frame is replaced", candidate=said
-        )
+        return f"{said}. Key this posture instead; what is keyed at the frame is replaced"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         """Key the candidate, and go to its frame."""
@@ -49,13 +46,10 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         match = chosen_match(take)
         if self.candidate >= len(match.candidates):
-            say(
-                self,
-                "ERROR",
-                "Frame {frame:g} has {count} candidates; candidate must be 0 to {last}",
-                frame=match.frame,
-                count=len(match.candidates),
-                last=len(match.candidates) - 1,
+            self.report(
+                {"ERROR"},
+                f"Frame {match.frame:g} has {len(match.candidates)} candidates; candidate must be 0 to "
+                f"{len(match.candidates) - 1}",
             )
             return {"CANCELLED"}
         match.chosen, match.by_hand = self.candidate, True
@@ -65,16 +59,12 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         note_contradictions(take, frame, ())
         improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
         if improved:
-            say(
-                self,
-                "INFO",
-                "Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
-                frame=frame,
-                number=number,
-                improved=improved,
+            self.report(
+                {"INFO"},
+                f"Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
             )
         else:
-            say(self, "INFO", "Frame {frame:g} shows candidate {number}", frame=frame, number=number)
+            self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}")
         return None
 
 

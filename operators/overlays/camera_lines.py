@@ -6,7 +6,6 @@ import numpy as np
 from ..footage.drawn_lines import Drawing, DrawnLine, running
 from ..footage.found_camera import HINTS, is_found, values
 from ..shell.footage_view import FootageView, footage_view
-from ..shell.messages import label
 from ..shell.takes import find_take
 from . import drawing
 
@@ -37,7 +36,7 @@ def draw(context: bpy.types.Context) -> None:
         _draw_line(view, line, number == tool.last, context.scene.frame_current)
         if line.kind == "HEIGHT":
             x, y = view.to_region(np.array(line.ends, dtype=np.float64)).mean(axis=0)
-            words = label("{length:.2f} m", length=tool.length_of(line))
+            words = f"{tool.length_of(line):.2f} m"
             drawing.text(words, float(x) + BESIDE_PX * drawing.ui_scale(), float(y), COLORS[line.kind])
     _draw_found(context, view, tool)
 
@@ -63,8 +62,8 @@ def _draw_found(context: bpy.types.Context, view: FootageView, tool: Drawing) ->
 
 def _sentences(tool: Drawing) -> list[str]:
     if tool.fit is None:
-        return [label("No line yet: the grid shows the camera as it is")]
+        return ["No line yet: the grid shows the camera as it is"]
     if not is_found(tool.fit):
-        return [label("This says nothing of the camera yet")]
-    rows = [values(tool.fit), label("Lines are {px:.1f} px off", px=tool.fit.misfit_px)]
-    return rows + [label(HINTS[name]) for name in tool.fit.kept if name in ("height", "tilt", "roll")]
+        return ["This says nothing of the camera yet"]
+    rows = [values(tool.fit), f"Lines are {tool.fit.misfit_px:.1f} px off"]
+    return rows + [HINTS[name] for name in tool.fit.kept if name in ("height", "tilt", "roll")]

@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 
 from ..shell.footage_view import footage_view
-from ..shell.messages import label
 from ..shell.takes import find_take
 from . import drawing
 
@@ -46,5 +45,5 @@ def draw(context: bpy.types.Context) -> None:
     arms = CROSS_PX * scale * np.array([[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]])
     drawing.lines(head + arms, drawing.INK, halo=1.0)
     drawing.lines(np.stack([head, mouse])[None], drawing.INK, width=1.0, halo=0.6)
-    words = label("Top of Head")
+    words = "Top of Head"
     drawing.text(words, float(head[0]) + 1.5 * CROSS_PX * scale, float(head[1]) + 0.5 * CROSS_PX * scale)

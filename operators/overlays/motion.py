@@ -9,7 +9,6 @@ import numpy as np
 from ...core.arrays import Array, IndexArray
 from ..keypoints.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView
-from ..shell.messages import label
 from ..shell.results import review_of
 from ..shell.takes import find_take
 from . import drawing
@@ -133,20 +132,20 @@ def _rows(
         if settings.show_observed:
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:
-                words = label("Hidden: {markers}", markers=", ".join(hidden))
+                words = f"Hidden: {', '.join(hidden)}"
                 rows.append((Sample.NONE, words))
-            rows.append((Sample.SOLID, label("Marker as seen")))
+            rows.append((Sample.SOLID, "Marker as seen"))
         if settings.show_predicted:
-            rows.append((Sample.DASHED, label("Marker as the motion predicts it")))
+            rows.append((Sample.DASHED, "Marker as the motion predicts it"))
     if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
-        rows.append((Sample.DASHED, label("Contour as the motion predicts it")))
+        rows.append((Sample.DASHED, "Contour as the motion predicts it"))
     if settings.show_skeleton:
-        rows.append((Sample.LEFT, label("Performer's left")))
-        rows.append((Sample.RIGHT, label("Performer's right")))
+        rows.append((Sample.LEFT, "Performer's left"))
+        rows.append((Sample.RIGHT, "Performer's right"))
         if (what.review.sigma_m[what.index] > UNCERTAIN_M).any():
-            rows.append((Sample.RING, label("Uncertain point")))
+            rows.append((Sample.RING, "Uncertain point"))
     if settings.show_paths:
-        rows.append((Sample.PAST, label("Path so far")))
-        rows.append((Sample.FUTURE, label("Path to come")))
-        rows.append((Sample.DIAMOND, label("Keyframe")))
+        rows.append((Sample.PAST, "Path so far"))
+        rows.append((Sample.FUTURE, "Path to come"))
+        rows.append((Sample.DIAMOND, "Keyframe"))
     return tuple(rows)

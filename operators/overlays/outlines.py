@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import Array
-from ..shell.messages import label
 from .drawing import INK
 from .figures import dashes, segments
 from .picture import Item, Label, Stroke
@@ -65,7 +64,7 @@ def predicted_outlines(
         items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
         if marker in hidden:
             x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
-            words = label("{marker} hidden", marker=review.marker_names[marker])
+            words = f"{review.marker_names[marker]} hidden"
             items.append(Label(words, float(x), float(y), style.color(INK)))
     return items
 

@@ -12,7 +12,6 @@ from ..bridge.scene_frames import scene_frames
 from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import have_frames, matched_frames, posed_frames
 from ..shell.lru_cache import LruCache
-from ..shell.messages import label
 from ..shell.results import FootageSpeed, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
@@ -182,7 +181,7 @@ def speed_graph(frames: Array, speed: Array, timeline: Timeline) -> list[Item]:
     line, area = graph(x, values, timeline.floor, timeline.height)
     items: list[Item] = [Fill(area, faded(SPEED, 0.28)), Stroke(segments(line), faded(SPEED, 0.9), 1.2)]
     if timeline.sizes == ROOMY:
-        words = label("Speed in the footage")
+        words = "Speed in the footage"
         items.append(Label(words, 6.0 * timeline.pixel, timeline.top - 13.0 * timeline.pixel))
     return items
 

@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.messages import label
 from ..shell.panel import TakePanel, draw_progress, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take, find_take
@@ -34,8 +33,8 @@ def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> Non
     shown = data.action if data else None
     row = layout.row(align=True)
     for which, action, text in (
-        ("KEYFRAMES", take.keyframe_action, label("Keyframes")),
-        ("MOTION", take.motion_action, label("Motion")),
+        ("KEYFRAMES", take.keyframe_action, "Keyframes"),
+        ("MOTION", take.motion_action, "Motion"),
     ):
         depress = action is not None and action == shown
         row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which

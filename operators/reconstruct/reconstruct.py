@@ -11,7 +11,7 @@ from ..keypoints.evidence import scene_evidence
 from ..keypoints.requirements import anything_to_follow
 from ..matching.matches import known_matches
 from ..shell.job_operator import JobOperator
-from ..shell.messages import say, translated, warn
+from ..shell.messages import capitalized, warn
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
 from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
@@ -82,12 +82,10 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         take.notes.clear()
         for note in result.notes:
             take.notes.add().text = warn(self, note)
-        say(
-            self,
-            "INFO",
-            "Reconstructed {frames} frames from {keyframes} keyframes",
-            frames=len(result.frames),
-            keyframes=len(result.reconstruction.motion.keyframe_indices),
+        self.report(
+            {"INFO"},
+            f"Reconstructed {len(result.frames)} frames from "
+            f"{len(result.reconstruction.motion.keyframe_indices)} keyframes",
         )
 
 
@@ -99,10 +97,8 @@ def _check_enough(count: int, notes: tuple[str, ...]) -> None:
     """
     if count < 2:
         raise InputError(
-            "{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
-            "actor{notes}",
-            count=count,
-            notes="".join(f". {translated(note)}" for note in notes),
+            f"{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
+            f"actor{''.join(f'. {capitalized(note)}' for note in notes)}"
         )
 
 

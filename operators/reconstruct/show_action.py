@@ -5,7 +5,6 @@ import bpy
 from ..bridge.actions import assign_action
 from ..shell.base_operator import BaseOperator
 from ..shell.keyframe_action import straighten_unposed
-from ..shell.messages import say
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
 
@@ -43,7 +42,7 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
             "FINAL": settings.finish.action,
         }[self.which]
         if action is None:
-            say(self, "ERROR", MISSING[self.which])
+            self.report({"ERROR"}, MISSING[self.which])
             return {"CANCELLED"}
         if self.which == "KEYFRAMES":
             straighten_unposed(settings)

@@ -3,7 +3,6 @@
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say
 from ..shell.requirements import weak_frames
 from ..shell.takes import active_take
 
@@ -45,10 +44,10 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
             step = 0
         wanted = review.active_weak_frame + step
         if wanted < 0:
-            say(self, "INFO", "This is the weakest frame")
+            self.report({"INFO"}, "This is the weakest frame")
             return {"CANCELLED"}
         if wanted >= len(review.weak_frames):
-            say(self, "INFO", "This is the last frame of the list")
+            self.report({"INFO"}, "This is the last frame of the list")
             return {"CANCELLED"}
         review.active_weak_frame = wanted  # which goes there
         return None

@@ -4,7 +4,6 @@ import bpy
 
 from ..markers.properties import segment_title
 from ..shell.keyed_frames import is_posed
-from ..shell.messages import label
 from ..shell.panel import RowList, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
@@ -33,7 +32,7 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
 
 def reason_words(item: bpy.types.PropertyGroup) -> str:
     """The reason of a weak frame, with the marker or the body point that it lies with."""
-    words = label(item.bl_rna.properties["reason"].enum_items[item.reason].name)
+    words = item.bl_rna.properties["reason"].enum_items[item.reason].name
     what = item.marker or (item.point and segment_title(item.point))
     return f"{words}: {what}" if what else words
 
@@ -48,7 +47,7 @@ class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
         """The confidence, where it is known."""
         believed = take.review.confidence
-        return label("{percent:.0f} %", percent=100.0 * believed) if believed >= 0.0 else ""
+        return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
 
     def draw_step(self, context: bpy.types.Context) -> None:
         """Draw confidence and the list."""
@@ -57,10 +56,10 @@ class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
             column.label(text="Reconstruct the motion first", icon="INFO")
             return
         if review.confidence >= 0.0:
-            words = label("Confidence {percent:.0f} %", percent=100.0 * review.confidence)
+            words = f"Confidence {100.0 * review.confidence:.0f} %"
             column.progress(factor=review.confidence, text=words, type="BAR")
         if not len(review.weak_frames):
-            draw_sentence(column, context, label("No frame needs another keyframe"), "CHECKMARK")
+            draw_sentence(column, context, "No frame needs another keyframe", "CHECKMARK")
             return
         column.label(text="Worth Another Keyframe")
         column.template_list(

@@ -8,7 +8,6 @@ from ..bridge.scene_frames import at_scene_frame, showing_action
 from ..shell.base_operator import BaseOperator
 from ..shell.keyed_frames import invalidate_keyed_frames
 from ..shell.keyframe_action import new_keyframe_action, straighten_unposed
-from ..shell.messages import say
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take
 
@@ -39,7 +38,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         review, frame = take.review, float(scene.frame_current_final)
         if self.where == "WEAK":
             if not 0 <= review.active_weak_frame < len(review.weak_frames):
-                say(self, "ERROR", "No weak frame is chosen; reconstruct the motion first")
+                self.report({"ERROR"}, "No weak frame is chosen; reconstruct the motion first")
                 return {"CANCELLED"}
             frame = float(review.weak_frames[review.active_weak_frame].frame)
         action = take.keyframe_action or new_keyframe_action(take.armature)
@@ -52,12 +51,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         whole = int(frame // 1.0)
         scene.frame_set(whole, subframe=frame - whole)
         invalidate_keyed_frames()
-        say(
-            self,
-            "INFO",
-            "Stored the reconstructed pose at frame {frame:g}; now correct it",
-            frame=frame,
-        )
+        self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
         return None
 
 

@@ -9,8 +9,6 @@ from typing import Protocol
 
 import bpy
 
-from .messages import say
-
 CANCELS_JOB = frozenset({"ESC"})
 CANCELS_CLICK = frozenset({"ESC", "RIGHTMOUSE"})
 """As in Blender's own operators that wait for a click."""
@@ -31,7 +29,7 @@ def cancel_job(operator: Modal, context: bpy.types.Context, event: bpy.types.Eve
     if event.type not in CANCELS_JOB or event.value != "PRESS":
         return False
     operator.cancel(context)
-    say(operator, "INFO", "Cancelled")
+    operator.report({"INFO"}, "Cancelled")
     return True
 
 

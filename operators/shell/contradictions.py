@@ -10,7 +10,6 @@ import bpy
 
 from ...core.footage.keypoints.body_points import BODY_POINTS
 from .job_progress import steady_frame
-from .messages import label
 from .panel import draw_sentence
 
 SAME_FRAME = 0.5
@@ -62,7 +61,7 @@ def draw_contradictions(
     """Draw what contradicts in the current frame, if anything does."""
     names = contradictions_at(take, steady_frame(context))
     if names:
-        said = label("No plausible pose explains {names} here", names=", ".join(names))
+        said = f"No plausible pose explains {', '.join(names)} here"
         draw_sentence(layout, context, said, "ERROR")
 
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 import bpy
 
 from ...core.errors import KeymarkError
-from .messages import say, translated
+from .messages import capitalized
 from .redraw import redraw_sidebars_soon
 
 
@@ -21,14 +21,12 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
         redraw_sidebars_soon()
     except ModuleNotFoundError as error:
         missing = (error.name or "").partition(".")[0]
-        say(
-            operator,
-            "ERROR",
-            "Keymark needs the Python library {missing}, which is not there; "
-            "install Keymark from its package for this platform, which brings it along",
-            missing=missing,
+        operator.report(
+            {"ERROR"},
+            f"Keymark needs the Python library {missing}, which is not there; install Keymark from its "
+            "package for this platform, which brings it along",
         )
     except KeymarkError as error:
-        operator.report({"ERROR"}, translated(error.sentence))
+        operator.report({"ERROR"}, capitalized(str(error)))
     except ReferenceError:
-        say(operator, "ERROR", "An object or a take of this job was removed while it ran; run it again")
+        operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")

@@ -45,9 +45,9 @@ def chosen_file(operator: bpy.types.Operator, wanted: str) -> Path:
     """
     path = chosen_path(operator)
     if not operator.filepath:
-        raise InputError("no file is chosen; choose {wanted}", wanted=wanted)
+        raise InputError(f"no file is chosen; choose {wanted}")
     if operator.filepath.endswith(SEPARATORS):
-        raise InputError("no file is chosen in {path}; choose {wanted}", path=path, wanted=wanted)
+        raise InputError(f"no file is chosen in {path}; choose {wanted}")
     return path
 
 

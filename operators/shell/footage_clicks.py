@@ -4,7 +4,6 @@ import bpy
 
 from .error_reports import reported
 from .footage_view import shows_footage
-from .messages import say
 
 NAVIGATION = {
     *(
@@ -28,9 +27,8 @@ def footage_is_shown(
     with reported(operator):
         if shows_footage(context, take):
             return True
-        say(
-            operator,
-            "ERROR",
+        operator.report(
+            {"ERROR"},
             "Look through the take's camera first (Numpad 0), or open the clip in a Movie Clip editor",
         )
     return False

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import bpy
 
-from .messages import label
 from .redraw import FOOTAGE_EDITORS, areas, redraw_footage
 
 SIDES = {".L": "the performer's own left", ".R": "the performer's own right"}
@@ -39,7 +38,7 @@ def shown_request() -> FootageRequest | None:
 def side_of(name: str) -> str:
     """Whose left or right a body part or point is; empty for those in the middle."""
     side = SIDES.get(name[-2:])
-    return label(side) if side else ""
+    return side if side else ""
 
 
 def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:

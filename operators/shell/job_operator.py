@@ -13,7 +13,7 @@ from .base_operator import BaseOperator
 from .cancel_on_esc import cancel_job
 from .error_reports import reported
 from .job_progress import time_left
-from .messages import label, translated
+from .messages import capitalized
 from .redraw import redraw_sidebars, redraw_sidebars_soon
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class JobOperator(BaseOperator):
         context.window_manager.keymark_progress.frame = context.scene.frame_current_final
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
         self._slice_end = self._begun = monotonic()
-        self._show(context, label("Starting"), 0.0)
+        self._show(context, "Starting", 0.0)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Run the job for one time slice, or cancel it."""
@@ -92,7 +92,7 @@ class JobOperator(BaseOperator):
                         break
                 if preview is not None:
                     self.watch(preview)
-                self._show(context, translated(progress.stage), progress.fraction)
+                self._show(context, capitalized(progress.stage), progress.fraction)
                 self._slice_end = monotonic()
             except StopIteration as stop:
                 self.cancel(context)
@@ -133,5 +133,5 @@ class JobOperator(BaseOperator):
         left = time_left(monotonic() - self._begun, fraction)
         context.window_manager.keymark_progress.show(stage, fraction, left)
         words = f"{stage}: {100.0 * fraction:.0f}%   |   "
-        context.workspace.status_text_set(words + (f"{left}   |   " if left else "") + label("Esc: Cancel"))
+        context.workspace.status_text_set(words + (f"{left}   |   " if left else "") + "Esc: Cancel")
         redraw_sidebars(context)

@@ -3,7 +3,6 @@
 import bpy
 
 from .file_browser import is_browsing
-from .messages import label
 
 OPERATOR_PREFIX = "KEYMARK_OT_"
 TOOLS = ("KEYMARK_OT_drag_joints",)
@@ -65,10 +64,10 @@ def time_left(elapsed_s: float, fraction: float) -> str:
         return ""
     seconds = elapsed_s * (1.0 - fraction) / fraction
     if seconds >= 90.0:
-        return label("about {minutes:.0f} min left", minutes=seconds / 60.0)
+        return f"about {seconds / 60.0:.0f} min left"
     # Rounded more coarsely the longer it is, so that the label does not flicker.
     step = 10.0 if seconds > 30.0 else 5.0 if seconds > 10.0 else 1.0
-    return label("about {seconds:.0f} s left", seconds=max(step * round(seconds / step), 1.0))
+    return f"about {max(step * round(seconds / step), 1.0):.0f} s left"
 
 
 def register() -> None:

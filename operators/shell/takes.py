@@ -20,9 +20,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
     """
     take = find_take(scene)
     if take is None:
-        raise InputError(
-            "scene '{scene}' has no take; load the footage or open a take first", scene=scene.name
-        )
+        raise InputError(f"scene '{scene.name}' has no take; load the footage or open a take first")
     return take
 
 
@@ -53,7 +51,7 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
         InputError: The take has none, or it was deleted.
     """
     if take.armature is None:
-        raise InputError("take '{take}' has no actor; build one, or choose its armature", take=take.name)
+        raise InputError(f"take '{take.name}' has no actor; build one, or choose its armature")
     return take.armature
 
 

@@ -6,7 +6,6 @@ from ..keypoints.evidence import has_contours, has_keypoints
 from ..overlays.timeline_figures import DOUBTED
 from ..shell.found_frames import doubtful_matches
 from ..shell.keyed_frames import is_posed, keyframes_of, matched_frames, unposed_proposals
-from ..shell.messages import label
 from ..shell.placement_guess import placement_is_guess
 from ..shell.takes import has_lost_actor, present_actor
 
@@ -16,44 +15,44 @@ FEWEST_KEYFRAMES = 2
 def next_step(take: bpy.types.PropertyGroup) -> str:
     """Return a label short enough for a narrow sidebar."""
     if take.clip is None:
-        return label("Next: load the footage")
+        return "Next: load the footage"
     if take.clip_state.missing:
-        return label("Next: find the clip's file")
+        return "Next: find the clip's file"
     if placement_is_guess(take):
-        return label("Next: say where the camera stood")
+        return "Next: say where the camera stood"
     follow = take.follow
     if follow.use_markers and any(not marker.is_picked for marker in take.markers):
-        return label("Next: pick the markers' colors")
+        return "Next: pick the markers' colors"
     if has_lost_actor(take):
-        return label("Next: bring the actor back")
+        return "Next: bring the actor back"
     has_actor = present_actor(take) is not None
     followed = (follow.use_markers and len(take.markers)) or has_keypoints(take)
     # Contours need nothing to be done: whoever goes on to the actor follows these alone.
     if not followed and not (has_actor and has_contours(take)):
-        return label("Next: choose what to follow")
+        return "Next: choose what to follow"
     if not has_actor:
-        return label("Next: build the actor")
+        return "Next: build the actor"
     if not len(take.proposals) and not keyframes_of(take):
-        return label("Next: pose all keyframes") if followed else label("Next: propose keyframes")
+        return "Next: pose all keyframes" if followed else "Next: propose keyframes"
     if take.motion_action is None:
         if unposed_proposals(take) and not matched_frames(take):
-            return label("Next: pose all keyframes") if followed else label("Next: pose the proposed frames")
+            return "Next: pose all keyframes" if followed else "Next: pose the proposed frames"
         if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
-            return label("Next: pose and store keyframes")
+            return "Next: pose and store keyframes"
         if doubtful_matches(take):
-            return label("Next: check doubtful ones, reconstruct")
-        return label("Next: reconstruct the motion")
+            return "Next: check doubtful ones, reconstruct"
+        return "Next: reconstruct the motion"
     if (take.finish.action is None or take.finish.outdated) and is_doubtful(take):
         return _how_to_better(take)
     if take.finish.action is None:
-        return label("Next: review, then finish")
+        return "Next: review, then finish"
     if take.finish.outdated:
-        return label("Next: review, then bake again")
+        return "Next: review, then bake again"
     if any(result.outdated for character in take.characters for result in character.results):
-        return label("Next: retarget the character again")
+        return "Next: retarget the character again"
     if not any(result.action for character in take.characters for result in character.results):
-        return label("Next: a character, or export")
-    return label("Next: mark as asset, or export")
+        return "Next: a character, or export"
+    return "Next: mark as asset, or export"
 
 
 def is_doubtful(take: bpy.types.PropertyGroup) -> bool:
@@ -65,7 +64,7 @@ def _how_to_better(take: bpy.types.PropertyGroup) -> str:
     """What makes a doubtful motion better: the keyframes are what it lacks."""
     weak = [each.frame for each in take.review.weak_frames]
     if doubtful_matches(take):
-        return label("Next: check the doubtful poses")
+        return "Next: check the doubtful poses"
     if any(not is_posed(take, frame) for frame in weak):
-        return label("Next: pose the weak frames")
-    return label("Next: reconstruct again") if weak else label("Next: pose more keyframes")
+        return "Next: pose the weak frames"
+    return "Next: reconstruct again" if weak else "Next: pose more keyframes"

@@ -50,18 +50,13 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
         elif path.name == TAKE_FILE or path.name.endswith(f".{TAKE_FILE}"):
             operator = bpy.ops.keymark.open_take
         elif "clip" in fields:
-            raise InputError(
-                "{path}: a take's file is called {take_file}; give it that name to open it",
-                path=path,
-                take_file=TAKE_FILE,
-            )
+            raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")
         elif footage(bpy.context) is None:
             operator = bpy.ops.keymark.load_keypoints
         else:
             raise InputError(
-                "{path}: is neither a take's take.json nor a keyframe library; keypoints need the footage "
-                "that they are of, so load that first",
-                path=path,
+                f"{path}: is neither a take's take.json nor a keyframe library; keypoints need the "
+                "footage that they are of, so load that first"
             )
         try:
             return set(operator(execution_context, filepath=str(path)))

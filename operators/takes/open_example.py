@@ -6,7 +6,6 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label, tooltip
 from ..shell.requirements import idle, object_mode_possible
 
 AEROBIC, GREETING = "AEROBIC", "GREETING"
@@ -56,10 +55,10 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         """What the chosen example shows, and where its clip lies."""
         if not properties.is_property_set("example"):
-            return tooltip(cls.__doc__ or "")
+            return cls.__doc__ or ""
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
         kept = cls.bl_rna.properties["copy"].description
-        return f"{tooltip(shown)}.\n{tooltip(kept)}"
+        return f"{shown}.\n{kept}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask which example, and for the folder of a copy."""
@@ -95,10 +94,10 @@ def _draw_examples(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout = menu.layout
     for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
         for name, title, _ in EXAMPLES:
-            text = label(title)
+            text = title
             entry = layout.operator(
                 KEYMARK_OT_open_example.bl_idname,
-                text=label("Copy {name} to Folder", name=text) if copy else text,
+                text=f"Copy {text} to Folder" if copy else text,
                 icon=icon,
                 translate=False,
             )

@@ -4,21 +4,20 @@ import bpy
 
 from ..footage.fitted_view import keep_beside_sidebar
 from ..library import registry
-from ..shell.messages import label, pgettext_n
 from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, sentence_height
 from ..shell.takes import find_take
 from .next_step import next_step
 from .upgrade import is_newer
 
 STEPS = (
-    ("FILE_MOVIE", pgettext_n("Footage: load the clip, say where the camera stood")),
-    ("TRACKER", pgettext_n("Follow: detected keypoints, or sleeves of five colors")),
-    ("OUTLINER_OB_ARMATURE", pgettext_n("Actor: enter the height, build the armature")),
-    ("KEY_HLT", pgettext_n("Keyframes: pose all, then correct the doubtful ones")),
-    ("ARMATURE_DATA", pgettext_n("Reconstruct: find every frame in between")),
-    ("OVERLAY", pgettext_n("Review: see where another keyframe helps")),
-    ("CHECKMARK", pgettext_n("Finish: bake, mark as asset, export")),
-    ("COMMUNITY", pgettext_n("Character: give the motion to your own rig")),
+    ("FILE_MOVIE", "Footage: load the clip, say where the camera stood"),
+    ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
+    ("OUTLINER_OB_ARMATURE", "Actor: enter the height, build the armature"),
+    ("KEY_HLT", "Keyframes: pose all, then correct the doubtful ones"),
+    ("ARMATURE_DATA", "Reconstruct: find every frame in between"),
+    ("OVERLAY", "Review: see where another keyframe helps"),
+    ("CHECKMARK", "Finish: bake, mark as asset, export"),
+    ("COMMUNITY", "Character: give the motion to your own rig"),
 )
 """Icon and label of each step."""
 BUTTON_SCALE = 1.6
@@ -79,7 +78,7 @@ class KEYMARK_PT_guide(bpy.types.Panel):
         """Draw the steps."""
         column = self.layout.column(align=True)
         for icon, text in STEPS:
-            column.label(text=label(text), icon=icon, translate=False)
+            column.label(text=text, icon=icon, translate=False)
 
 
 class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):

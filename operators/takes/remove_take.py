@@ -5,14 +5,13 @@ from collections.abc import Iterator
 import bpy
 
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import label
 from ..shell.requirements import idle
 from ..shell.takes import active_take, find_take
 
 
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
-    return label("There is no take to remove") if find_take(context.scene) is None else None
+    return "There is no take to remove" if find_take(context.scene) is None else None
 
 
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):

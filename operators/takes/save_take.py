@@ -9,7 +9,7 @@ from ...core.progress import run
 from ..keypoints.evidence import scene_evidence
 from ..matching.matches import known_matches
 from ..shell.base_operator import BaseOperator
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.requirements import actor, footage, idle
 from ..shell.takes import active_take, footage_of
 
@@ -61,7 +61,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
         write_take(take, folder, has if has and not take.contours else None)
         for note in notes:
             warn(self, note)
-        say(self, "INFO", "Saved the take in {folder}", folder=folder)
+        self.report({"INFO"}, f"Saved the take in {folder}")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_save_take,))

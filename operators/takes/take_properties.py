@@ -20,7 +20,6 @@ from ..markers.properties import KEYMARK_PG_marker
 from ..matching.properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..review.properties import KEYMARK_PG_review
 from ..shell.contradictions import KEYMARK_PG_contradiction
-from ..shell.messages import label
 from ..shell.notices import KEYMARK_PG_notice
 from ..shell.takes import unique_name
 
@@ -55,7 +54,7 @@ def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> b
 
 def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     others = [other.name for other in take.id_data.keymark.takes if other != take]
-    free = unique_name(take.name.strip() or label("Take"), others)
+    free = unique_name(take.name.strip() or "Take", others)
     if take.name != free:
         take.name = free
 

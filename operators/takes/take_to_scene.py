@@ -27,7 +27,7 @@ from ..markers.ignored_regions import add_ignored_regions
 from ..markers.marker_styles import set_marker_color
 from ..matching.match_edits import add_candidate, add_match
 from ..shell.keyframe_action import new_keyframe_action
-from ..shell.messages import say, warn
+from ..shell.messages import warn
 from ..shell.notices import give_notices
 from ..shell.takes import active_take, add_take
 
@@ -82,7 +82,7 @@ def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, open
     notes = [warn(operator, note) for note in opened.notes]
     give_notices(take, "footage", "files", notes)
     count = len(opened.take.keyframes)
-    say(operator, "INFO", "Opened {name} with {count} keyframes", name=opened.take.name, count=count)
+    operator.report({"INFO"}, f"Opened {opened.take.name} with {count} keyframes")
 
 
 def add_take_to_scene(context: bpy.types.Context, opened: OpenedTake) -> bpy.types.Object:

@@ -1,14 +1,10 @@
-"""Labels in title case, descriptions without a full stop, templates that are filled in after translation."""
+"""Labels in title case, descriptions without a full stop, reports with a capital letter."""
 
 from collections.abc import Iterator
-from types import MappingProxyType, SimpleNamespace
 
 import bpy
 import pytest
-from keymark.core.errors import InputError
-from keymark.core.text import Sentence
-from keymark.operators.shell.error_reports import reported
-from keymark.operators.shell.messages import count_label, label, say, tooltip, translated, warn
+from keymark.operators.shell.messages import capitalized
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")
@@ -86,79 +82,8 @@ def test_title_case_is_told(text: str, right: bool) -> None:
     assert is_title(text) is right
 
 
-class Operator:
-    """Keeps what is reported."""
-
-    def report(self, kind: set[str], text: str) -> None:
-        """Keep it."""
-        self.said = (kind, text)
-
-
-class German:
-    """Blender's translations in a language that knows three templates."""
-
-    words = MappingProxyType(
-        {
-            "Opened {name}": "{name} geöffnet",
-            "frame {frame}: {what}": "Bild {frame}: {what}",
-            "nothing is seen": "nichts zu sehen",
-        }
-    )
-
-    def find(self, template: str) -> str:
-        """The template in this language; itself where it is unknown."""
-        return self.words.get(template, template)
-
-    pgettext_rpt = pgettext_iface = pgettext_tip = find
-
-
-@pytest.fixture
-def german(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Blender speaks this language."""
-    blender = SimpleNamespace(app=SimpleNamespace(translations=German()))
-    monkeypatch.setattr("keymark.operators.shell.messages.bpy", blender)
-
-
-def test_a_sentence_is_said_in_english_by_default() -> None:
-    """With its values filled in."""
-    operator = Operator()
-    say(operator, "INFO", "Opened {name}", name="walk")
-    assert operator.said == ({"INFO"}, "Opened walk")
-
-
-@pytest.mark.usefixtures("german")
-def test_a_sentence_is_filled_in_after_translation() -> None:
-    """The template is what is looked up, in the language that Blender speaks."""
-    operator = Operator()
-    say(operator, "INFO", "Opened {name}", name="walk")
-    assert operator.said == ({"INFO"}, "walk geöffnet")
-    assert label("Opened {name}", name="walk") == tooltip("Opened {name}", name="walk") == "walk geöffnet"
-
-
-@pytest.mark.usefixtures("german")
-def test_sentences_of_core_are_translated_with_the_sentences_in_them() -> None:
-    """As a warning, and as the error of an operator; a text that was put together stays as it is."""
-    note = Sentence("frame {frame}: {what}", frame=3, what=Sentence("nothing is seen"))
-    operator = Operator()
-    assert warn(operator, note) == "Bild 3: nichts zu sehen"
-    assert operator.said == ({"WARNING"}, "Bild 3: nichts zu sehen")
-    with reported(operator):
-        raise InputError("frame {frame}: {what}", frame=3, what="dark")
-    assert operator.said == ({"ERROR"}, "Bild 3: dark")
-    with reported(operator):
-        raise InputError("take.json: frame is 3; it must be 1")
-    assert operator.said == ({"ERROR"}, "take.json: frame is 3; it must be 1")
-
-
 def test_sentences_begin_with_a_capital_and_names_as_they_are() -> None:
     """Reports are sentences; a marker's or a file's name is not changed."""
-    assert translated(Sentence("the clip is interlaced")) == "The clip is interlaced"
-    assert translated("no bone is chosen; click on one") == "No bone is chosen; click on one"
-    assert translated(Sentence("{marker} is small", marker="sleeve")) == "sleeve is small"
-    assert translated("take.json: fps is 0") == "take.json: fps is 0"
-
-
-def test_one_is_not_several() -> None:
-    """A number goes with words for one or for more."""
-    said = [count_label(count, "1 posture", "{count} postures") for count in (0, 1, 12)]
-    assert said == ["0 postures", "1 posture", "12 postures"]
+    assert capitalized("the clip is interlaced") == "The clip is interlaced"
+    assert capitalized("no bone is chosen; click on one") == "No bone is chosen; click on one"
+    assert capitalized("take.json: fps is 0") == "take.json: fps is 0"

@@ -7,7 +7,6 @@ import cv2
 import numpy as np
 
 from ...arrays import Image
-from ...text import Sentence
 from .interlacing import combed_shares
 
 SIDE = 64
@@ -53,29 +52,19 @@ class FrameFindings:
         notes = []
         if self.blank:
             notes.append(
-                Sentence(
-                    "{blank} of {frames} frames are blank ({which}): black, or lost where the file is "
-                    "damaged",
-                    blank=len(self.blank),
-                    frames=self.frames,
-                    which=_ranges(self.blank, first),
-                )
+                f"{len(self.blank)} of {self.frames} frames are blank "
+                f"({_ranges(self.blank, first)}): black, or lost where the file is damaged"
             )
         if self.interlaced:
             notes.append(
-                Sentence(
-                    "the clip is interlaced: each picture shows two moments, so that moving things are torn "
-                    "and keyframes are less exact; convert it first, as with ffmpeg -i CLIP -vf "
-                    "bwdif=mode=send_frame"
-                )
+                "the clip is interlaced: each picture shows two moments, so that moving things are "
+                "torn and keyframes are less exact; convert it first, as with ffmpeg -i CLIP -vf "
+                "bwdif=mode=send_frame"
             )
         if self.cuts:
             notes.append(
-                Sentence(
-                    "the whole picture changes at frame {frames}: a cut, a fade or another light; a take "
-                    "must show one scene from one place",
-                    frames=_ranges(self.cuts, first),
-                )
+                f"the whole picture changes at frame {_ranges(self.cuts, first)}: a cut, a fade or "
+                "another light; a take must show one scene from one place"
             )
         return tuple(notes)
 

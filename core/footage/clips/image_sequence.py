@@ -11,7 +11,6 @@ import numpy as np
 from ...arrays import Image
 from ...errors import InputError
 from ...files.fields import listed
-from ...text import Sentence
 from .image_file import read_image
 
 MOST_IMAGES = 10**6
@@ -97,23 +96,17 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
         return tuple(paths), ()
     if missing > len(paths):
         return tuple(paths), (
-            Sentence(
-                "the numbers of the images in {folder} have more gaps than images; they are taken one after "
-                "the other, from {first} to {last}",
-                folder=paths[0].parent,
-                first=paths[0].name,
-                last=paths[-1].name,
+            (
+                f"the numbers of the images in {paths[0].parent} have more gaps than images; they are "
+                f"taken one after the other, from {paths[0].name} to {paths[-1].name}"
             ),
         )
     found = dict(zip(indices, paths, strict=True))
     lost = [str(numbers[0] + step * index) for index in range(indices[-1] + 1) if index not in found]
-    note = Sentence(
-        "{missing} of {count} images are missing in {folder}, number {numbers}: nothing is seen in their "
-        "frames; Blender shows the sequence up to the first gap only",
-        missing=missing,
-        count=indices[-1] + 1,
-        folder=paths[0].parent,
-        numbers=listed(lost, 3),
+    note = (
+        f"{missing} of {indices[-1] + 1} images are missing in {paths[0].parent}, number "
+        f"{listed(lost, 3)}: nothing is seen in their frames; Blender shows the sequence up to the "
+        "first gap only"
     )
     return tuple(found.get(index) for index in range(indices[-1] + 1)), (note,)
 
@@ -153,14 +146,7 @@ def left_out(path: Path, images: Sequence[Path]) -> tuple[str, ...]:
     others = sorted(file.name for file in path.iterdir() if file.name not in used and is_image(file))
     if not others:
         return ()
-    return (
-        Sentence(
-            "{folder}: holds also {others}, left out: not of the sequence from {first}",
-            folder=path,
-            others=listed(others, 3),
-            first=images[0].name,
-        ),
-    )
+    return ((f"{path}: holds also {listed(others, 3)}, left out: not of the sequence from {images[0].name}"),)
 
 
 def _only_sequence(folder: Path, images: list[Path]) -> list[Path]:

@@ -5,8 +5,6 @@ from pathlib import Path
 
 import cv2
 
-from ...text import Sentence
-
 NOTICEABLE_SHAPE = 0.01
 """Difference from square pixels that is worth a note."""
 HDR_TRANSFERS = {16: "PQ", 18: "HLG"}
@@ -30,12 +28,10 @@ def _shape_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
     if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < NOTICEABLE_SHAPE:
         return ()
     return (
-        Sentence(
-            "the pixels of {clip} are {ratio:.3g} times as wide as high, and Keymark and Blender take them "
-            "for square: the motion is out of shape; convert the clip first, as with ffmpeg -i CLIP -vf "
-            "scale=iw*sar:ih,setsar=1",
-            clip=path.name,
-            ratio=across / down,
+        (
+            f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
+            "Blender take them for square: the motion is out of shape; convert the clip first, as with "
+            "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
         ),
     )
 
@@ -45,11 +41,10 @@ def _range_notes(path: Path) -> tuple[str, ...]:
     if transfer is None:
         return ()
     return (
-        Sentence(
-            "{clip} is of high dynamic range ({transfer}): read as it is, its colors are pale and markers "
-            "harder to tell apart; film in standard range or convert it, and pick the markers' colors anew",
-            clip=path.name,
-            transfer=transfer,
+        (
+            f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
+            "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
+            "colors anew"
         ),
     )
 

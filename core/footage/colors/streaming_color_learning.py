@@ -12,7 +12,6 @@ import numpy as np
 from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
-from ...text import Sentence
 from ..detections import Detections, LearningRound
 from ..ignored_regions import IgnoredPixels
 from ..marker_style import MarkerStyle, color_groups
@@ -185,18 +184,13 @@ def _complaint(style: MarkerStyle, counts: Array) -> str:
     color = list(style.color_srgb)
     share = share_of_color(counts, style.color_srgb)
     if share > COMMON_COLOR:
-        return Sentence(
-            "{marker} has the color {color}, which {percent:.0f} % of the picture around the markers have "
-            "too, so it cannot be told apart; wear a color that the surroundings do not have",
-            marker=style.name,
-            color=color,
-            percent=100.0 * share,
+        return (
+            f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
+            "markers have too, so it cannot be told apart; wear a color that the surroundings do not "
+            "have"
         )
     nearest = ", ".join(str(list(near)) for near in nearest_colors(counts, style.color_srgb))
-    return Sentence(
-        "{marker} has the color {color}, which matches nothing in the clip; pick it on the marker in a "
-        "frame (the nearest colors found are {nearest})",
-        marker=style.name,
-        color=color,
-        nearest=nearest,
+    return (
+        f"{style.name} has the color {color}, which matches nothing in the clip; pick it on the marker "
+        f"in a frame (the nearest colors found are {nearest})"
     )

@@ -6,7 +6,6 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...errors import InputError
-from ...text import Sentence
 from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_numbers import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .people import People, SeenPeople
@@ -68,17 +67,15 @@ def held_against_clip(
         tuple(frames),
         file=detected.where,
         by_hand=detected.by_hand,
-        notes=tuple(_by_name(note) for note in aligned.notes + notes),
+        # The file's name alone: notes go into results, which are the same in any folder.
+        notes=tuple(
+            note.replace(detected.where, Path(detected.where).name or detected.where)
+            for note in aligned.notes + notes
+        ),
     )
 
 
-def _by_name(note: Sentence) -> Sentence:
-    """A sentence that names the file alone: notes go into results, which are the same in any folder."""
-    file = note.values["file"]
-    return Sentence(note.template, **note.values | {"file": Path(file).name or file})
-
-
-def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[Sentence, ...]]:
+def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
     """The people of all frames one after the other, and sentences on what was changed."""
     numbers, where = detected.layout.numbers, detected.where
     persons = [person for people in detected.people.values() for person in people]
@@ -122,22 +119,16 @@ def _aligned(
                     f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
                 )
             notes += (
-                Sentence(
-                    "{file}: frame_start is {start}, that of the clip is {clip_start}; the first entry was "
-                    "taken for the clip's first frame",
-                    file=where,
-                    start=start,
-                    clip_start=frame_start,
+                (
+                    f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
+                    "entry was taken for the clip's first frame"
                 ),
             )
         if rates and aligned.frame_count == count:
             notes += (
-                Sentence(
-                    "{file}: says {rate:g} frames per second, the clip has {clip_rate:g}; it was taken "
-                    "frame by frame",
-                    file=where,
-                    rate=rates[0],
-                    clip_rate=rates[1],
+                (
+                    f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
+                    "taken frame by frame"
                 ),
             )
         aligned = Alignment(aligned.first, aligned.frame_count, notes)
@@ -153,9 +144,7 @@ def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, flo
     return detected.fps, fps
 
 
-def _scale(
-    detected: DetectedFrames, place: Array, size: tuple[int, int]
-) -> tuple[Array, tuple[Sentence, ...]]:
+def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
     known = place[np.isfinite(place)]
     if detected.shares and (not len(known) or np.median(np.abs(known)) <= LARGEST_SHARE):
@@ -173,14 +162,9 @@ def _scale(
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
     scale = np.array([clip_width / width, clip_height / height])
-    note = Sentence(
-        "{file}: was found in pictures of {width} x {height}; scaled to the clip's {clip_width} x "
-        "{clip_height}",
-        file=detected.where,
-        width=width,
-        height=height,
-        clip_width=clip_width,
-        clip_height=clip_height,
+    note = (
+        f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
+        f"{clip_width} x {clip_height}"
     )
     return scale, (note,)
 

@@ -4,7 +4,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ...errors import InputError
-from ...text import Sentence, pluralize
+from ...text import pluralize
 
 MOST_FRAMES = 10**6
 FEW_FRAMES, FEW_SHARE = 2, 0.01
@@ -19,7 +19,7 @@ class Alignment:
     """Number of the clip's first frame in the result."""
     frame_count: int
     """Frames of the clip."""
-    notes: tuple[Sentence, ...] = ()
+    notes: tuple[str, ...] = ()
     """Sentences on what was taken for granted."""
 
 
@@ -49,13 +49,7 @@ def align_listed(count: int, frame_count: int | None, where: str, why: str = "")
             f"every frame of the clip, null where nobody was seen{why or _rate_words(count, frame_count)}"
         )
     rest = "the last are not used" if difference > 0 else "in the last ones nobody is seen"
-    note = Sentence(
-        "{file}: has {frames}, the clip {clip_frames}; the first are the same, {rest}",
-        file=where,
-        frames=pluralize(count, "frame"),
-        clip_frames=frame_count,
-        rest=rest,
-    )
+    note = f"{where}: has {pluralize(count, 'frame')}, the clip {frame_count}; the first are the same, {rest}"
     return Alignment(0, frame_count, (note,))
 
 
@@ -82,14 +76,12 @@ def align_numbered(
     if length == frame_count:
         return Alignment(lowest, frame_count, _hole_notes(numbers, lowest, frame_count, where, complete))
     fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
-    notes: tuple[Sentence, ...] = ()
+    notes: tuple[str, ...] = ()
     if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
         notes = (
-            Sentence(
-                "{file}: goes on to frame {last}, beyond the clip's {clip_frames} frames; they are left out",
-                file=where,
-                last=highest,
-                clip_frames=frame_count,
+            (
+                f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are "
+                "left out"
             ),
         )
         fitting = [lowest]
@@ -109,11 +101,9 @@ def align_numbered(
         )
     if len(touching or fitting) > 1 and missing:
         notes += (
-            Sentence(
-                "{file}: its frames were taken to count from {first}; no frame tells for certain, so check "
-                "that they lie on the performer",
-                file=where,
-                first=first,
+            (
+                f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
+                "check that they lie on the performer"
             ),
         )
     return Alignment(first, frame_count, notes + _hole_notes(numbers, first, frame_count, where, complete))
@@ -130,18 +120,11 @@ def _without_clip(lowest: int, highest: int, bases: list[int], where: str) -> Al
 
 def _hole_notes(
     numbers: Collection[int], first: int, frame_count: int, where: str, complete: bool
-) -> tuple[Sentence, ...]:
+) -> tuple[str, ...]:
     missing = frame_count - sum(0 <= number - first < frame_count for number in set(numbers))
     if not complete or not missing:
         return ()
-    return (
-        Sentence(
-            "{file}: lacks {missing} of {frames}; nobody is seen in them",
-            file=where,
-            missing=missing,
-            frames=pluralize(frame_count, "frame"),
-        ),
-    )
+    return (f"{where}: lacks {missing} of {pluralize(frame_count, 'frame')}; nobody is seen in them",)
 
 
 def _rate_words(count: int, frame_count: int) -> str:

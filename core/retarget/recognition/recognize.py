@@ -10,7 +10,6 @@ from ...arrays import Array
 from ...body.human import HUMAN
 from ...errors import InputError
 from ...files.json_file import shown
-from ...text import Sentence
 from ..character import Character
 from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset
@@ -88,21 +87,14 @@ def recognize(character: Character, presets: tuple[Preset, ...] | None = None) -
     elif preset is not None and _stands_upright(character, preset):
         unseen = {role: replace(bones, confidence=UNSEEN) for role, bones in preset.roles.items()}
         character_map = replace(preset, roles=unseen)
-        doubts.append(
-            Sentence(
-                "no body was recognized by shape: all roles are those of the names of {preset}",
-                preset=preset.title,
-            )
-        )
+        doubts.append(f"no body was recognized by shape: all roles are those of the names of {preset.title}")
     else:
         raise _refusal(character, frame, reason)
     if "head" not in character_map.roles:
-        doubts.append(Sentence("head not found: no bone of the middle lies where a head begins"))
+        doubts.append("head not found: no bone of the middle lies where a head begins")
     hands = [role for role in ("hand.L", "hand.R") if role not in character_map.roles]
     if hands:
-        doubts.append(
-            Sentence("{roles} not found: the forearm is the last bone of the arm", roles=" and ".join(hands))
-        )
+        doubts.append(f"{' and '.join(hands)} not found: the forearm is the last bone of the arm")
     if character_map.root is None:
         up = find_stance(character, character_map)[2]
         character_map = replace(character_map, root=find_root(character, character_map, up))
@@ -172,19 +164,17 @@ def _side_doubts(facing: Facing) -> list[str]:
     if facing.by_names * facing.by_shape < 0.0 and abs(facing.by_shape) > 1.0:
         if facing.by_names < 0.0:
             return [
-                Sentence(
-                    "left and right are taken from the shape, against the names of the bones: feet and knees "
-                    "point the other way"
+                (
+                    "left and right are taken from the shape, against the names of the bones: feet and "
+                    "knees point the other way"
                 )
             ]
         return [
-            Sentence(
-                "left and right are taken from the names of the bones, although the feet point the other way"
-            )
+            ("left and right are taken from the names of the bones, although the feet point the other way")
         ]
     if facing.confidence < SURE_SIDES:
         return [
-            Sentence(
+            (
                 "left and right may be swapped for all roles of a side: names, feet, knees and elbows "
                 "hardly tell where the character faces"
             )
@@ -201,25 +191,16 @@ def _place_doubts(figure: Figure, roles: Mapping[str, RoleBones]) -> list[str]:
     found: list[str] = []
     for role, other in named.items():
         if role not in roles:
-            found.append(
-                Sentence("{role} not found, but {bone} has the name for it", role=role, bone=shown(other))
-            )
+            found.append(f"{role} not found, but {shown(other)} has the name for it")
         elif roles[role].source != "names":
             found.append(
-                Sentence(
-                    "{role} is doubtful: {bone} was chosen by its place, and {other} has the name for it",
-                    role=role,
-                    bone=shown(roles[role].bones[0]),
-                    other=shown(other),
-                )
+                f"{role} is doubtful: {shown(roles[role].bones[0])} was chosen by its place, and "
+                f"{shown(other)} has the name for it"
             )
     placed = [role for role, bones in roles.items() if bones.source == "shape" and role not in named]
     if placed:
         found.append(
-            Sentence(
-                "no name tells which bone plays {roles}: they are chosen by their places alone",
-                roles=", ".join(placed),
-            )
+            f"no name tells which bone plays {', '.join(placed)}: they are chosen by their places alone"
         )
     return found
 
@@ -249,14 +230,8 @@ def _merged(
         else:
             merged[role] = replace(given, confidence=AGAINST)
             found.append(
-                Sentence(
-                    "{role} is doubtful: {bone} was chosen by the names of {preset}, and by its place "
-                    "{other} fits better",
-                    role=role,
-                    bone=shown(given.bones[0]),
-                    preset=preset.title,
-                    other=shown(seen.bones[0]),
-                )
+                f"{role} is doubtful: {shown(given.bones[0])} was chosen by the names of "
+                f"{preset.title}, and by its place {shown(seen.bones[0])} fits better"
             )
     return replace(preset, roles=merged), found
 

@@ -1,7 +1,6 @@
 """What a rest pose says against its map."""
 
 from ...body.skeleton import SIDES
-from ...text import Sentence
 from .rest_body import RestBody
 
 CLEARLY = 0.05
@@ -14,10 +13,9 @@ def rest_notes(body: RestBody) -> tuple[str, ...]:
     behind = [float(body.joint(toe)[1] - body.joint(foot)[1]) for foot, toe in roles if toe in body.first]
     if behind and min(behind) > CLEARLY * body.leg_m:
         return (
-            Sentence(
-                "The toes of '{character}' point backward by its character map; left and right may be "
-                "mistaken for each other there",
-                character=body.character.name,
+            (
+                f"The toes of '{body.character.name}' point backward by its character map; left and "
+                "right may be mistaken for each other there"
             ),
         )
     return ()

@@ -7,7 +7,6 @@ from ...body.heading import turn_headings_rad
 from ...body.segment_motion import SegmentMotion
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
-from ...text import Sentence
 from ..character import Character
 from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
@@ -99,9 +98,9 @@ def _root_motion(solution: Solution, options: RetargetOptions) -> tuple[Array, A
             none,
             None,
             (
-                Sentence(
-                    "'{character}' has no root bone apart from its hips, which keep the way over the ground",
-                    character=character.name,
+                (
+                    f"'{character.name}' has no root bone apart from its hips, which keep the way over "
+                    "the ground"
                 ),
             ),
         )

@@ -19,7 +19,6 @@ from ...take.clip_check import check_size
 from ...take.clip_notes import VARIABLE_RATE, rate_note
 from ...take.read_footage import expected_regions
 from ...take.take import Take
-from ...text import Sentence
 from .findings import Findings
 
 ENOUGH_FRAMES = SAMPLED_FRAMES // 2
@@ -44,12 +43,8 @@ def count_frames(clip: Clip, findings: Findings) -> int:
     held = len(packets.time_s)
     if packets.complete and held < clip.frame_count:
         findings.warn(
-            Sentence(
-                "{clip} claims {claimed} frames, of which about {held} are there; it may be cut off",
-                clip=clip.path.name,
-                claimed=clip.frame_count,
-                held=held,
-            )
+            f"{clip.path.name} claims {clip.frame_count} frames, of which about {held} are there; "
+            "it may be cut off"
         )
         return held
     if is_variable_frame_rate(packets.time_s):
@@ -100,12 +95,8 @@ def _propose_to_ignore(take: Take, check: MarkerCheck, findings: Findings) -> No
     every = [*take.ignored_regions, *(IgnoredRegion(box=box) for box in boxes)]
     field = json.dumps(ignored_region_fields(every, take.frame_start))
     findings.warn(
-        Sentence(
-            "still areas have the color of {markers}; they are left out where {file} says {field}",
-            markers=" and ".join(names),
-            file=take.file.name,
-            field=f'"{IGNORED_REGIONS}": {field}',
-        )
+        f"still areas have the color of {' and '.join(names)}; they are left out where {take.file.name} says "
+        f'"{IGNORED_REGIONS}": {field}'
     )
 
 
@@ -116,13 +107,8 @@ def _check_light(samples: ClipSamples, findings: Findings) -> bool:
         count = int(np.count_nonzero(bright < limit))
         if count >= max(DARK_SHARE * len(bright), 1):
             findings.warn(
-                Sentence(
-                    "{count} of {sampled} sampled frames are {dark}; colors are hard to tell there, more "
-                    "light is worth most",
-                    count=count,
-                    sampled=len(bright),
-                    dark=word,
-                )
+                f"{count} of {len(bright)} sampled frames are {word}; colors are hard to tell "
+                "there, more light is worth most"
             )
             return True
     return False
@@ -153,10 +139,8 @@ def _find_markers(take: Take, samples: ClipSamples, frames: int, findings: Findi
     if not astray:
         return nearby
     findings.warn(
-        Sentence(
-            "markers are seen far from where keyframes and camera put them: {markers}; check that the "
-            "keyframes are this clip's, where the camera stands, and which marker is on which side",
-            markers=", ".join(astray),
-        )
+        f"markers are seen far from where keyframes and camera put them: {', '.join(astray)}; check "
+        "that the keyframes are this clip's, where the camera stands, and which marker is on which "
+        "side"
     )
     return anywhere

@@ -6,7 +6,6 @@ import numpy as np
 
 from ...take.clip_check import check_frame_count, check_in_front
 from ...take.take import Take
-from ...text import Sentence
 from .findings import Findings
 
 LONGEST_GAP_S = 1.0
@@ -35,14 +34,9 @@ def _check_fit(take: Take, findings: Findings) -> None:
         return
     residual = [keyframe.residual_m for keyframe in take.keyframes]
     findings.warn(
-        Sentence(
-            "the points of {count} of {keyframes} keyframes are up to {distance:.0f} cm on average from any "
-            "posture of this actor; check the actor's lengths, and whether these are the performer's own "
-            "keyframes",
-            count=len(take.notes),
-            keyframes=len(take.keyframes),
-            distance=100 * max(residual),
-        )
+        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
+        f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's "
+        "lengths, and whether these are the performer's own keyframes"
     )
 
 
@@ -54,15 +48,9 @@ def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
     if seconds > LONGEST_GAP_S:
         first, last = ends[longest] + take.frame_start, ends[longest + 1] + take.frame_start
         findings.warn(
-            Sentence(
-                "{keyframes} keyframes for {frames} frames are few: from frame {first} to {last}, "
-                "{seconds:.1f} s, there is none; pose more, or let --keyframes auto find the others",
-                keyframes=len(take.keyframes),
-                frames=frames,
-                first=first,
-                last=last,
-                seconds=seconds,
-            )
+            f"{len(take.keyframes)} keyframes for {frames} frames are few: from frame {first} to "
+            f"{last}, {seconds:.1f} s, there is none; pose more, or let --keyframes auto find the "
+            "others"
         )
 
 
@@ -77,11 +65,8 @@ def _check_picture(take: Take, findings: Findings) -> None:
             outside.append(keyframe.index + take.frame_start)
     if outside:
         findings.warn(
-            Sentence(
-                "through this camera {keyframes} would be seen outside the picture for the most part; check "
-                "where the camera stands and its lens",
-                keyframes=_frames(outside),
-            )
+            f"through this camera {_frames(outside)} would be seen outside the picture for the most "
+            "part; check where the camera stands and its lens"
         )
 
 

@@ -13,7 +13,6 @@ from ...footage.keypoints.people import People
 from ...prior.interpolation import interpolate
 from ...take.performer_keypoints import performer_keypoints
 from ...take.take import Take
-from ...text import Sentence
 from .findings import Findings
 
 LARGEST_ERROR = 0.1
@@ -71,21 +70,12 @@ def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
     share = float(found.mean())
     if share < FEWEST_FRAMES:
         findings.warn(
-            Sentence(
-                "{file}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap "
-                "helps",
-                file=name,
-                share=share,
-            )
+            f"{name}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap helps"
         )
     if people.most_people > 1 and not take.keyframes and not people.by_hand:
         findings.warn(
-            Sentence(
-                "{file}: shows up to {most} people, and no keyframe says which of them performs; the "
-                "largest who is there longest is taken",
-                file=name,
-                most=people.most_people,
-            )
+            f"{name}: shows up to {people.most_people} people, and no keyframe says which of them "
+            "performs; the largest who is there longest is taken"
         )
     return KeypointReadout(
         file=name,
@@ -115,14 +105,9 @@ def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Find
     explained = best is not None and known[best] < MUCH_BETTER * plain
     if explained or plain > LARGEST_ERROR * height_px:
         findings.warn(
-            Sentence(
-                "{file}: its joints lie {distance:.0f} px from those of the posed keyframes, where the "
-                "performer is {height:.0f} px tall; {reason}",
-                file=name,
-                distance=plain,
-                height=height_px,
-                reason=best if explained else "check that they are of this clip and this person",
-            )
+            f"{name}: its joints lie {plain:.0f} px from those of the posed keyframes, where the "
+            f"performer is {height_px:.0f} px tall; "
+            f"{(best if explained else 'check that they are of this clip and this person')}"
         )
     return plain
 

@@ -21,7 +21,6 @@ from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
 from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
-from ...text import Sentence
 from ..shoot import ShootTake
 from .findings import Findings
 from .footage_check import check_footage, count_frames
@@ -123,9 +122,9 @@ def estimate_cost(
     return CostEstimate(SECONDS_A_TAKE + frames * a_frame, BYTES_A_TAKE + frames * BYTES_A_FRAME)
 
 
-CONTOURS_ALONE = Sentence(
-    "the motion is held against contours alone, which tell least of all evidence; keypoints of a detector, "
-    "as of keymark detect, or markers in strong colors tell more"
+CONTOURS_ALONE = (
+    "the motion is held against contours alone, which tell least of all evidence; keypoints of a "
+    "detector, as of keymark detect, or markers in strong colors tell more"
 )
 
 
@@ -263,11 +262,7 @@ def flag_outliers(checks: Sequence[TakeCheck]) -> list[TakeCheck]:
     warned = []
     for check, size, rate in zip(checks, _outliers(sizes), _outliers(rates), strict=True):
         more = [
-            Sentence(
-                "the clip has {own}, nearly all others have {usual}; check that it is this camera's",
-                own=own,
-                usual=usual,
-            )
+            f"the clip has {own}, nearly all others have {usual}; check that it is this camera's"
             for own, usual in filter(None, (size, rate))
         ]
         check = replace(check, warnings=(*check.warnings, *more))

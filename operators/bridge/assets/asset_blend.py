@@ -31,9 +31,7 @@ def write_asset_blend(
         ConversionError: A file cannot be written.
     """
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
-        raise InputError(
-            "{path}: is the open file, of which only assets would be left; name another", path=path
-        )
+        raise InputError(f"{path}: is the open file, of which only assets would be left; name another")
     read_catalogs(root / NAME)  # a sentence on its copy would name a file that is gone by then
     with output_folder(root) as new:
         if (root / NAME).exists():

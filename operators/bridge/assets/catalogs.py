@@ -96,9 +96,8 @@ def _clean(catalog: str) -> str:
     path = "/".join(part for part in parts if part)
     if not path or ":" in path or any(ord(letter) < 32 for letter in path):
         raise InputError(
-            "catalog '{catalog}' is not a path of names with slashes between them, without colons, such as "
-            "Keymark/Walking",
-            catalog=catalog,
+            f"catalog '{catalog}' is not a path of names with slashes between them, without colons, "
+            "such as Keymark/Walking"
         )
     return path
 
@@ -114,15 +113,10 @@ def read_catalogs(file: Path) -> str:
     except FileNotFoundError:
         return ""
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(
-            "{file}: cannot be read as a file of asset catalogs ({reason})", file=file, reason=error
-        ) from error
+        raise InputError(f"{file}: cannot be read as a file of asset catalogs ({error})") from error
     meant = [line for line in content.splitlines() if line.strip() and not line.startswith("#")]
     if meant and meant[0].strip() != VERSION:
         raise InputError(
-            "{file}: begins with '{meant}'; a file of asset catalogs begins with {version}",
-            file=file,
-            meant=meant[0][:40],
-            version=VERSION,
+            f"{file}: begins with '{meant[0][:40]}'; a file of asset catalogs begins with {VERSION}"
         )
     return content

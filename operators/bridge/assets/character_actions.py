@@ -44,15 +44,11 @@ def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Acti
             wanted.actions = [one for one in inside.actions if one == name]
     except (OSError, RuntimeError, UnicodeDecodeError) as error:
         raise InputError(
-            "{blend}: Blender cannot read it ({reason}); convert the take again",
-            blend=blend,
-            reason=one_line(error),
+            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again"
         ) from error
     action = next((one for one in wanted.actions if one is not None), None)
     if action is None:
-        raise InputError("{blend}: lacks its Action; convert the take again", blend=blend)
+        raise InputError(f"{blend}: lacks its Action; convert the take again")
     if action_digest(action) != curves:
-        raise InputError(
-            "{blend}: is not the file that the conversion wrote; convert the take again", blend=blend
-        )
+        raise InputError(f"{blend}: is not the file that the conversion wrote; convert the take again")
     return action

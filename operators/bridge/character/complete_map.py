@@ -9,7 +9,6 @@ from ....core.retarget.character import Character
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from ....core.retarget.recognition.root_bone import find_root
 from ....core.retarget.stance import find_stance
-from ....core.text import Sentence
 from .mesh_soles import mesh_soles
 
 
@@ -53,12 +52,9 @@ def _with_properties(
     lost = [(one.bone, one.property) for one in character_map.settings if one not in settings]
     lost += [(one.bone, one.property) for one in _lost_switches(character_map.ik, ik)]
     notes = tuple(
-        Sentence(
-            "Bone '{bone}' has no property '{property}' that could be keyed; the rig may be of another "
-            "version than the map '{map}'",
-            bone=bone,
-            property=name,
-            map=character_map.title,
+        (
+            f"Bone '{bone}' has no property '{name}' that could be keyed; the rig may be of another "
+            f"version than the map '{character_map.title}'"
         )
         for bone, name in lost
     )

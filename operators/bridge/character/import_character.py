@@ -15,7 +15,6 @@ from ....core.files.json_file import shown
 from ....core.files.paths import real_path
 from ....core.files.regular_file import regular_file_size
 from ....core.take.character_settings import CharacterFile
-from ....core.text import Sentence
 from ..blend_reader import check_blend
 from ..blend_writer import one_line
 from ..own_scene import showing_scene
@@ -71,9 +70,8 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
-            "{file}: is open in this Blender, which appends nothing from it; name a copy of it, or run the "
-            "command without opening it",
-            file=file.path,
+            f"{file.path}: is open in this Blender, which appends nothing from it; name a copy of it, "
+            "or run the command without opening it"
         )
     try:
         with bpy.data.libraries.load(str(real_path(file.path)), link=False) as (inside, wanted):
@@ -117,9 +115,7 @@ def _unreadable(path: Path, error: Exception) -> InputError:
     lines = [line for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
     reason = one_line(RuntimeError(lines[-1] if lines else str(error))).removeprefix("Error: ")
     return InputError(
-        "{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off",
-        path=path,
-        reason=reason,
+        f"{path}: Blender cannot read it as a character ({reason}); it may be damaged or cut off"
     )
 
 
@@ -129,30 +125,17 @@ def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.type
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
         raise InputError(
-            "{file}: holds no armature; a character is an armature with the meshes that it moves, and one "
-            "that is linked from another file is named by that file",
-            file=file.path,
+            f"{file.path}: holds no armature; a character is an armature with the meshes that it moves, "
+            "and one that is linked from another file is named by that file"
         )
     if file.object is not None:
         if file.object not in armatures:
-            raise InputError(
-                "{file}: {object} is no armature; its armatures are {names}"
-                if file.object in found
-                else "{file}: {object} is not in it; its armatures are {names}",
-                file=file.path,
-                object=shown(file.object),
-                names=names,
-            )
+            wrong = "is no armature" if file.object in found else "is not in it"
+            raise InputError(f"{file.path}: {shown(file.object)} {wrong}; its armatures are {names}")
         return armatures[file.object]
     if len(armatures) > 1:
         example = CharacterFile(file.path, min(armatures))
-        raise InputError(
-            "{file}: holds {armatures} armatures, {names}; name one, as in {example}",
-            file=file.path,
-            armatures=len(armatures),
-            names=names,
-            example=example,
-        )
+        raise InputError(f"{file.path}: holds {len(armatures)} armatures, {names}; name one, as in {example}")
     return next(iter(armatures.values()))
 
 
@@ -187,9 +170,7 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
     for track in playing:
         track.mute = True
     names = listed((shown(track.name) for track in playing), MOST_NAMED)
-    said = Sentence(
-        "NLA tracks of '{armature}' are muted in the copy: {tracks}", armature=armature.name, tracks=names
-    )
+    said = f"NLA tracks of '{armature.name}' are muted in the copy: {names}"
     return (said,) if playing else ()
 
 

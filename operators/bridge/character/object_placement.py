@@ -54,10 +54,8 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
     working = [one.name for one in armature_object.constraints if not one.mute and one.influence > 0.0]
     if working:
         raise InputError(
-            "armature '{name}' stands where its constraint '{working}' puts it; mute it, or let the motion "
-            "begin where the character stands",
-            name=name,
-            working=working[0],
+            f"armature '{name}' stands where its constraint '{working[0]}' puts it; mute it, or let the "
+            "motion begin where the character stands"
         )
     data = armature_object.animation_data
     driven = (
@@ -65,8 +63,6 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
     )
     if driven:
         raise InputError(
-            "armature '{name}' has a driver on '{data_path}', which wins over keys; mute it, or let the "
-            "motion begin where the character stands",
-            name=name,
-            data_path=driven[0].data_path,
+            f"armature '{name}' has a driver on '{driven[0].data_path}', which wins over keys; mute it, "
+            "or let the motion begin where the character stands"
         )

@@ -28,34 +28,28 @@ def require_character(armature_object: bpy.types.Object | None) -> bpy.types.Obj
     """
     if armature_object is None or armature_object.type != "ARMATURE":
         name = "nothing" if armature_object is None else f"'{armature_object.name}'"
-        raise InputError("{name} is not an armature; select the armature of the character", name=name)
+        raise InputError(f"{name} is not an armature; select the armature of the character")
     name = armature_object.name
     if not len(armature_object.data.bones):
-        raise InputError("armature '{name}' has no bones; select the armature of the character", name=name)
+        raise InputError(f"armature '{name}' has no bones; select the armature of the character")
     if armature_object.mode == "EDIT":
-        raise InputError(
-            "armature '{name}' is in Edit Mode, in which no pose shows; leave it (Tab)", name=name
-        )
+        raise InputError(f"armature '{name}' is in Edit Mode, in which no pose shows; leave it (Tab)")
     if needs_override(armature_object):
         raise InputError(
-            "armature '{name}' is linked from {armature} and keeps no keys; make a library override of it "
-            "(Object > Library Override > Make)",
-            name=name,
-            armature=_library_name(armature_object),
+            f"armature '{name}' is linked from {_library_name(armature_object)} and keeps no keys; make "
+            "a library override of it (Object > Library Override > Make)"
         )
     if armature_object.data.pose_position == "REST":
         raise InputError(
-            "armature '{name}' shows its rest position; choose Pose Position in its data properties",
-            name=name,
+            f"armature '{name}' shows its rest position; choose Pose Position in its data properties"
         )
     _require_even_scale(armature_object)
     _require_evaluated(armature_object)
     data = armature_object.animation_data
     if data is not None and data.use_tweak_mode:
         raise InputError(
-            "armature '{name}' has an NLA strip in tweak mode, which locks its Action; leave tweak mode "
-            "(Tab in the NLA editor)",
-            name=name,
+            f"armature '{name}' has an NLA strip in tweak mode, which locks its Action; leave tweak "
+            "mode (Tab in the NLA editor)"
         )
     return armature_object
 
@@ -76,7 +70,7 @@ def make_override(context: bpy.types.Context, armature_object: bpy.types.Object)
     """
     name = armature_object.name
     if not needs_override(armature_object):
-        raise InputError("armature '{name}' is not linked; it can be keyed as it is", name=name)
+        raise InputError(f"armature '{name}' is not linked; it can be keyed as it is")
     if armature_object.override_library is not None:
         armature_object.override_library.is_system_override = False
         return armature_object
@@ -85,9 +79,8 @@ def make_override(context: bpy.types.Context, armature_object: bpy.types.Object)
     )
     if made is None or made.type != "ARMATURE":
         raise InputError(
-            "Blender makes no library override of armature '{name}'; append it from {armature} instead",
-            name=name,
-            armature=_library_name(armature_object),
+            f"Blender makes no library override of armature '{name}'; append it from "
+            f"{_library_name(armature_object)} instead"
         )
     return made
 
@@ -104,15 +97,11 @@ def _require_even_scale(armature_object: bpy.types.Object) -> None:
     matrix = np.array(armature_object.matrix_world, dtype=np.float64)
     if not np.isfinite(matrix).all():
         raise InputError(
-            "armature '{armature}' has a transform that is not a number; clear its location, rotation and "
-            "scale",
-            armature=armature_object.name,
+            f"armature '{armature_object.name}' has a transform that is not a number; clear its "
+            "location, rotation and scale"
         )
     if np.linalg.norm(matrix[:3, :3], axis=0).min() < SMALLEST_SCALE:
-        raise InputError(
-            "armature '{armature}' has a scale of zero; give it one positive scale",
-            armature=armature_object.name,
-        )
+        raise InputError(f"armature '{armature_object.name}' has a scale of zero; give it one positive scale")
     object_space(armature_object)
 
 
@@ -120,14 +109,12 @@ def _require_evaluated(armature_object: bpy.types.Object) -> None:
     """Raise InputError where Blender does not evaluate the object's pose."""
     name, scenes = armature_object.name, armature_object.users_scene
     if not scenes:
-        raise InputError("armature '{name}' is in no scene; link it to one", name=name)
+        raise InputError(f"armature '{name}' is in no scene; link it to one")
     layer = bpy.context.view_layer if bpy.context.scene in scenes else scenes[0].view_layers[0]
     if not armature_object.visible_get(view_layer=layer):
         raise InputError(
-            "armature '{name}' is hidden in view layer '{layer}', where Blender evaluates no pose; show it "
-            "while the motion is made",
-            name=name,
-            layer=layer.name,
+            f"armature '{name}' is hidden in view layer '{layer.name}', where Blender evaluates no "
+            "pose; show it while the motion is made"
         )
 
 

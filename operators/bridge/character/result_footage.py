@@ -52,10 +52,8 @@ def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
             wanted.scenes = list(inside.scenes)
     except (OSError, RuntimeError, UnicodeDecodeError) as error:
         raise InputError(
-            "{blend}: Blender cannot read it ({reason}); convert the take again, or name its motion.json "
-            "instead",
-            blend=blend,
-            reason=one_line(error),
+            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again, or name its "
+            "motion.json instead"
         ) from error
     shown = next((one for one in wanted.scenes if one is not None and one.camera and one.active_clip), None)
     if shown is None:

@@ -72,7 +72,7 @@ class Retargeted:
         made = next((one for one in bpy.data.objects if one.session_uid == self.session_uid), None)
         if made is None:
             name = self.character.name
-            raise InputError("armature '{name}' has been deleted meanwhile; nothing was changed", name=name)
+            raise InputError(f"armature '{name}' has been deleted meanwhile; nothing was changed")
         if isinstance(action, str):
             action = bpy.data.actions.new(action)
         write_keys(self.keys, made, action)

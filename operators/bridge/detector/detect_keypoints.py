@@ -18,7 +18,6 @@ from ....core.footage.keypoints.keypoint_file import read_keypoints
 from ....core.footage.keypoints.people import People
 from ....core.progress import Job, Progress
 from ....core.take.clip_check import LONGEST_FRAMES, open_footage
-from ....core.text import Sentence
 from .detector_command import FOLDER
 from .detector_output import OUTPUT_NAME, find_output, folder_excess
 from .detector_process import DetectorProcess
@@ -90,12 +89,7 @@ def detect_keypoints(
         finally:
             process.stop()
         if process.status:
-            raise ConversionError(
-                "{clip_path}: the detector {command} {ending}",
-                clip_path=clip_path,
-                command=detector.command.name,
-                ending=process.ending,
-            )
+            raise ConversionError(f"{clip_path}: the detector {detector.command.name} {process.ending}")
         yield Progress(READING, RUN_SHARE)
         before.check_clip(detector.command.name)
         written = find_output(folder, detector.command.name, clip_path)
@@ -111,15 +105,9 @@ def _frame_count(clip: Clip) -> Job[int]:
         if count % FRAMES_A_STEP == 0:
             yield Progress(COUNTING, COUNTED_SHARE * min(count / max(clip.frame_count, 1), 1.0))
     if count == 0:
-        raise InputError(
-            "{clip}: holds no frame that can be decoded; it must be a video or images", clip=clip.path
-        )
+        raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
     if count > LONGEST_FRAMES:
-        raise InputError(
-            "{clip}: has more than {longest_frames} frames; cut it into shorter clips",
-            clip=clip.path,
-            longest_frames=LONGEST_FRAMES,
-        )
+        raise InputError(f"{clip.path}: has more than {LONGEST_FRAMES} frames; cut it into shorter clips")
     return count
 
 
@@ -150,25 +138,18 @@ def _watch(
         ended = process.ended_within(POLL_S)
         now = time.monotonic()
         if process.said_bytes > LONGEST_SAID_BYTES:
-            raise ConversionError(
-                "{where}: it said more than {largest} MiB of text",
-                where=where,
-                largest=LONGEST_SAID_BYTES // 2**20,
-            )
+            raise ConversionError(f"{where}: it said more than {LONGEST_SAID_BYTES // 2**20} MiB of text")
         if ended or now > looked + FOLDER_CHECK_S:
             looked = now
             excess = folder_excess(folder)
             if excess:
-                raise ConversionError("{where}: it wrote {excess}", where=where, excess=excess)
+                raise ConversionError(f"{where}: it wrote {excess}")
         if ended:
             return
         if now > began + detector.time_limit_s:
             last = f", and last said: {process.last_words}" if process.last_words else ""
             raise ConversionError(
-                "{where} after {minutes:.3g} minutes, the time limit that is set{last}",
-                where=where,
-                minutes=detector.time_limit_s / 60.0,
-                last=last,
+                f"{where} after {detector.time_limit_s / 60.0:.3g} minutes, the time limit that is set{last}"
             )
         done = COUNTED_SHARE + (RUN_SHARE - COUNTED_SHARE) * lines.read(process.new_text())
         yield Progress(DETECTING, done)
@@ -180,12 +161,7 @@ def _read(path: Path, clip: Clip, count: int, frame_start: int, name: str) -> Pe
         people = read_keypoints(path, count, clip.size, fps=clip.fps, frame_start=frame_start)
     except InputError as error:
         sentence = str(error).replace(str(path), path.name)
-        raise InputError(
-            "{clip}: the detector {name} wrote what is unusable: {sentence}",
-            clip=clip.path,
-            name=name,
-            sentence=sentence,
-        ) from error
+        raise InputError(f"{clip.path}: the detector {name} wrote what is unusable: {sentence}") from error
     return replace(
         people,
         source=name if people.source == path.name else people.source,
@@ -209,9 +185,7 @@ class _Beside:
         """
         if self._clip_state() != self._state:
             raise ConversionError(
-                "{clip}: the clip changed while the detector {detector} ran; it must only read it",
-                clip=self._clip,
-                detector=detector,
+                f"{self._clip}: the clip changed while the detector {detector} ran; it must only read it"
             )
 
     def notes(self, detector: str) -> tuple[str, ...]:
@@ -220,11 +194,9 @@ class _Beside:
         if not new:
             return ()
         return (
-            Sentence(
-                "{file} appeared while the detector {detector} ran; its command should hand it {{output}} "
-                "or {{output_folder}} for all that it writes",
-                file=self._clip.with_name(new[0]),
-                detector=detector,
+            (
+                f"{self._clip.with_name(new[0])} appeared while the detector {detector} ran; its "
+                "command should hand it {output} or {output_folder} for all that it writes"
             ),
         )
 

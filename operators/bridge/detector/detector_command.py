@@ -77,12 +77,7 @@ class DetectorCommand:
         word = os.path.expanduser(word)
         wanted = "it must be a program, or a script with its interpreter before it"
         if word.lower().endswith(SHELL_FILES) and os.name == "nt":
-            raise InputError(
-                "{origin}: {word} is a batch file, which a shell runs; {wanted}",
-                origin=self.origin,
-                word=shown(word),
-                wanted=wanted,
-            )
+            raise InputError(f"{self.origin}: {shown(word)} is a batch file, which a shell runs; {wanted}")
         found = shutil.which(word)
         if found is not None:
             return os.path.abspath(found)
@@ -92,13 +87,7 @@ class DetectorCommand:
             wrong = "may not be executed"
         else:
             wrong = "is nowhere to be found"
-        raise InputError(
-            "{origin}: the program {word} {wrong}; {wanted}",
-            origin=self.origin,
-            word=shown(word),
-            wrong=wrong,
-            wanted=wanted,
-        )
+        raise InputError(f"{self.origin}: the program {shown(word)} {wrong}; {wanted}")
 
 
 def parse_command(text: str, origin: str) -> DetectorCommand:
@@ -112,34 +101,17 @@ def parse_command(text: str, origin: str) -> DetectorCommand:
         InputError: It is empty, too long, no list of words, lacks the clip, or has an unknown placeholder.
     """
     if not text.strip():
-        raise InputError(
-            "{origin}: names no program; valid is a command as {example}", origin=origin, example=EXAMPLE
-        )
+        raise InputError(f"{origin}: names no program; valid is a command as {EXAMPLE}")
     if len(text) > LONGEST_COMMAND:
-        raise InputError(
-            "{origin}: has {count} characters; at most {most} are valid",
-            origin=origin,
-            count=len(text),
-            most=LONGEST_COMMAND,
-        )
+        raise InputError(f"{origin}: has {len(text)} characters; at most {LONGEST_COMMAND} are valid")
     if any(is_control_character(character) for character in text):
-        raise InputError(
-            "{origin}: {text} holds a control character; it must be one line of text",
-            origin=origin,
-            text=shown(text),
-        )
+        raise InputError(f"{origin}: {shown(text)} holds a control character; it must be one line of text")
     words = _listed_words(text, origin) if text.lstrip().startswith("[") else _split_words(text, origin)
     if not words or not words[0].strip():
-        raise InputError(
-            "{origin}: names no program; valid is a command as {example}", origin=origin, example=EXAMPLE
-        )
+        raise InputError(f"{origin}: names no program; valid is a command as {EXAMPLE}")
     used = {name for word in words for name in _placeholders(word, origin)}
     if "clip" not in used:
-        raise InputError(
-            "{origin}: has no {{clip}}, for which the clip is put in; valid is {example}",
-            origin=origin,
-            example=EXAMPLE,
-        )
+        raise InputError(f"{origin}: has no {{clip}}, for which the clip is put in; valid is {EXAMPLE}")
     return DetectorCommand(tuple(words), origin)
 
 
@@ -148,24 +120,12 @@ def _listed_words(text: str, origin: str) -> list[str]:
     try:
         words = json.loads(text)
     except ValueError as error:
-        raise InputError(
-            "{origin}: is no valid JSON ({reason}); it must be {valid}",
-            origin=origin,
-            reason=error,
-            valid=valid,
-        ) from error
+        raise InputError(f"{origin}: is no valid JSON ({error}); it must be {valid}") from error
     wrong = [word for word in words if not isinstance(word, str)]
     if wrong:
-        raise InputError(
-            "{origin}: holds {value}, which is no text; it must be {valid}",
-            origin=origin,
-            value=shown(wrong[0]),
-            valid=valid,
-        )
+        raise InputError(f"{origin}: holds {shown(wrong[0])}, which is no text; it must be {valid}")
     if any(is_control_character(character) for word in words for character in word):
-        raise InputError(
-            "{origin}: a word holds a control character; it must be {valid}", origin=origin, valid=valid
-        )
+        raise InputError(f"{origin}: a word holds a control character; it must be {valid}")
     return [str(word) for word in words]
 
 
@@ -178,15 +138,13 @@ def _split_words(text: str, origin: str) -> list[str]:
         words = list(lexer)
     except ValueError as error:
         raise InputError(
-            "{origin}: a quote is opened and not closed; put quotes around words that hold spaces",
-            origin=origin,
+            f"{origin}: a quote is opened and not closed; put quotes around words that hold spaces"
         ) from error
     shell = [word for word in words if word in SHELL_WORDS]
     if shell:
         raise InputError(
-            "{origin}: {word} is for a shell, and none runs the command; put such steps into a script",
-            origin=origin,
-            word=shown(shell[0]),
+            f"{origin}: {shown(shell[0])} is for a shell, and none runs the command; put such steps "
+            "into a script"
         )
     return words
 
@@ -199,11 +157,9 @@ def _placeholders(word: str, origin: str) -> list[str]:
             continue
         if found[1] not in PLACEHOLDERS:
             raise InputError(
-                "{origin}: {found} in {word} is unknown; valid are {placeholders}, and {{{{ for a brace",
-                origin=origin,
-                found=shown(found[0]),
-                word=shown(word),
-                placeholders=listed([f"{{{name}}}" for name in PLACEHOLDERS], len(PLACEHOLDERS)),
+                f"{origin}: {shown(found[0])} in {shown(word)} is unknown; valid are "
+                f"{listed([f'{{{name}}}' for name in PLACEHOLDERS], len(PLACEHOLDERS))}, and {{{{ for a "
+                "brace"
             )
         names.append(found[1])
     return names

@@ -51,19 +51,14 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
         holding = _folders_with_json(folder)
         if not holding:
             raise ConversionError(
-                "{clip}: the detector {detector} ended well and wrote no keypoints; its command must hand "
-                "it {{output}}, the file to write, or {{output_folder}}",
-                clip=clip,
-                detector=detector,
+                f"{clip}: the detector {detector} ended well and wrote no keypoints; its command must "
+                "hand it {output}, the file to write, or {output_folder}"
             )
         if len(holding) > 1:
             names = [str(place.relative_to(folder)) for place in holding]
             raise InputError(
-                "{clip}: the detector {detector} wrote JSON files into several folders ({names}); one of "
-                "them must be left out by its options",
-                clip=clip,
-                detector=detector,
-                names=listed(names, MOST_NAMED),
+                f"{clip}: the detector {detector} wrote JSON files into several folders "
+                f"({listed(names, MOST_NAMED)}); one of them must be left out by its options"
             )
         files = _json_files(holding[0])
         found = files[0] if len(files) == 1 else holding[0]
@@ -71,11 +66,8 @@ def find_output(folder: Path, detector: str, clip: Path) -> Path:
         real = Path(os.path.realpath(file))
         if not real.is_relative_to(folder):
             raise InputError(
-                "{clip}: the detector {detector} wrote {file} as a link to {real}; it must write a file",
-                clip=clip,
-                detector=detector,
-                file=file.relative_to(folder),
-                real=real,
+                f"{clip}: the detector {detector} wrote {file.relative_to(folder)} as a link to {real}; "
+                "it must write a file"
             )
     return found
 

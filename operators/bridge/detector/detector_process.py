@@ -65,11 +65,8 @@ class DetectorProcess:
             except (OSError, ValueError) as error:
                 reason = error.strerror if isinstance(error, OSError) else error
                 raise InputError(
-                    "{origin}: the program {program} cannot be started ({reason}); it must be a program, or "
-                    "a script with its interpreter before it",
-                    origin=origin,
-                    program=words[0],
-                    reason=reason,
+                    f"{origin}: the program {words[0]} cannot be started ({reason}); it must be a "
+                    "program, or a script with its interpreter before it"
                 ) from error
 
     def ended_within(self, seconds: float) -> bool:

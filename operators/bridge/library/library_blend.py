@@ -53,8 +53,7 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
         libraries = library_from_assets(actions)
     if not libraries:
         raise InputError(
-            "{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json",
-            path=path,
+            f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
         )
     return libraries
 
@@ -71,16 +70,11 @@ def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
                     wanted.actions = names
         except (OSError, RuntimeError, UnicodeDecodeError) as error:
             raise InputError(
-                "{path}: Blender cannot read it ({reason}); it may be damaged or cut off",
-                path=path,
-                reason=one_line(error),
+                f"{path}: Blender cannot read it ({one_line(error)}); it may be damaged or cut off"
             ) from error
         if len(names) > MOST_POSTURES:
             raise InputError(
-                "{path}: holds {names} Actions marked as assets; at most {most_postures} are read",
-                path=path,
-                names=len(names),
-                most_postures=MOST_POSTURES,
+                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
             )
         yield [action for action in wanted.actions if action is not None and is_posture(action)]
     finally:

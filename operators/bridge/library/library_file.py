@@ -21,7 +21,7 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
         return read_library_blend(path)
     if suffix == JSON:
         return (read_library(path),)
-    raise InputError("{path}: is neither a .json nor a .blend; libraries are kept in these", path=path)
+    raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
 
 
 def write_library_file(path: Path, library: Library, root: Path) -> None:
@@ -42,8 +42,4 @@ def write_library_file(path: Path, library: Library, root: Path) -> None:
     elif suffix == JSON:
         write_library(path, library)
     else:
-        raise InputError(
-            "{path}: ends in {suffix}; libraries are written as .json or .blend",
-            path=path,
-            suffix=suffix or "nothing",
-        )
+        raise InputError(f"{path}: ends in {(suffix or 'nothing')}; libraries are written as .json or .blend")

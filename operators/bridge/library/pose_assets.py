@@ -92,15 +92,11 @@ def read_asset(action: bpy.types.Action) -> LibraryPosture:
     where = _where(action)
     library = Library.from_json({**header, "motions": [], "postures": own.get("postures")}, where)
     if len(library.postures) != 1:
-        raise InputError(
-            "{where}: holds {postures} postures; a pose asset holds one",
-            where=where,
-            postures=len(library.postures),
-        )
+        raise InputError(f"{where}: holds {len(library.postures)} postures; a pose asset holds one")
     stored = library.postures[0]
     shown = read_posture_curves(action, _body(library), stored.posture)
     if shown is None:
-        raise InputError("{where}: none of its curves turns a bone of Keymark's actors", where=where)
+        raise InputError(f"{where}: none of its curves turns a bone of Keymark's actors")
     asset = own.get("asset")
     known = asset if isinstance(asset, Mapping) else {}
     name, tags = stored.name, stored.tags
@@ -191,9 +187,7 @@ def _fields(action: bpy.types.Action, name: str) -> dict[str, Any]:
     """The parsed JSON of one of an Action's two properties."""
     text = action.get(name)
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
-        raise InputError(
-            "{action}: its property {name} is not what Keymark writes", action=_where(action), name=name
-        )
+        raise InputError(f"{_where(action)}: its property {name} is not what Keymark writes")
     if name == HEADER:
         with suppress(InputError):  # parsed again below, where the sentence names the Action
             return _parsed(text)

@@ -41,7 +41,7 @@ def library_of_keyframes(
     body = read_body(armature_object, HUMAN)
     frames = np.array(keyed_frames(armature_object, action, HUMAN))
     if len(frames) < 2:
-        raise InputError("the take has {frames} keyframes; a library needs two or more", frames=len(frames))
+        raise InputError(f"the take has {len(frames)} keyframes; a library needs two or more")
     posed = read_keyframes(scene, armature_object, action, body, frames).keyframes
     postures = _leveled(body, Posture.stack([keyframe.posture for keyframe in posed]))
     names = numbered_names(about.title, len(posed))
@@ -75,8 +75,7 @@ def library_of_assets(
     found = {library.identifier: library for library in library_from_assets(local)}
     if len(found) > 1 and identifier not in found:
         raise InputError(
-            "this file has the pose assets of {libraries}; choose one of these in the list",
-            libraries=", ".join(found),
+            f"this file has the pose assets of {', '.join(found)}; choose one of these in the list"
         )
     library = found.get(identifier) or next(iter(found.values()), None)
     body = None if armature_object is None else read_body(armature_object, HUMAN)

@@ -13,14 +13,11 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ....core.text import Sentence
 from ..command import Command
 from ..console import arguments_console
 from ..options import add_evidence, add_keypoint_files, given_settings
 
-UNPOSED = Sentence(
-    "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
-)
+UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9
 """Share of the work that reading the clip is."""
 

@@ -9,7 +9,6 @@ from ....core.files.digest import content_digest
 from ....core.files.json_file import read_json, write_json
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.take.conversion_record import RECORD_FILE
-from ....core.text import Sentence
 
 AS_MADE = ".as_made.json"
 """File with the SHA-256 of files as they were made, beside the results. It has those whose bytes differ from
@@ -69,6 +68,4 @@ def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
 
 def kept_note(name: str, other: str) -> str:
     """The note on a file that is kept under another name."""
-    return Sentence(
-        "{file} was changed after Keymark had made it and is kept as {other}", file=name, other=other
-    )
+    return f"{name} was changed after Keymark had made it and is kept as {other}"

@@ -9,7 +9,6 @@ from ....core.files.regular_file import regular_file_size
 from ....core.retarget.maps.choose_map import map_digests
 from ....core.shoot.shoot import Shoot
 from ....core.take.character_settings import CharacterFile, CharacterSettings
-from ....core.text import Sentence
 from ..library_search_path import library_folders
 from .character_result import opened_character
 
@@ -60,7 +59,7 @@ class CharacterChecks:
         if importlib.util.find_spec("bpy") is None:
             regular_file_size(file, "a character file")
             map_digests(settings.map, library_folders())
-            return (Sentence("{file}: the character is not looked at, which needs Blender", file=file),)
+            return (f"{file}: the character is not looked at, which needs Blender",)
         with opened_character(settings.file, settings.map, self._debug) as (_, opened):
             doubts = (*opened.imported.notes, *opened.chosen.doubts)
         return tuple(doubt if str(file) in doubt else f"{file}: {doubt}" for doubt in doubts)

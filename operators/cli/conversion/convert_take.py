@@ -30,7 +30,6 @@ from ....core.take.methods import METHODS
 from ....core.take.motion import Motion
 from ....core.take.motion_file import write_motion
 from ....core.take.take import Take
-from ....core.text import Sentence
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
 from ..usage import require_blender
@@ -225,10 +224,4 @@ def _unused_keyframes_note(description: Description, settings: ConversionSetting
     own = description.keyframes
     if settings.library is None or settings.keyframes is not None or not os.path.exists(own):
         return ()
-    return (
-        Sentence(
-            "{file} is left aside; --keyframes {file} --library {library} would use it too",
-            file=own,
-            library=settings.library,
-        ),
-    )
+    return (f"{own} is left aside; --keyframes {own} --library {settings.library} would use it too",)

@@ -9,7 +9,6 @@ from .....core.arrays import Array
 from .....core.finish.hermite import Spline
 from .....core.retarget.controls.control_channels import Control
 from .....core.retarget.controls.control_motion import ControlMotion, KeyedControl
-from .....core.text import Sentence
 from ...rotation_modes import bone_path, rotation_path
 from .dependencies import active_constraints, drivers
 
@@ -52,32 +51,25 @@ def channel_notes(
     """Sentences on what keeps the keyed controls from their poses, and on bones that were scaled."""
     driven = driven_channels(armature_object)
     bones = armature_object.pose.bones
-    notes = (
-        Sentence(
-            "Drivers win over the keys of bone {bones}; mute them to let the motion through",
-            bones=_listed(one.control.name for one in keyed if driven & set(keyed_channels(one))),
+    names = [one.control.name for one in keyed]
+    constrained = [
+        name for name, one in zip(names, keyed, strict=True) if _is_constrained(bones[name], one.control)
+    ]
+    locked = [name for name, one in zip(names, keyed, strict=True) if _is_locked(bones[name], one)]
+    notes = {
+        "Drivers win over the keys of bone {}; mute them to let the motion through": [
+            name for name, one in zip(names, keyed, strict=True) if driven & set(keyed_channels(one))
+        ],
+        "Constraints change the keyed pose of bone {}; mute them where it goes astray": constrained,
+        "Locked and keyed all the same: bone {}; unlock it to change it by hand": locked,
+        "Scaled in its pose: bone {}; the motion keys its scale at 1": scaled,
+        "Connected to its parent or not to be moved: bone {} stays off its place; disconnect it": _held_back(
+            armature_object, motion
         ),
-        Sentence(
-            "Constraints change the keyed pose of bone {bones}; mute them where it goes astray",
-            bones=_listed(
-                one.control.name for one in keyed if _is_constrained(bones[one.control.name], one.control)
-            ),
-        ),
-        Sentence(
-            "Locked and keyed all the same: bone {bones}; unlock it to change it by hand",
-            bones=_listed(one.control.name for one in keyed if _is_locked(bones[one.control.name], one)),
-        ),
-        Sentence("Scaled in its pose: bone {bones}; the motion keys its scale at 1", bones=_listed(scaled)),
-        Sentence(
-            "Connected to its parent or not to be moved: bone {bones} stays off its place; disconnect it",
-            bones=_listed(_held_back(armature_object, motion)),
-        ),
-        Sentence(
-            "Constraints follow the carriers of bone {bones} only in part; it may be off its place",
-            bones=_listed(_adrift(motion)),
-        ),
-    )
-    return tuple(note for note in notes if note.values["bones"])
+        "Constraints follow the carriers of bone {} only in part; it may be off its place": _adrift(motion),
+    }
+    listed = {note: _listed(bones) for note, bones in notes.items()}
+    return tuple(note.format(bones) for note, bones in listed.items() if bones)
 
 
 def _listed(names: Iterable[str]) -> str:

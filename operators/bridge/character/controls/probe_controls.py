@@ -20,7 +20,6 @@ from .....core.retarget.controls.control_spaces import (
 from .....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
 from .....core.retarget.controls.rigid_offset import rigid_offset
 from .....core.retarget.maps.character_map import CharacterMap
-from .....core.text import Sentence
 from ..pose_scales import ONE, scaled_bones
 from .dependencies import active_constraints, driven_bone, drivers
 from .posing import posing, read_poses, set_channels, set_properties
@@ -162,11 +161,7 @@ def _offsets(
             offsets[plan.name] = offset
         if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
             notes.append(
-                Sentence(
-                    "Bone '{bone}' does not follow its control '{control}' rigidly; its poses may be off",
-                    bone=plan.bone,
-                    control=plan.name,
-                )
+                f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
             )
     return offsets
 
@@ -200,11 +195,8 @@ def _steady(
             kept.append(index)
         else:
             notes.append(
-                Sentence(
-                    "Bone '{bone}' hangs on something that moves by itself, such as inverse kinematics, and "
-                    "is not keyed; name its control in the character map",
-                    bone=plan.name,
-                )
+                f"Bone '{plan.name}' hangs on something that moves by itself, such as inverse "
+                "kinematics, and is not keyed; name its control in the character map"
             )
     return kept
 
