@@ -12,7 +12,7 @@ from itertools import chain
 import cv2
 import numpy as np
 
-from ..arrays import Array, Image
+from ..arrays import Image
 from ..errors import InputError
 from ..progress import Job, Progress
 from .clips.clip import Clip

@@ -2,9 +2,7 @@
 
 import bpy
 
-from ...core.errors import InputError
 from ..shell.messages import label
-from ..shell.preferences import preferred_detector
 from ..shell.takes import find_take
 from .evidence import has_contours, has_keypoints
 
@@ -21,15 +19,6 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
     return label(
         "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
     )
-
-
-def detector(context: bpy.types.Context) -> str | None:
-    """A detector is named."""
-    try:
-        named = preferred_detector()
-    except InputError as error:
-        return str(error)
-    return None if named is not None else label("Name a detector in Keymark's preferences first")
 
 
 def keypoint_files(context: bpy.types.Context) -> str | None:
