@@ -1,7 +1,8 @@
 """Put the network that finds keypoints where Keymark looks for it, once; see presets/models/NOTICE.
 
-It lies in public archives: the large network in npm's @mediapipe/pose; a smaller, less exact one in pip's mediapipe,
-which is taken where there is no npm, unless --best is given. Their checksums stand in presets/models/SHA256SUMS.
+It lies in public archives: the large network in npm's @mediapipe/pose; a smaller, less exact one in pip's
+mediapipe, which is taken where there is no npm, unless --best is given. Their checksums stand in
+presets/models/SHA256SUMS.
 """
 
 import hashlib

@@ -1,7 +1,7 @@
 """MediaPipe's landmark network, which sees one person in a square crop (BlazePose, Bazarevsky et al. 2020).
 
-OpenCV runs it on the processor. It has learned crops about the hips with the person upright, so that the crop must
-move and turn with the person: `Pose.crop` is where to look next.
+OpenCV runs it on the processor. It has learned crops about the hips with the person upright, so that the crop
+must move and turn with the person: `Pose.crop` is where to look next.
 """
 
 import hashlib

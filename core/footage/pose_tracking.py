@@ -1,8 +1,9 @@
 """Everyone in a clip, found by the landmark network and followed from frame to frame.
 
 The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
-several sizes and places; from there they are followed backward until they are lost or met, and forward into the
-next stretches. Who of them is the performer is chosen later, as among any detector's people (`keypoints/performer`).
+several sizes and places; from there they are followed backward until they are lost or met, and forward into
+the next stretches. Who of them is the performer is chosen later, as among any detector's people
+(`keypoints/performer`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,13 +21,13 @@ from .keypoints.people import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 48
-"""Frames kept at a time, 130 MB."""
+STRETCH = 60
+"""Frames kept at a time, 170 MB."""
 LARGEST_SIDE_PX = 1280
 """Pictures are made as small; the network sees 256 pixels of a person."""
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)
 """Sides of the crops that are looked into, by the height of the picture."""
-SIZES = (1.0, 0.65)
+SIZES = (0.75,)
 """The same by the largest person who is followed already."""
 STEP, FEWEST_HIDDEN = 0.5, 0.3
 """Between crops, and least presence of one that is looked into again about whom it shows."""
@@ -226,7 +227,7 @@ def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
 
 
 def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
-    """The people of each frame without those of a moment, and, where nobody meets another, of one size only."""
+    """The people of each frame but those of a moment; where nobody meets another, those of one size."""
     sides: dict[int, list[float]] = {}
     for one in chain.from_iterable(seen):
         sides.setdefault(one.track, []).append(one.pose.crop.side)
