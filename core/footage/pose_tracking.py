@@ -65,8 +65,13 @@ def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
         longest: Most frames of a clip.
 
     Raises:
-        InputError: It has no frames or too many, or nobody is in it.
+        InputError: It is a picture, has no frames or too many, or nobody is in it.
     """
+    if clip.frame_count == 1 and not clip.knows_its_rate:
+        raise InputError(
+            "{clip}: is a single picture; it must be a video, or a folder of the pictures of one",
+            clip=clip.path,
+        )
     scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
     tracking = _Tracking(network)
     seen: list[list[_Sighting]] = []

@@ -4,6 +4,8 @@ import json
 import shutil
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 from _command_line import one_line, tree
 from _fake_network import MiddleNetwork
@@ -85,8 +87,8 @@ def test_what_fails_is_one_sentence_and_changes_nothing(
     broken, picture = clip.with_name("broken.mp4"), clip.with_name("portrait.png")
     broken.write_bytes(before[: len(before) // 3])
     fails(broken, "broken.mp4: ")
-    picture.write_bytes(b"no picture")
-    fails(picture, "portrait.png")
+    cv2.imwrite(str(picture), np.zeros((60, 80, 3), dtype=np.uint8))
+    fails(picture, "portrait.png: is a single picture")
     monkeypatch.setattr(MiddleNetwork, "presence", 0.0)
     fails(clip, "walk.mp4: nobody is seen in any of its 8 frames")
     monkeypatch.undo()
