@@ -10,7 +10,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array, Image, SingleArray
 from ..errors import InputError
@@ -118,8 +117,12 @@ class PoseNetwork:
         """Points (39, 5), presence, heat maps (39, 64, 64) and points in space (39, 3)."""
         self._net.setInput(blob)
         points, presence, heat, world = self._net.forward(OUTPUTS)
-        shape = (POINTS, CELLS, CELLS)
-        return points.reshape(POINTS, 5), presence.item(), heat.reshape(shape), world.reshape(POINTS, 3)
+        shapes = ((POINTS, 5), (POINTS, CELLS, CELLS), (POINTS, 3))
+        arrays = [
+            np.asarray(out, dtype=np.float32).reshape(shape)
+            for out, shape in zip((points, heat, world), shapes, strict=True)
+        ]
+        return arrays[0], float(np.ravel(presence)[0]), arrays[1], arrays[2]
 
     def postprocess(self, out: tuple[SingleArray, float, SingleArray, SingleArray], crop: Crop) -> Pose:
         """The pose in the picture."""
@@ -150,5 +153,5 @@ def _refined(place: SingleArray, heat: SingleArray) -> Array:
     return np.asarray((first + middle) * size)
 
 
-def _sigmoid(value: NDArray[np.floating]) -> Array:
+def _sigmoid(value: SingleArray) -> Array:
     return np.asarray(1.0 / (1.0 + np.exp(-np.clip(value, -60.0, 60.0).astype(np.float64))))
