@@ -4,23 +4,22 @@
 .DELETE_ON_ERROR:
 
 OUTPUT ?= out/demo
-TAKE ?= presets/demo/aerobic
 TESTS ?=
 ZIPS ?=
-BENCHMARKS ?= camera accuracy evidence keyframe_economy sensitivity matching posing_all frame_poses finishing retargeting waiting batch
+BENCHMARKS ?= camera accuracy evidence keyframe_economy sensitivity posing_all frame_poses finishing retargeting waiting batch detection
 
 find_python := sh tools/find_python.sh
 # Variables, because a comma would end an argument of `call`.
 test_parts := --editable '.[blender,dev]'
 demo_size := Blender as a Python module, about 500 MB to download, 1.3 GB on disk, one to five minutes
 test_size := Blender as a Python module and the test tools, about 600 MB to download, 1.6 GB on disk, two to six minutes
-detect_size := MediaPipe, about 1 GB on disk, one to five minutes
 dev_size := libraries and tools, about 200 MB to download, 600 MB on disk, a minute or two
 # Whole files to a worker, so that what a file's tests share is made once.
 two_at_a_time := --numprocesses 2 --dist loadfile
 test_time := all tests take about five minutes on two quiet cores
 settings := pyproject.toml setup.py
-sources := $(shell find __init__.py blender_manifest.toml core operators presets detectors -type f ! -name '*.pyc' 2>/dev/null)
+model := presets/models/pose_landmark.tflite
+sources := $(shell find __init__.py blender_manifest.toml core operators presets -type f ! -name '*.pyc' 2>/dev/null)
 
 # make_venv FOLDER, PYTHON VERSION, CANDIDATE, WHAT TO INSTALL, WHAT IS SAID: a new virtual environment, complete once it
 # has `ready`.
@@ -39,15 +38,19 @@ check_libraries = python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/c
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1|/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "  make %-14s %s\n", $$1, $$2}'
 
-.venv-demo/ready: $(settings) $(sources)
+# The network that finds keypoints: 28 MB out of an archive of 41. Where it cannot be had, all else works.
+$(model): presets/models/SHA256SUMS tools/fetch_model.py
+	@python=$$($(find_python) 3.11 $(PYTHON)) && "$$python" tools/fetch_model.py || echo "keymark detect is left out." >&2
+
+.venv-demo/ready: $(settings) $(sources) $(model)
 	@$(check_libraries)
 	@rm -rf build
 	@$(call make_venv,.venv-demo,3.11,$(PYTHON),'.[blender]',$(demo_size))
 
-.venv-dev/ready: $(settings)
+.venv-dev/ready: $(settings) | $(model)
 	@$(call make_venv,.venv-dev,3.11,$(PYTHON),--editable '.[dev]',$(dev_size))
 
-.venv-test/ready: $(settings)
+.venv-test/ready: $(settings) | $(model)
 	@$(check_libraries)
 	@$(call make_venv,.venv-test,3.11,$(PYTHON),$(test_parts),$(test_size))
 
@@ -58,15 +61,6 @@ help: ## list the targets
 .PHONY: demo
 demo: .venv-demo/ready ## convert the demonstration take into out/demo
 	.venv-demo/bin/keymark demo --output $(OUTPUT)
-
-.venv-detect/ready: detectors/mediapipe_pose.txt
-	@$(call make_venv,.venv-detect,3.11,$(PYTHON),--requirement detectors/mediapipe_pose.txt,$(detect_size))
-
-# Its own environment, of about a gigabyte: MediaPipe brings another OpenCV, which must not come into ours.
-.PHONY: detect-demo
-detect-demo: .venv-demo/ready .venv-detect/ready ## run MediaPipe on TAKE, convert it without any marker, and score it
-	.venv-demo/bin/python tools/detect_demo.py $(TAKE) out/detect-demo \
-	    '$(CURDIR)/.venv-detect/bin/python {detectors}/mediapipe_pose.py {clip} --output {output}'
 
 # Tests start dozens of processes, each of which would compile all modules anew where the variable is set.
 test test-core test-faults: export PYTHONDONTWRITEBYTECODE :=
@@ -133,6 +127,7 @@ format: .venv-dev/ready ## put the code into the project's format
 # One of them: make package ZIPS='--platform linux-x64 --python 3.13'.
 .PHONY: package
 package: .venv-test/ready ## build the extension's zips, one a platform and Python of Blender, into dist/
+	@.venv-test/bin/python tools/fetch_model.py --best
 	@.venv-test/bin/python tools/build_package.py $(ZIPS)
 
 .PHONY: bench
@@ -141,5 +136,5 @@ bench: .venv-test/ready ## measure accuracy, keyframes needed, sensitivity, libr
 
 .PHONY: clean
 clean: ## remove everything that make has made here
-	rm -rf .venv-demo .venv-detect .venv-dev .venv-test .venv-test-313 .cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv-demo .venv-dev .venv-test .venv-test-313 .cache .mypy_cache .pytest_cache .ruff_cache
 	rm -rf .hypothesis build dist out wheels keymark.egg-info

@@ -14,7 +14,7 @@ setup(
     package_dir={"keymark": "."},
     packages=["keymark", *(f"keymark.{name}" for name in find_packages(str(ROOT), include=ROOMS))],
     package_data={
-        "keymark": ["blender_manifest.toml", "presets/**/*", "detectors/*"],
+        "keymark": ["blender_manifest.toml", "presets/**/*"],
         "keymark.core.report.summary": ["*.css", "*.js"],
     },
     include_package_data=False,

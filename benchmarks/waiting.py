@@ -1,6 +1,6 @@
 """Time and memory of everything that people wait for, in one table.
 
-Usage: waiting.py [CLIP ...] [--detector PYTHON] [--page]; clips are `small`, `ten` and `sixty`, by default
+Usage: waiting.py [CLIP ...] [--page]; clips are `small`, `ten` and `sixty`, by default
 all, made of the demonstration. Each cell is a process of its own, so that its peak of memory is its own too.
 With --page the table takes its place in docs/performance.md. See README.md beside this file.
 """
@@ -19,20 +19,18 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from batch import busy_s, cost, make_shoot, process_cost
+from batch import busy_s, cost, make_shoot
 from takes import ROOT, write_results
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"
 PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- times: begin -->", "<!-- times: end -->"
-DETECTOR = ROOT / ".venv-detect" / "bin" / "python"
-DETECTING = ROOT / "detectors" / "mediapipe_pose.py"
 HERE = Path(__file__).resolve().parent
 JOBS = 2
 PROCESSORS = Path("/proc/cpuinfo")
 LIMIT_S = 400.0
 """A step that takes longer has failed: the others are measured nevertheless."""
-FAILED, ABSENT, LEFT_OUT = "failed", "not installed", "not measured"
+FAILED, LEFT_OUT = "failed", "not measured"
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ ROWS = {
     "open_take": "**open the take**",
     "read": "**follow the markers**, until keyframes are proposed",
     "read_keypoints": "**read plain clothes** with a file of keypoints, likewise",
-    DETECT: "*instead: MediaPipe Pose finds keypoints*",
+    DETECT: "**find keypoints**",
     "pose_all": "**pose all**, nothing posed",
     "reconstruct": "**reconstruct** from posed keyframes",
     "filter_motion": "*instead: the paper's filter*",
@@ -109,18 +107,14 @@ def run_step(step: str, *words: object) -> dict[str, Any]:
     return result
 
 
-def measured(step: str, clip: Clip, take: Path, detector: Path) -> Cell | str:
+def measured(step: str, clip: Clip, take: Path) -> Cell | str:
     """What one step of a take costs, or why that is not known."""
     with tempfile.TemporaryDirectory() as temporary:
         output = Path(temporary) / "out"
         if step == BY_HAND:
             return "0 s"
         if step == DETECT:
-            if not detector.is_file():
-                return ABSENT
-            spent = process_cost(
-                1, [str(detector), str(DETECTING), str(take / "clip.mp4"), "--output", str(output)]
-            )
+            spent = cost(1, ["detect", str(take), "--output", str(Path(temporary, "seen.json")), "--quiet"])
         elif step == CONVERT:
             spent = cost(1, ["convert", str(take), "--output", str(output), "--quiet"])
         elif step == BATCH:
@@ -134,7 +128,7 @@ def measured(step: str, clip: Clip, take: Path, detector: Path) -> Cell | str:
     return Cell(spent.wall_s, spent.processor_s, spent.peak_mb, spent.takes)
 
 
-def measure(name: str, place: Path, detector: Path) -> dict[str, Cell | str]:
+def measure(name: str, place: Path) -> dict[str, Cell | str]:
     """Measure every step of a clip, whose take is made in `place`, beside the character."""
     clip, take = CLIPS[name], place / name
     if clip.frames is None:
@@ -145,7 +139,7 @@ def measure(name: str, place: Path, detector: Path) -> dict[str, Cell | str]:
     for step in ROWS:
         print(f"{name}: {step} ...", file=sys.stderr, flush=True)
         try:
-            found[step] = measured(step, clip, take, detector)
+            found[step] = measured(step, clip, take)
         except (subprocess.SubprocessError, SystemExit) as error:
             print(f"{name}: {step} failed: {error}", file=sys.stderr, flush=True)
             found[step] = FAILED
@@ -232,9 +226,6 @@ def main(arguments: list[str]) -> int:
     parser.add_argument(
         "clips", nargs="*", metavar="CLIP", help=f"some of {', '.join(CLIPS)}; by default all"
     )
-    parser.add_argument(
-        "--detector", metavar="PYTHON", type=Path, default=DETECTOR, help="Python that has MediaPipe"
-    )
     parser.add_argument("--page", action="store_true", help=f"put the table into {PAGE.name}")
     options = parser.parse_args(arguments)
     unknown = set(options.clips) - set(CLIPS)
@@ -245,7 +236,7 @@ def main(arguments: list[str]) -> int:
     with tempfile.TemporaryDirectory() as temporary:
         run_step("make_character", temporary)
         for name in options.clips or CLIPS:
-            found[name] = measure(name, Path(temporary), options.detector)
+            found[name] = measure(name, Path(temporary))
             # After each clip, so that a run that is broken off leaves what it knows.
             report(found, others_busy(began, before), options.page)
     return int(any(cell == FAILED for steps in found.values() for cell in steps.values()))

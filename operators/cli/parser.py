@@ -24,7 +24,7 @@ examples:
   {program} merge out --output library.blend
   {program} character anna.blend --output anna.json
   {program} retarget out/walk --character anna.blend --output out/anna_walk --format fbx
-  {program} detect shoot --detector 'python {{detectors}}/mediapipe_pose.py {{clip}} --output {{output}}'
+  {program} detect shoot
   {program} propose takes/walk --count 12
   {program} library list
 

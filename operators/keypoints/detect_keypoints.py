@@ -1,4 +1,4 @@
-"""Find keypoints in the clip with the detector that the preferences name."""
+"""Find keypoints in the clip by Keymark's own network."""
 
 from dataclasses import dataclass
 from os import W_OK, X_OK, access
@@ -9,17 +9,15 @@ import bpy
 
 from ...core.errors import InputError
 from ..shell.job_operator import JobOperator
-from ..shell.messages import warn
 from ..shell.redraw import redraw_footage
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .keypoint_paths import add_keypoint_file, keypoint_path
 from .keypoint_readings import clear_readings
-from .requirements import detector
 
 if TYPE_CHECKING:
+    from ...core.footage.keypoints.people import People
     from ...core.progress import Job
-    from ..bridge.detector.detect_keypoints import Detection
 
 KEYPOINT_FILE = "keypoints.json"
 MOST_TRIED = 1000
@@ -34,49 +32,47 @@ class Detected:
     """The take's identifier."""
     output: Path
     """The file to write."""
-    detection: "Detection"
+    people: "People"
+    fps: float
+    frame_start: int
 
 
 class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
-    """Find points of the body in the whole clip, with the detector named in Keymark's preferences"""
+    """Find points of the body of everybody in the whole clip"""
 
     bl_idname = "keymark.detect_keypoints"
     bl_label = "Detect Keypoints"
     bl_options = {"REGISTER", "UNDO"}
-    requirements = (footage, detector, idle)
+    requirements = (footage, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
-        """Return the job that runs the detector; closing it ends the program, which leaves nothing behind."""
-        from ..bridge.detector.detect_keypoints import detect_keypoints
-        from ..shell.preferences import preferred_detector
+        """Return the job that looks at every frame."""
+        from ...core.footage.pose_network import PoseNetwork
+        from ...core.footage.pose_tracking import find_people
+        from ...core.take.clip_check import LONGEST_FRAMES, open_footage
 
         take = active_take(scene)
-        identifier, source, chosen = take.identifier, footage_of(scene, take), preferred_detector()
-        output = _output(take, source.path)
-        if chosen is None:
-            raise InputError("no detector is named; set one in Keymark's preferences")
-        chosen.command.check_program()
-        clip, rate, first = source.path, source.rate, source.first_frame
-        job = detect_keypoints(clip, chosen, fps=rate, frame_start=first)
-        return Detected(identifier, output, (yield from job))
+        identifier, source = take.identifier, footage_of(scene, take)
+        output, first = _output(take, source.path), source.first_frame
+        clip = open_footage(source.path, source.rate)
+        people = yield from find_people(clip, PoseNetwork(), LONGEST_FRAMES)
+        return Detected(identifier, output, people, clip.fps, first)
 
     def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
         """Write the keypoints beside the clip, and add them to the take."""
         from ...core.footage.keypoints.keypoint_file import write_keypoints
 
         take = take_by_identifier(scene, result.take)
-        found = result.detection
-        write_keypoints(result.output, found.people, found.frame_start, found.fps)
+        people = result.people
+        write_keypoints(result.output, people, result.frame_start, result.fps)
         add_keypoint_file(take, result.output)
         take.follow.use_keypoints = True
         clear_readings()
         redraw_footage(bpy.context)
-        for note in found.notes:
-            warn(self, note)
         self.report(
             {"INFO"},
-            f"Somebody is seen in {found.seen_frames} of {len(found.people.frames)} frames; the "
-            f"keypoints are in {result.output.name}",
+            f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames; the keypoints are in "
+            f"{result.output.name}",
         )
 
 

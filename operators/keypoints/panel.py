@@ -6,7 +6,6 @@ from ..bridge.footage_camera import may_move
 from ..shell.follow_panel import ClipFollowPanel, FollowPanel, draw_readout, draw_switch
 from ..shell.messages import capitalized
 from ..shell.panel import RowList, draw_progress, draw_sentence, property_column
-from ..shell.preferences import EXTENSION, preferences
 from ..shell.shown_frame import clip_index
 from ..shell.takes import active_take
 from .assigned_tracks import assigned_tracks, point_of
@@ -213,7 +212,8 @@ def _draw_files(
 ) -> None:
     """Draw the list of files and the chosen one, or the button that loads the first."""
     follow = take.follow
-    _draw_detect(layout, context)
+    if not draw_progress(layout, context, "keymark.detect_keypoints"):
+        layout.operator("keymark.detect_keypoints", icon="VIEWZOOM")
     if not len(follow.files):
         layout.operator("keymark.load_keypoints", icon="FILE_FOLDER")
         return
@@ -225,16 +225,6 @@ def _draw_files(
     buttons.operator("keymark.remove_keypoints", text="", icon="REMOVE")
     if follow.active_file < len(follow.files):
         _draw_file(layout, context, take, follow.files[follow.active_file])
-
-
-def _draw_detect(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draw the button of the detector, or its progress, and the way to the preferences that name it."""
-    row = layout.row(align=True)
-    if draw_progress(row, context, "keymark.detect_keypoints"):
-        return
-    row.operator("keymark.detect_keypoints", icon="VIEWZOOM")
-    if preferences() is not None:
-        row.operator("preferences.addon_show", text="", icon="PREFERENCES").module = EXTENSION
 
 
 def _draw_file(

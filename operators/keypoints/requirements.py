@@ -2,8 +2,6 @@
 
 import bpy
 
-from ...core.errors import InputError
-from ..shell.preferences import preferred_detector
 from ..shell.takes import find_take
 from .evidence import has_contours, has_keypoints
 
@@ -16,15 +14,6 @@ def anything_to_follow(context: bpy.types.Context) -> str | None:
     if take.follow.use_contours and take.camera is not None:
         return "Load keypoints, assign tracks or add markers first: contours need a camera that stands still"
     return "Switch on the contours, load keypoints, assign tracks or add markers first (What to Follow)"
-
-
-def detector(context: bpy.types.Context) -> str | None:
-    """A detector is named."""
-    try:
-        named = preferred_detector()
-    except InputError as error:
-        return str(error)
-    return None if named is not None else "Name a detector in Keymark's preferences first"
 
 
 def keypoint_files(context: bpy.types.Context) -> str | None:

@@ -13,7 +13,7 @@ from zipfile import ZipFile
 import pytest
 from installed_blender import Blender
 
-LIMITS_MB = {"linux-x64": 90.0, "windows-x64": 78.5, "macos-arm64": 75.0}
+LIMITS_MB = {"linux-x64": 118.0, "windows-x64": 106.5, "macos-arm64": 103.0}
 """For Windows 75 was meant; its wheels, which have to be left as they are, take 76 (docs/releasing.md)."""
 VERSION = "import bpy; print('ANSWER', *bpy.app.version)"
 

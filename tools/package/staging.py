@@ -10,6 +10,8 @@ from .builds import Build
 from .wheels import ROOT, wheels_of
 
 MANIFEST = "blender_manifest.toml"
+MODEL = "presets/models/pose_landmark.tflite"
+"""The network, which git does not know."""
 
 
 def manifest_version() -> str:
@@ -19,11 +21,14 @@ def manifest_version() -> str:
 
 
 def stage(folder: Path, build: Build, version: str) -> None:
-    """Copy the tree into `folder`, with the wheels of one zip, and a manifest for it."""
+    """Copy the tree into `folder`, with the network, the wheels of one zip, and a manifest for it."""
     for name in tracked_files():
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, target)
+    if not (ROOT / MODEL).is_file():
+        raise SystemExit(f"{MODEL} is missing: run tools/fetch_model.py.")
+    shutil.copyfile(ROOT / MODEL, folder / MODEL)
     wheels = sorted(wheels_of(build))
     (folder / "wheels").mkdir()
     for wheel in wheels:

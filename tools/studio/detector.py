@@ -1,6 +1,6 @@
 """A detector of keypoints with the errors of real ones, made from the truth: seeded, so always the same.
 
-Its errors are those that networks make on footage (`detectors/mediapipe_pose.py` runs a real one), as shares
+Its errors are those that networks make on footage, as shares
 of the performer's height in the picture, since networks see people in pictures of one size:
 
 * its points lie beside the joints, always at about the same place of the segment;

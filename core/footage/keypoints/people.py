@@ -43,6 +43,11 @@ class People:
         """Largest number of people in a frame."""
         return max((len(frame.pixel) for frame in self.frames), default=0)
 
+    @property
+    def seen_frames(self) -> int:
+        """Number of frames in which anybody is seen."""
+        return sum(len(frame.pixel) > 0 for frame in self.frames)
+
     def without_hints(self) -> "People":
         """The same people without the guess of the points in space."""
         frames = tuple(replace(frame, hint_m=np.full(frame.hint_m.shape, np.nan)) for frame in self.frames)

@@ -1,4 +1,4 @@
-"""`keymark detect`: run a user's detector on a clip, a take, or every take of a shoot."""
+"""`keymark detect`: find keypoints in a clip, a take, or every take of a shoot."""
 
 import argparse
 import os
@@ -12,17 +12,18 @@ from ....core.files.fields import listed
 from ....core.files.kinds import read_field
 from ....core.footage.clips.image_sequence import find_images
 from ....core.footage.keypoints.keypoint_file import write_keypoints
+from ....core.footage.keypoints.people import People
+from ....core.footage.pose_network import PoseNetwork
+from ....core.footage.pose_tracking import find_people
 from ....core.progress import run, stretch
 from ....core.shoot.discovery import VIDEOS, find_takes, open_shoot
 from ....core.shoot.shoot import ShootTake
+from ....core.take.clip_check import LONGEST_FRAMES, open_footage
 from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, sidecar_file
 from ....core.take.shoot_file import find_shoot_files
 from ....core.take.take_file import FRAME_RATE, FRAME_START
 from ....core.text import pluralize
-from ...bridge.detector.detect_keypoints import Detection, detect_keypoints
-from ...bridge.detector.detector_setting import Detector
 from ..console import Console, arguments_console
-from ..detector_choice import chosen_detector
 from ..usage import UsageError, refuse_existing
 
 MOST_NAMED = 5
@@ -30,7 +31,7 @@ MOST_NAMED = 5
 
 @dataclass(frozen=True)
 class Footage:
-    """A clip to run the detector on, and where its keypoints go."""
+    """A clip, and where its keypoints go."""
 
     name: str
     clip: Path
@@ -45,7 +46,7 @@ class Outcome:
 
     name: str
     output: Path | None
-    detection: Detection | None = None
+    people: People | None = None
     error: str | None = None
 
     @property
@@ -53,13 +54,13 @@ class Outcome:
         """A line on it."""
         if self.error is not None:
             return f"{self.name}: {self.error}"
-        if self.detection is None:
+        if self.people is None:
             return f"{self.name}: {self.output} is there already"
-        return f"{self.name}: {_found_text(self.detection)}, in {self.output}"
+        return f"{self.name}: {_found_text(self.people)}, in {self.output}"
 
     def to_dict(self) -> dict[str, Any]:
         """The outcome for `--json`."""
-        found = None if self.detection is None else _summary(self.detection)
+        found = None if self.people is None else _summary(self.people)
         output = None if self.error is not None or self.output is None else str(self.output)
         return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
 
@@ -69,28 +70,27 @@ def detect_command(arguments: argparse.Namespace) -> None:
 
     Raises:
         UsageError: An option is unusable, or a file is there and `--replace` is not given.
-        InputError: What is named is unusable, or what the detector wrote.
-        ConversionError: The detector failed, in a shoot for some of the takes.
+        InputError: What is named is unusable, or shows nobody.
+        ConversionError: Some takes of a shoot failed.
     """
-    detector = chosen_detector(arguments.detector, arguments.time_limit)
+    network = PoseNetwork()
     one = _single(arguments.target)
     with arguments_console(arguments) as console:
         if one is not None:
             footage = one if arguments.output is None else replace(one, output=arguments.output)
             refuse_existing(footage.output, arguments.replace)
-            detection = _detect(footage, detector, console, 0.0, 1.0)
-            result = {"keypoints": str(footage.output), **_summary(detection)}
-            lines = [f"{_found_text(detection)}: {footage.output}", *detection.notes]
-            console.finish(result, "\n".join(lines))
+            people = _detect(footage, network, console, 0.0, 1.0)
+            result = {"keypoints": str(footage.output), **_summary(people)}
+            console.finish(result, f"{_found_text(people)}: {footage.output}")
             return
         if arguments.output is not None:
             raise UsageError(
                 f"--output is one file, and {arguments.target} may hold several takes; their keypoints go "
                 "beside them"
             )
-        outcomes = _detect_all(arguments, detector, console)
+        outcomes = _detect_all(arguments, network, console)
         failed = [outcome.name for outcome in outcomes if outcome.error is not None]
-        there = sum(outcome.error is None and outcome.detection is None for outcome in outcomes)
+        there = sum(outcome.error is None and outcome.people is None for outcome in outcomes)
         found = len(outcomes) - len(failed) - there
         counts = {"detected": found, "there_already": there, "failed": len(failed)}
         takes = pluralize(len(outcomes), "take")
@@ -100,34 +100,31 @@ def detect_command(arguments: argparse.Namespace) -> None:
         raise ConversionError(f"{len(failed)} of {len(outcomes)} takes failed: {listed(failed, MOST_NAMED)}")
 
 
-def _found_text(detection: Detection) -> str:
+def _found_text(people: People) -> str:
     """What was found, for a person."""
-    frames = len(detection.people.frames)
-    most = detection.people.most_people
-    who = "a person" if most == 1 else f"up to {most} people"
-    return f"{who} in {detection.seen_frames} of {pluralize(frames, 'frame')}"
+    who = "a person" if people.most_people == 1 else f"up to {people.most_people} people"
+    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}"
 
 
-def _summary(detection: Detection) -> dict[str, Any]:
+def _summary(people: People) -> dict[str, Any]:
     """What was found, for `--json`."""
     return {
-        "detector": detection.people.source,
-        "frames": len(detection.people.frames),
-        "seen_frames": detection.seen_frames,
-        "most_people": detection.people.most_people,
-        "points": list(detection.people.names),
-        "notes": list(detection.notes),
+        "detector": people.source,
+        "frames": len(people.frames),
+        "seen_frames": people.seen_frames,
+        "most_people": people.most_people,
+        "points": list(people.names),
     }
 
 
-def _detect_all(arguments: argparse.Namespace, detector: Detector, console: Console) -> list[Outcome]:
-    """Run the detector on every take in turn; one that fails does not stop the others."""
+def _detect_all(arguments: argparse.Namespace, network: PoseNetwork, console: Console) -> list[Outcome]:
+    """Look at every take in turn; one that fails does not stop the others."""
     target = arguments.target
     shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
     takes = shoot.takes
     outcomes: list[Outcome] = []
     for index, take in enumerate(takes):
-        outcome = _outcome(take, detector, arguments, console, index / len(takes), (index + 1) / len(takes))
+        outcome = _outcome(take, network, arguments, console, index / len(takes), (index + 1) / len(takes))
         outcomes.append(outcome)
         console.take_line(outcome.text, None if outcome.error is None else outcome.text)
     return outcomes
@@ -135,7 +132,7 @@ def _detect_all(arguments: argparse.Namespace, detector: Detector, console: Cons
 
 def _outcome(
     take: ShootTake,
-    detector: Detector,
+    network: PoseNetwork,
     arguments: argparse.Namespace,
     console: Console,
     first: float,
@@ -147,7 +144,7 @@ def _outcome(
         output = footage.output
         if os.path.lexists(output) and not arguments.replace:
             return Outcome(take.name, output)
-        return Outcome(take.name, output, _detect(footage, detector, console, first, last))
+        return Outcome(take.name, output, _detect(footage, network, console, first, last))
     except KeymarkError as error:
         return Outcome(take.name, output, error=str(error))
     except Exception as error:
@@ -157,15 +154,16 @@ def _outcome(
         return Outcome(take.name, output, error=what)
 
 
-def _detect(footage: Footage, detector: Detector, console: Console, first: float, last: float) -> Detection:
-    """Run the detector on one clip and write its keypoints."""
+def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
+    """Find the keypoints of one clip and write them."""
     if not os.access(footage.output.parent, os.W_OK | os.X_OK):
         raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
-    job = detect_keypoints(footage.clip, detector, fps=footage.fps, frame_start=footage.frame_start)
+    clip = open_footage(footage.clip, footage.fps)
+    job = find_people(clip, network, LONGEST_FRAMES)
     with closing(stretch(job, first, last)) as stretched:
-        detection = run(stretched, console.progress)
-    write_keypoints(footage.output, detection.people, detection.frame_start, detection.fps)
-    return detection
+        people = run(stretched, console.progress)
+    write_keypoints(footage.output, people, footage.frame_start, clip.fps)
+    return people
 
 
 def _single(path: Path) -> Footage | None:

@@ -104,19 +104,18 @@ def test_a_step_that_fails_leaves_the_others(tmp_path: Path, monkeypatch: pytest
         return {"seconds": 1.0, "processor_s": 1.0, "peak_mb": 1.0}
 
     monkeypatch.setattr(waiting, "run_step", run_step)
-    monkeypatch.setattr(waiting, "ROWS", {step: "" for step in ("bake", "retarget", waiting.DETECT)})
-    found = waiting.measure("small", tmp_path, tmp_path / "nowhere")
+    monkeypatch.setattr(waiting, "ROWS", {step: "" for step in ("bake", "retarget")})
+    found = waiting.measure("small", tmp_path)
     assert found == {
         "bake": waiting.FAILED,
         "retarget": waiting.Cell(1.0, 1.0, 1.0),
-        waiting.DETECT: waiting.ABSENT,
     }
 
 
 def test_decoding_is_measured_in_a_process_of_its_own(tmp_path: Path) -> None:
     """Its peak of memory is not that of this one."""
     (tmp_path / "clip.mp4").write_bytes((waiting.DEMO / "clip.mp4").read_bytes())
-    cell = waiting.measured("decode", waiting.CLIPS["small"], tmp_path, tmp_path)
+    cell = waiting.measured("decode", waiting.CLIPS["small"], tmp_path)
     assert isinstance(cell, waiting.Cell)
     assert cell.seconds > 0.0 and 20.0 < cell.peak_mb < 400.0
 

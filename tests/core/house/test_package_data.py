@@ -10,15 +10,14 @@ from keymark.core.take.examples import AEROBIC, GREETING
 
 @pytest.fixture
 def package_data(repository: Path) -> set[Path]:
-    """Every file of the presets and detectors, and those beside the modules that are no Python."""
-    tops = (repository / "presets", repository / "detectors")
-    files = {path for top in tops for path in top.rglob("*") if path.is_file() and path.suffix != ".pyc"}
+    """Every file of the presets, and those beside the modules that are no Python."""
+    files = {path for path in (repository / "presets").rglob("*") if path.is_file() and path.suffix != ".pyc"}
     for room in ("core", "operators"):
         found = (path for path in (repository / room).rglob("*") if path.is_file())
         files |= {path for path in found if path.suffix not in (".py", ".pyc")}
     relative = {path.relative_to(repository) for path in files}
     assert any(path.match("presets/keyframes/*.json") for path in relative)
-    assert Path("detectors/mediapipe_pose.py") in relative
+    assert Path("presets/models/NOTICE") in relative
     assert {Path(f"presets/demo/{name}/clip.mp4") for name in (AEROBIC, GREETING)} <= relative
     assert {Path("core/report/summary/style.css"), Path("core/report/summary/script.js")} <= relative
     return relative

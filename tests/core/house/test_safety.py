@@ -22,7 +22,6 @@ ONLY_IN = {
     "subprocess": (
         "operators.cli.batch",  # workers: Keymark itself
         "operators.cli.commands.demo",  # Blender, which generates a rig
-        "operators.bridge.detector.detector_process",  # the program that the user has set, and no other
     ),
     "asyncio": (),
 }

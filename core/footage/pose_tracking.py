@@ -1,0 +1,246 @@
+"""Everyone in a clip, found by the landmark network and followed from frame to frame.
+
+The clip is decoded once, a stretch at a time. People are looked for at the end of every stretch, by crops of
+several sizes and places; from there they are followed backward until they are lost or met, and forward into
+the next stretches. Who of them is the performer is chosen later, as among any detector's people
+(`keypoints/performer`).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+import cv2
+import numpy as np
+
+from ..arrays import Image
+from ..errors import InputError
+from ..progress import Job, Progress
+from .clips.clip import Clip
+from .keypoints.people import People, SeenPeople
+from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
+
+DETECTING = "Detecting keypoints"
+STRETCH = 60
+"""Frames kept at a time, 170 MB."""
+LARGEST_SIDE_PX = 1280
+"""Pictures are made as small; the network sees 256 pixels of a person."""
+HEIGHTS = (1.15, 0.75, 0.5, 0.33)
+"""Sides of the crops that are looked into, by the height of the picture."""
+SIZES = (0.75,)
+"""The same by the largest person who is followed already."""
+STEP, FEWEST_HIDDEN = 0.5, 0.3
+"""Between crops, and least presence of one that is looked into again about whom it shows."""
+LOOKS = 2
+"""More of these, each about the person as last seen."""
+PRESENT, SURE = 0.5, 0.9
+"""Presence of somebody who is followed, and of somebody new."""
+SCORE, NEW_SCORE = 0.3, 0.5
+"""The same of the mean score of all points."""
+FARTHEST, MOST_GROWN = 0.35, 1.5
+"""Of a step between frames: shares of the crop's side, and a ratio of sides."""
+APART = 0.3
+"""Share of a crop's side within which two crops show the same person."""
+FEWEST_FRAMES, MOST_OTHER = 4, 1.6
+"""Frames in which somebody must be seen, and ratio of sizes beyond which a later person is another."""
+SMALLEST, MOST_PEOPLE = 0.35, 4
+"""Others are followed from this share of the largest one's size on, and so many together."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Sighting:
+    """A person in one frame."""
+
+    track: int
+    """Number of the person, a new one where somebody was lost in between."""
+    pose: Pose
+
+
+def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
+    """Find everyone in a clip.
+
+    Args:
+        clip: The clip.
+        network: The network.
+        longest: Most frames of a clip.
+
+    Raises:
+        InputError: It is a picture, has no frames or too many, or nobody is in it.
+    """
+    if clip.frame_count == 1 and not clip.knows_its_rate:
+        raise InputError(
+            f"{clip.path}: is a single picture; it must be a video, or a folder of the pictures of one"
+        )
+    scale = min(1.0, LARGEST_SIDE_PX / max(clip.size))
+    tracking = _Tracking(network)
+    seen: list[list[_Sighting]] = []
+    yield Progress(DETECTING, 0.0)
+    for pictures in _stretches(clip, scale):
+        for done in tracking.follow(pictures):
+            yield Progress(DETECTING, min((len(seen) + done) / clip.frame_count, 1.0))
+        seen += tracking.seen
+        if len(seen) > longest:
+            raise InputError(f"{clip.path}: has more than {longest} frames; cut it into shorter clips")
+    if not seen:
+        raise InputError(f"{clip.path}: holds no frame that can be decoded; it must be a video or images")
+    kept = _believed(seen)
+    if not any(kept):
+        raise InputError(
+            f"{clip.path}: nobody is seen in any of its {len(seen)} frames; it must show a person, at "
+            "least from the head to the hips and not too small"
+        )
+    frames = tuple(_people(frame, clip.size, scale) for frame in kept)
+    return People(LAYOUT.names, NAME, clip.size, frames)
+
+
+def _stretches(clip: Clip, scale: float) -> Iterator[list[Image]]:
+    pictures: list[Image] = []
+    for _, _, picture in clip.frames():
+        if scale < 1.0:
+            size = (round(scale * clip.size[0]), round(scale * clip.size[1]))
+            picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        pictures.append(picture)
+        if len(pictures) == STRETCH:
+            yield pictures
+            pictures = []
+    if pictures:
+        yield pictures
+
+
+class _Tracking:
+    """Whom the frames of one stretch after another show."""
+
+    def __init__(self, network: PoseNetwork) -> None:
+        self._network = network
+        self._tracks = 0
+        self._began = False
+        self.seen: list[list[_Sighting]] = []
+        """Of each frame of the last stretch."""
+
+    def follow(self, pictures: Sequence[Image]) -> Iterator[int]:
+        """Follow everyone through the next stretch; yields the number of frames that are done."""
+        before = self.seen[-1] if self.seen else []
+        self.seen = [[] for _ in pictures]
+        if not self._began:
+            self._began = True
+            yield from self._look(pictures, 0)
+        else:
+            yield from self._go(pictures, before, range(len(pictures)))
+        last = len(pictures) - 1
+        yield from self._look(pictures, last)
+        if not any(self.seen):
+            yield from self._look(pictures, last // 2)
+
+    def _look(self, pictures: Sequence[Image], index: int) -> Iterator[int]:
+        """Look for new people in a frame, and follow them both ways."""
+        known = [one.pose for one in self.seen[index]]
+        new = []
+        for pose in _scan(self._network, pictures[index], known):
+            new.append(_Sighting(self._tracks, pose))
+            self._tracks += 1
+        self.seen[index] += new
+        yield from self._go(pictures, new, range(index - 1, -1, -1))
+        yield from self._go(pictures, new, range(index + 1, len(pictures)))
+
+    def _go(self, pictures: Sequence[Image], people: Sequence[_Sighting], way: range) -> Iterator[int]:
+        """Follow people until they are lost, or met by others who are followed already."""
+        for index in way:
+            now = []
+            for one in people:
+                pose = _next(self._network, pictures[index], one.pose)
+                if pose is not None and not _is_among(pose, [other.pose for other in self.seen[index]]):
+                    now.append(_Sighting(one.track, pose))
+                    self.seen[index].append(now[-1])
+                yield index
+            people = now
+
+
+def _next(network: PoseNetwork, picture: Image, before: Pose) -> Pose | None:
+    """The person in the next frame; None where lost."""
+    now = network(picture, before.crop)
+    moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
+    grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
+    if now.presence < PRESENT or now.score.mean() < SCORE or moved > FARTHEST or grown > MOST_GROWN:
+        return None
+    return now if _is_inside(now, picture) else None
+
+
+def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[Pose]:
+    """People who are not known yet, the surest first."""
+    largest = max((pose.crop.side for pose in known), default=0.0)
+    sides = [size * largest for size in SIZES] if known else [size * len(picture) for size in HEIGHTS]
+    found: list[Pose] = []
+    for number, side in enumerate(sides):
+        here = []
+        for crop in _grid(picture, side):
+            if any(_overlap(crop, pose.crop) for pose in chain(known, found)):
+                continue
+            pose = network(picture, crop)
+            looks = LOOKS if pose.presence > FEWEST_HIDDEN else 0
+            for _ in range(looks):
+                pose = network(picture, pose.crop)
+            sure = pose.presence > SURE and pose.score.mean() > NEW_SCORE and _is_inside(pose, picture)
+            if looks and sure and pose.crop.side > SMALLEST * largest:
+                here.append(pose)
+        for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):
+            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < MOST_PEOPLE:
+                found.append(pose)
+                largest = max(largest, pose.crop.side)
+        if found and not known and number:  # somebody else may be one size smaller
+            break
+    return [pose for pose in found if pose.crop.side > SMALLEST * largest]
+
+
+def _grid(picture: Image, side: float) -> Iterator[Crop]:
+    """Crops of a side all over a picture; one where it fills the picture."""
+    axes = []
+    for length in (picture.shape[1], picture.shape[0]):
+        count = 1 + round(max(length - 0.8 * side, 0.0) / (STEP * side))
+        axes.append(np.linspace(min(0.4 * side, 0.5 * length), max(length - 0.4 * side, 0.5 * length), count))
+        if count == 1:
+            axes[-1] = np.array([0.5 * length])
+    for y in axes[1]:
+        for x in axes[0]:
+            yield Crop(np.array([x, y]), side)
+
+
+def _is_inside(pose: Pose, picture: Image) -> bool:
+    """Whether the middle of a person is in the picture."""
+    return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
+
+
+def _overlap(first: Crop, second: Crop) -> bool:
+    return bool(np.hypot(*(first.center - second.center)) < APART * second.side)
+
+
+def _is_among(pose: Pose, others: Sequence[Pose]) -> bool:
+    """Whether one of the others is the same person: about the same place and size."""
+    return any(
+        float(np.linalg.norm(pose.pixel - other.pixel, axis=1).mean())
+        < 0.5 * APART * max(pose.crop.side, other.crop.side)
+        for other in others
+    )
+
+
+def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
+    """The people of each frame but those of a moment; where nobody meets another, those of one size."""
+    sides: dict[int, list[float]] = {}
+    for one in chain.from_iterable(seen):
+        sides.setdefault(one.track, []).append(one.pose.crop.side)
+    longest = max(map(len, sides.values()), default=0)
+    kept = {track for track, own in sides.items() if len(own) >= min(longest, FEWEST_FRAMES)}
+    if all(len(frame) < 2 for frame in seen) and kept:
+        usual = float(np.median(max(sides.values(), key=len)))
+        alike = (usual / MOST_OTHER, usual * MOST_OTHER)
+        kept = {track for track in kept if alike[0] < float(np.median(sides[track])) < alike[1]}
+    return [[one.pose for one in frame if one.track in kept] for frame in seen]
+
+
+def _people(poses: Sequence[Pose], size: tuple[int, int], scale: float) -> SeenPeople:
+    """The people of a frame in the clip's own pixels; points beyond its edges are not seen."""
+    count = len(LAYOUT.names)
+    pixel = np.array([pose.pixel for pose in poses]).reshape(-1, count, 2) / scale
+    score = np.array([pose.score for pose in poses]).reshape(-1, count)
+    hint = np.array([pose.hint_m for pose in poses]).reshape(-1, count, 3)
+    there = ((pixel >= 0.0) & (pixel <= np.array(size))).all(axis=-1)
+    return SeenPeople(np.where(there[..., None], pixel, np.nan), np.where(there, score, 0.0), hint)
