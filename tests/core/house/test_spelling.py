@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-FOLDERS = ("core", "operators", "tests", "benchmarks", "tools", "detectors", "docs", "presets/schemas")
+FOLDERS = ("core", "operators", "tests", "benchmarks", "tools", "docs", "presets/schemas")
 PAGES = ("README.md", "CONTRIBUTING.md", "blender_manifest.toml", "pyproject.toml", "__init__.py")
 ENDINGS = frozenset({".py", ".md", ".json", ".toml", ".js", ".css", ".yaml"})
 OUR = ("col", "behavi", "neighb", "fav", "arm", "hon", "rum", "vap")
