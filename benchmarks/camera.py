@@ -18,20 +18,23 @@ from trials import Trial, read_trial
 
 load_project()
 
+from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
-from keymark.core.body.standing_posture import standing_height_m  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.camera import Camera  # noqa: E402
+from keymark.core.footage.camera import (  # noqa: E402
+    Camera,  # noqa: E402
+    default_camera_pose,
+    guess_lens,
+)
 from keymark.core.footage.camera_evidence import CameraEvidence, Uprights  # noqa: E402
+from keymark.core.footage.camera_fields import CameraPlacement  # noqa: E402
 from keymark.core.footage.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402
-from keymark.core.footage.camera_placement import CameraPlacement  # noqa: E402
-from keymark.core.footage.default_camera import default_camera_pose, guess_lens  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.standing_moments import standing_keypoints  # noqa: E402
-from keymark.core.library.registry import registered_libraries  # noqa: E402
 from keymark.core.posing.found_poses import with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.prior.registry import registered_libraries  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth  # noqa: E402
 from keymark.core.take.performer_keypoints import performer_keypoints  # noqa: E402

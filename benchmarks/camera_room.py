@@ -10,8 +10,10 @@ from takes import load_project
 load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.body.body_volume import HEAD_OVERSHOOT  # noqa: E402
-from keymark.core.body.standing_posture import standing_height_m  # noqa: E402
+from keymark.core.body.body_volume import (  # noqa: E402
+    HEAD_OVERSHOOT,  # noqa: E402
+    standing_height_m,  # noqa: E402
+)
 from keymark.core.footage.camera import Camera  # noqa: E402
 from keymark.core.footage.camera_evidence import CameraEvidence  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402

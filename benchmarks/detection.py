@@ -18,7 +18,7 @@ load_project()
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.footage.clips.clip import Clip  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.keypoints.people import People  # noqa: E402
+from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
 from keymark.core.footage.pose_network import PoseNetwork  # noqa: E402
 from keymark.core.footage.pose_tracking import find_people  # noqa: E402
 from keymark.core.progress import run  # noqa: E402

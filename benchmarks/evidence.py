@@ -22,7 +22,7 @@ load_project()
 
 from keymark.core.estimate.reconstruct import Reconstruction, reconstruct  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
-from keymark.core.footage.keypoints.people import People  # noqa: E402
+from keymark.core.footage.keypoints.keypoints import People  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.evidence import (  # noqa: E402

@@ -22,16 +22,18 @@ from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.estimate.keyframe_evidence import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
 from keymark.core.estimate.terms.keypoints import ObservedKeypoints  # noqa: E402
+from keymark.core.evidence.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
-from keymark.core.library.library import Library  # noqa: E402
-from keymark.core.library.registry import SHIPPED, find_libraries  # noqa: E402
-from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
-from keymark.core.observation.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
-from keymark.core.posing.frame_search import knowledge  # noqa: E402
-from keymark.core.posing.frame_shown import FrameShown  # noqa: E402
+from keymark.core.posing.frame_search import (  # noqa: E402
+    FrameShown,  # noqa: E402
+    knowledge,  # noqa: E402
+)
+from keymark.core.prior.library import Library  # noqa: E402
+from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
+from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import read_truth  # noqa: E402
 from keymark.core.take.performer_keypoints import performer_keypoints  # noqa: E402

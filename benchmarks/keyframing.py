@@ -15,9 +15,11 @@ sys.path.append(str(ROOT / "tools"))  # its posing module models people's errors
 from keymark.core.arrays import IndexArray  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.body.posture_fit import fit_posture  # noqa: E402
-from keymark.core.prior.keyframe_proposals import propose_keyframes  # noqa: E402
+from keymark.core.prior.keyframe_proposals import (  # noqa: E402
+    marker_speed,  # noqa: E402
+    propose_keyframes,  # noqa: E402
+)
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
-from keymark.core.prior.marker_speed import marker_speed  # noqa: E402
 from studio.posing import ERROR_RMS_M, pose_by_hand  # noqa: E402
 
 SEED = 20

@@ -23,21 +23,21 @@ load_project()
 
 from keymark.core.estimate import (  # noqa: E402
     contour_evidence,
-    contour_schedule,
     keyframe_evidence,
-    motion_size,
     reconstruct,
     refinement,
     whole_clip,
     window_problem,
 )
+from keymark.core.estimate import contour_search as contour_schedule  # noqa: E402
+from keymark.core.estimate import refinement as motion_size  # noqa: E402
 from keymark.core.estimate.keypoint_trust import KeypointTrust  # noqa: E402
 from keymark.core.estimate.terms import regions  # noqa: E402
-from keymark.core.estimate.terms.joint_limits import LimitTerm  # noqa: E402
-from keymark.core.estimate.terms.stillness import StillnessTerm  # noqa: E402
+from keymark.core.estimate.terms.contact import StillnessTerm  # noqa: E402
+from keymark.core.estimate.terms.motion import LimitTerm  # noqa: E402
+from keymark.core.evidence import regions as region_model  # noqa: E402
 from keymark.core.footage.segmentation import regions as segmentation  # noqa: E402
-from keymark.core.footage.segmentation.matting import Coverage  # noqa: E402
-from keymark.core.observation import regions as region_model  # noqa: E402
+from keymark.core.footage.segmentation.moments import Coverage  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS, with_evidence  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402

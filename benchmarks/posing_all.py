@@ -21,12 +21,12 @@ load_project()
 from keymark.core.arrays import Array, BoolArray  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.library.library import Library  # noqa: E402
-from keymark.core.library.registry import SHIPPED, find_libraries  # noqa: E402
-from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses, with_found  # noqa: E402
 from keymark.core.posing.pose_clip import pose_clip  # noqa: E402
 from keymark.core.prior.keyframes import Keyframe  # noqa: E402
+from keymark.core.prior.library import Library  # noqa: E402
+from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
+from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402

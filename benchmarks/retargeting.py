@@ -25,7 +25,7 @@ from _armatures import build_character  # noqa: E402
 from _characters import plain_character, shared_characters  # noqa: E402
 from _rigify import add_rig, rigify_file  # noqa: E402
 from _varied import varied  # noqa: E402
-from keymark.core.body.segment_motion import SegmentMotion, segment_motion  # noqa: E402
+from keymark.core.body.kinematics import SegmentMotion, segment_motion  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
 from keymark.core.finish.natural_extremities import natural_extremities  # noqa: E402
 from keymark.core.progress import Progress, run  # noqa: E402

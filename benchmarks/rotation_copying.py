@@ -8,10 +8,10 @@ reach.
 from contextlib import AbstractContextManager
 
 import bpy
-from keymark.core.body.segment_motion import SegmentMotion
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.body.skeleton import SIDES
+from keymark.core.retarget.character import LIMBS
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.roles import LIMBS
 from mathutils import Matrix, Vector
 
 ACTORS_BONES = {

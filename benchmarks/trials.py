@@ -15,7 +15,7 @@ from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.reading import Reading  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
-from keymark.core.prior.interpolation import interpolate, interpolate_linearly  # noqa: E402
+from keymark.core.prior.keyframes import interpolate, interpolate_linearly  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 from keymark.core.review.score import Score, read_truth, score_points  # noqa: E402
 from keymark.core.take.motion import Motion  # noqa: E402

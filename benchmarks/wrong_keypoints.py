@@ -9,8 +9,11 @@ from takes import load_project
 load_project()
 
 from keymark.core.arrays import Array  # noqa: E402
-from keymark.core.footage.keypoints.body_points import mirrored_point  # noqa: E402
-from keymark.core.footage.keypoints.people import People, SeenPeople  # noqa: E402
+from keymark.core.footage.keypoints.keypoints import (  # noqa: E402
+    People,
+    SeenPeople,
+    mirrored_point,  # noqa: E402
+)
 
 SEED = 15
 RANDOM_SHARE = 0.3

@@ -13,11 +13,9 @@ from types import ModuleType
 
 STEPS = (
     "footage",
-    "markers",
-    "keypoints",
+    "follow",
     "actor",
     "keyframes",
-    "matching",
     "reconstruct",
     "review",
     "overlays",

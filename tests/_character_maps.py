@@ -5,7 +5,7 @@ from dataclasses import replace
 from _characters import plain_character, plain_map
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from keymark.core.retarget.retarget_record import RECOGNIZED, RetargetRecord, UsedCharacter, UsedMap
-from keymark.core.take.character_settings import CharacterOptions
+from keymark.core.take.conversion_settings import CharacterOptions
 
 
 def full_map() -> CharacterMap:

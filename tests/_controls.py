@@ -15,9 +15,8 @@ from keymark.core.retarget.controls.control_plan import (
     planned_controls,
 )
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.controls.control_targets import PoleSetting, control_targets
-from keymark.core.retarget.controls.held_points import held_points
-from keymark.core.retarget.controls.limb_paths import limb_paths
+from keymark.core.retarget.controls.control_targets import PoleSetting, control_targets, limb_paths
+from keymark.core.retarget.controls.point_tolerances import held_points
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls
 from keymark.core.retarget.options import RetargetOptions
 

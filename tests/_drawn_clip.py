@@ -9,8 +9,7 @@ import cv2
 import numpy as np
 import pytest
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.marker_style import MarkerStyle
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
 
 SIZE = (320, 240)
 RED, BLUE = (200, 45, 50), (55, 90, 215)

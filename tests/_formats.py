@@ -18,18 +18,17 @@ from _synthetic_take import (
     write_keypoints,
     write_synthetic_take,
 )
-from keymark.core.body.posture_fields import posture_to_json
+from keymark.core.body.posture import posture_to_json
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
-from keymark.core.library.library_file import read_library
-from keymark.core.retarget.maps.character_map_file import read_character_map
+from keymark.core.prior.library import read_library
+from keymark.core.retarget.maps.character_map import read_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record
 from keymark.core.review.score import read_truth
 from keymark.core.shoot.discovery import read_take_list
 from keymark.core.take.clip_check import check_in_front
 from keymark.core.take.conversion_record import read_record
 from keymark.core.take.keyframe_file import read_keyframes
-from keymark.core.take.motion import Motion
-from keymark.core.take.motion_file import read_motion, write_motion
+from keymark.core.take.motion import Motion, read_motion, write_motion
 from keymark.core.take.take_file import read_described, read_take
 
 FRAMES = 8

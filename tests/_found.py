@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import bpy
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryPosture
 from keymark.core.posing.candidates import Candidate, MatchedFrame
+from keymark.core.prior.library import Library, LibraryPosture
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.pose import read_posture

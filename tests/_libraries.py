@@ -4,7 +4,7 @@ import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
 
 ACTOR = Actor.from_stature(1.75)
 

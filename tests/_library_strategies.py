@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from keymark.core.library.texts import name_key
+from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from keymark.core.prior.texts import name_key
 
 
 def lines(longest: int) -> st.SearchStrategy[str]:

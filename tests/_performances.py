@@ -10,11 +10,9 @@ import numpy as np
 from _characters import plain_character, plain_map
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
-from keymark.core.body.heading import turned_and_shifted
-from keymark.core.body.kinematics import Body
-from keymark.core.body.posture import Posture
+from keymark.core.body.kinematics import Body, SegmentMotion, segment_motion
+from keymark.core.body.posture import Posture, turned_and_shifted
 from keymark.core.body.posture_fit import fit_posture
-from keymark.core.body.segment_motion import SegmentMotion, segment_motion
 from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.retarget.character import Character

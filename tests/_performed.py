@@ -4,17 +4,15 @@ from pathlib import Path
 
 import numpy as np
 from keymark.core.body.actor import Actor
-from keymark.core.body.heading import yawed_at
 from keymark.core.body.kinematics import Body
-from keymark.core.body.posture import Posture
+from keymark.core.body.posture import Posture, yawed_at
+from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.library.library import Library
-from keymark.core.library.motion_playback import sample_motion
-from keymark.core.observation.regions import MarkerPlacement, RegionModel
+from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.posing.found_poses import FoundPoses
+from keymark.core.prior.library import Library
+from keymark.core.prior.motion_playback import sample_motion
 from keymark.core.take.take import Take
 
 SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")

@@ -16,8 +16,8 @@ from _boot import load_package  # noqa: E402
 
 load_package()
 
-from keymark.core.library.library_file import write_library  # noqa: E402
-from keymark.core.report.library_sheet import library_sheet  # noqa: E402
+from keymark.core.prior.library import write_library  # noqa: E402
+from keymark.core.report.mannequin import library_sheet  # noqa: E402
 from libraries.catalogue import NAMES, composed  # noqa: E402
 
 FOLDER = ROOT / "presets" / "keyframes"

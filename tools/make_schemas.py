@@ -14,15 +14,15 @@ from _boot import load_package  # noqa: E402
 load_package()
 
 from keymark.core.body.actor import REQUIRED  # noqa: E402
-from keymark.core.files.json_layout import format_json  # noqa: E402
+from keymark.core.files.json_file import format_json  # noqa: E402
 from keymark.core.files.records import Record, declared  # noqa: E402
 from keymark.core.files.safe_path import relative_path  # noqa: E402
 from keymark.core.footage.camera_fields import (  # noqa: E402
     CameraFields,
 )
-from keymark.core.footage.keypoints.own_file import NAMES, OwnFile  # noqa: E402
-from keymark.core.library.library import Library  # noqa: E402
-from keymark.core.library.several_libraries import EVERY_LIBRARY  # noqa: E402
+from keymark.core.footage.keypoints.keypoint_file import NAMES, OwnFile  # noqa: E402
+from keymark.core.prior.library import Library  # noqa: E402
+from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
 from keymark.core.retarget.maps.character_map import CharacterMap  # noqa: E402
 from keymark.core.retarget.retarget_record import RetargetRecord  # noqa: E402
 from keymark.core.review.score import TruthFile  # noqa: E402
@@ -31,9 +31,9 @@ from keymark.core.take.conversion_record import ConversionRecord  # noqa: E402
 from keymark.core.take.conversion_settings import (  # noqa: E402
     SettingsFields,
 )
+from keymark.core.take.description import SCHEMA_VERSION, SETTING_FIELDS, SHARED_FIELDS  # noqa: E402
 from keymark.core.take.keyframe_file import KeyframeFile  # noqa: E402
-from keymark.core.take.motion_file import MotionFile  # noqa: E402
-from keymark.core.take.shoot_file import SCHEMA_VERSION, SETTING_FIELDS, SHARED_FIELDS  # noqa: E402
+from keymark.core.take.motion import MotionFile  # noqa: E402
 from keymark.core.take.take_file import (  # noqa: E402
     ActorFields,
     MarkerFields,

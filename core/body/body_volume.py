@@ -13,7 +13,9 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from . import rotations
-from .kinematics import Body, Pose
+from .kinematics import RIGID, Body, Extremities, Pose, segment_turn
+from .posture import Posture
+from .skeleton import SIDES, Segment
 
 # Half-widths (lateral, sagittal) at a segment's start and end, as shares of stature.
 HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
@@ -183,3 +185,106 @@ def marker_segments(body: Body) -> tuple[str, ...]:
 def marker_parts(segment: str) -> tuple[str, ...]:
     """Segments covered by a marker that is bound to `segment`."""
     return TRUNK_PARTS if segment == TRUNK else (segment,)
+
+
+# --- Soles
+
+
+HEEL_BEHIND = 0.32
+"""From the ankle, as a share of the length from ankle to tip: about a quarter of a foot lies behind the ankle
+(Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
+
+
+def sole_offsets(body: Body) -> Array:
+    """(2, 2, 3) heel and tip of the left and the right foot from its ankle, in the foot's frame [m]."""
+    feet = [_foot(body, side) for side in SIDES]
+    return np.stack([_sole(body, foot) - body.local(foot.start) for foot in feet])
+
+
+def sole_places(body: Body, pose: Pose, extremities: Extremities = RIGID) -> Array:
+    """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m].
+
+    Args:
+        body: The body.
+        pose: Its poses.
+        extremities: Its feet; by default rigid with the shins.
+    """
+    feet = []
+    for foot in (_foot(body, side) for side in SIDES):
+        places = _sole(body, foot)
+        if foot.name in extremities.turns:
+            start = body.local(foot.start)
+            turn = segment_turn(body, pose, extremities, foot.name)
+            ankle = pose.place(foot.joint, start)
+            feet.append(np.stack([ankle + turn @ (place - start) for place in places], axis=-2))
+        else:
+            feet.append(np.stack([pose.place(foot.joint, place) for place in places], axis=-2))
+    return np.stack(feet, axis=-3)
+
+
+def _foot(body: Body, side: str) -> Segment:
+    return next(segment for segment in body.skeleton.segments if segment.name == f"foot.{side}")
+
+
+def _sole(body: Body, foot: Segment) -> Array:
+    """(2, 3) heel and tip in the joint's frame, the foot rigid with its shin [m]."""
+    ankle, tip = body.local(foot.start), body.local(foot.end)
+    behind = HEEL_BEHIND * body.actor.segments_m[foot.name]
+    return np.array([[tip[0], ankle[1] + behind, tip[2]], tip])
+
+
+def sole_heights_m(body: Body, pose: Pose) -> Array:
+    """(..., 2) height of the lowest point of the left and the right sole [m]."""
+    return np.asarray(sole_places(body, pose)[..., 2].min(axis=-1))
+
+
+def lower_sole_m(body: Body, posture: Posture) -> Array:
+    """(...,) height of the lower sole [m]."""
+    return np.asarray(sole_heights_m(body, body.pose(posture)).min(axis=-1))
+
+
+# --- The default posture
+
+
+ARMS_LOWERED_RAD = float(np.radians(75.0))
+"""From the T pose; less than a right angle, as sleeves keep the arms off the trunk."""
+ELBOWS_BENT_RAD = np.radians(10.0)
+
+
+def standing_posture(
+    body: Body,
+    place: Array | None = None,
+    heading_rad: float = 0.0,
+    arms_lowered_rad: float = ARMS_LOWERED_RAD,
+) -> Posture:
+    """A posture that stands upright on the ground.
+
+    Args:
+        body: The actor's body; its skeleton must be the default human one.
+        place: (3,) point on the ground between the feet [m]; the world's origin by default.
+        heading_rad: Turn about the world's Z from facing -Y.
+        arms_lowered_rad: Angle of the arms below the horizontal.
+    """
+    skeleton = body.skeleton
+    column = {name: i for i, name in enumerate(skeleton.dof_names)}
+    vector = np.zeros(skeleton.dof_count)
+    for side, out in zip(SIDES, (1.0, -1.0), strict=True):
+        vector[column[f"shoulder.{side}.rotation_y"]] = out * arms_lowered_rad
+        vector[column[f"elbow.{side}.flexion"]] = ELBOWS_BENT_RAD
+    vector[column["pelvis.rotation_z"]] = heading_rad
+    vector[:3] = np.zeros(3) if place is None else place
+    vector[2] += hip_height_m(body)
+    return Posture.from_vector(skeleton, vector)
+
+
+def hip_height_m(body: Body) -> float:
+    """Height of the hips' midpoint above the soles of a body that stands upright [m]."""
+    pose = body.pose(Posture.rest(body.skeleton))
+    ends = [body.segment_ends(pose, segment.name)[1] for segment in body.skeleton.segments]
+    return -float(np.min(np.stack(ends)[:, 2]))
+
+
+def standing_height_m(body: Body) -> float:
+    """Height from the soles to the crown of a body that stands upright [m]."""
+    lengths = body.actor.segments_m
+    return hip_height_m(body) + lengths["trunk"] + HEAD_OVERSHOOT * lengths["neck_head"]

@@ -1,7 +1,122 @@
-"""The default body: ten joints, 34 degrees of freedom, thirteen principal points."""
+"""Joint limits: the range of motion of each joint of the default body [degrees].
 
-from .joint_limits import joint_limits_deg
+American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring and Recording*, widened by
+about a quarter because performers are no patients and because a ball's range is stated on the components of
+its rotation vector from rest, which is only a box around the true, rounder range.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from ..arrays import Array
 from .skeleton import SIDES, Joint, JointKind, Placement, PrincipalPoint, Segment, Skeleton
+
+Range = tuple[float, float]
+
+JOINT_LIMITS_DEG: Mapping[str, tuple[Range, ...]] = MappingProxyType(
+    {
+        "waist": ((-40.0, 110.0), (-45.0, 45.0), (-60.0, 60.0)),
+        "neck": ((-75.0, 60.0), (-55.0, 55.0), (-100.0, 100.0)),
+        "girdle": ((-15.0, 45.0),),
+        "shoulder": ((-130.0, 130.0), (-100.0, 110.0), (-140.0, 60.0)),
+        "elbow": ((-5.0, 155.0),),
+        "forearm": ((-100.0, 100.0),),
+        "hip": ((-145.0, 45.0), (-70.0, 40.0), (-60.0, 60.0)),
+        "knee": ((-5.0, 155.0),),
+        "shin": ((-40.0, 40.0),),
+    }
+)
+"""Lower and upper bound of a hinge's angle, or of a ball's rotation vector about x, y and z; of the left side
+where there are two. `Skeleton.limits` has them by degree of freedom [rad]."""
+
+
+def joint_limits_deg(joint: str) -> tuple[Range, ...]:
+    """Limits of one joint by its name, such as `waist` or `shoulder.R`; KeyError for an unknown one.
+
+    Mirrored in the sagittal plane, rotations about y and z change their sign and those about x do not. Hinges
+    have mirrored axes, so that their angles mean the same on both sides.
+    """
+    name, _, side = joint.partition(".")
+    limits = JOINT_LIMITS_DEG[name]
+    if side != "R" or len(limits) == 1:
+        return limits
+    about_x, *others = limits
+    return (about_x, *((-upper, -lower) for lower, upper in others))
+
+
+# --- The five parts of the body that move about independently
+
+
+TRUNK = "trunk"
+LIMBS = ("arm.L", "arm.R", "leg.L", "leg.R")
+_STEMS = {
+    "arm": ("upper_arm", "forearm", "hand", "elbow", "wrist", "index", "thumb", "pinky"),
+    "leg": ("thigh", "shin", "foot", "knee", "ankle", "heel", "toe", "small_toe"),
+}
+_LIMB_OF = {stem: limb for limb, stems in _STEMS.items() for stem in stems}
+
+
+def limb_of(name: str) -> str:
+    """The part of the body that a segment or a point of the body belongs to: `arm.L` ... `leg.R` or `trunk`.
+
+    Shoulders and hips are the trunk's.
+    """
+    stem, _, side = name.partition(".")
+    limb = _LIMB_OF.get(stem)
+    return TRUNK if limb is None else f"{limb}.{side}"
+
+
+# --- The one color code of left and right
+
+
+Rgb = tuple[int, int, int]
+
+LIGHT: Mapping[str, Rgb] = {"L": (87, 181, 232), "R": (245, 168, 26), "": (235, 235, 235)}
+"""By side, over footage and in Blender's dark viewport: sky blue and orange; the middle has no side."""
+STRONG: Mapping[str, Rgb] = {"L": (0, 114, 178), "R": (213, 94, 0), "": (42, 45, 51)}
+"""By side, on white paper: blue and vermilion, the dark neighbors of those; ink for the middle."""
+
+SHADED: Mapping[str, Rgb] = {**STRONG, "": (150, 153, 158)}
+"""The strong ones where the ground is dark: of bones that are not selected."""
+
+
+def side_of(name: str) -> str:
+    """The side in a name of Keymark's own: `L`, `R`, or nothing for the middle."""
+    side = name.rpartition(".")[2]
+    return side if side in ("L", "R") else ""
+
+
+# --- Center of mass of the body, by its principal points
+
+
+MASS_SHARES = {
+    "head": ((("head", 1.0),), 0.081),
+    "trunk": ((("shoulder", 0.5), ("hip", 0.5)), 0.497),
+    "upper_arm": ((("shoulder", 0.564), ("elbow", 0.436)), 0.056),
+    "forearm": ((("elbow", 0.318), ("wrist", 0.682)), 0.044),
+    "thigh": ((("hip", 0.567), ("knee", 0.433)), 0.2),
+    "shin": ((("knee", 0.394), ("ankle", 0.606)), 0.122),
+}
+"""Where each segment's center of mass lies between principal points, and its share of the body's mass, both
+sides together, hands and feet with the segments above them (Winter 2009, *Biomechanics and Motor Control of
+Human Movement*, table 4.1)."""
+
+
+def mass_weights(skeleton: Skeleton) -> Array:
+    """(P,) weight of each principal point in the center of mass; they sum to 1."""
+    names = skeleton.point_names
+    weights = np.zeros(len(names))
+    for points, share in MASS_SHARES.values():
+        for stem, part in points:
+            own = [index for index, name in enumerate(names) if name.partition(".")[0] == stem]
+            weights[own] += share * part / len(own)
+    return weights
+
+
+# --- The default body
+
 
 WAIST_HEIGHT = 0.4
 """Share of the trunk below the waist joint. The real spine bends all along; a single joint fits best here."""

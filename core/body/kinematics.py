@@ -1,8 +1,9 @@
 """Forward kinematics and Jacobians of an actor's skeleton, over any batch of postures."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 
@@ -143,3 +144,93 @@ class Body:
                 start, end = self.local(segment.start), self.local(segment.end)
                 return pose.place(segment.joint, start), pose.place(segment.joint, end)
         raise KeyError(name)
+
+
+# --- Extremities
+
+
+@dataclass(frozen=True, eq=False)
+class Extremities:
+    """How hands and feet are turned about wrists and ankles, beside a batch of postures."""
+
+    turns: Mapping[str, Array]
+    """(..., 3, 3) by segment: its turn in its parent's frame. One that is not listed is rigid with its
+    parent."""
+
+    def without(self, names: Collection[str]) -> "Extremities":
+        """Those that are not named."""
+        kept = {name: turn for name, turn in self.turns.items() if name not in names}
+        return Extremities(MappingProxyType(kept))
+
+
+RIGID = Extremities(MappingProxyType({}))
+"""All of them as their parents."""
+
+
+def extremity_names(skeleton: Skeleton) -> tuple[str, ...]:
+    """The segments that move with their parent's joint: hands and feet."""
+    joint_of = {segment.name: segment.joint for segment in skeleton.segments}
+    return tuple(
+        segment.name
+        for segment in skeleton.segments
+        if segment.parent is not None and segment.joint == joint_of[segment.parent]
+    )
+
+
+def segment_turn(body: Body, pose: Pose, extremities: Extremities, name: str) -> Array:
+    """World orientation (..., 3, 3) of a segment's frame; KeyError for an unknown one."""
+    segment = next((s for s in body.skeleton.segments if s.name == name), None)
+    if segment is None:
+        raise KeyError(name)
+    above = pose.rotation[..., segment.joint, :, :]
+    return np.asarray(above @ extremities.turns[name]) if name in extremities.turns else above
+
+
+def segment_ends(body: Body, pose: Pose, extremities: Extremities, name: str) -> tuple[Array, Array]:
+    """World positions (..., 3) of a segment's two ends [m]; KeyError for an unknown segment."""
+    start, end = body.segment_ends(pose, name)
+    if name not in extremities.turns:
+        return start, end
+    segment = next(s for s in body.skeleton.segments if s.name == name)
+    along = body.local(segment.end) - body.local(segment.start)
+    return start, np.asarray(start + segment_turn(body, pose, extremities, name) @ along)
+
+
+# --- A motion segment by segment
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentMotion:
+    """The body's segments in F frames, feet and hands included, which postures do not turn."""
+
+    body: Body
+    time_s: Array
+    """(F,) time of each frame [s]."""
+    turn: Mapping[str, Array]
+    """(F, 3, 3) by segment: its turn in the world from the rest posture, which stands upright in a T pose and
+    faces -Y."""
+    start: Mapping[str, Array]
+    """(F, 3) by segment: its joint nearer to the trunk [m]."""
+    end: Mapping[str, Array]
+    """(F, 3) by segment: its other end [m]."""
+
+
+def segment_motion(body: Body, posture: Posture, time_s: Array, extremities: Extremities) -> SegmentMotion:
+    """The motion of every segment.
+
+    Args:
+        body: The body.
+        posture: A batch of F postures.
+        time_s: (F,) time of each frame [s].
+        extremities: Its hands and feet, as `finish/natural_extremities` gives them or as they are posed.
+    """
+    pose = body.pose(posture)
+    names = [segment.name for segment in body.skeleton.segments]
+    ends = {name: segment_ends(body, pose, extremities, name) for name in names}
+    return SegmentMotion(
+        body,
+        time_s,
+        {name: segment_turn(body, pose, extremities, name) for name in names},
+        {name: start for name, (start, _) in ends.items()},
+        {name: end for name, (_, end) in ends.items()},
+    )

@@ -1,10 +1,16 @@
 """Postures: values of the degrees of freedom, changed by tangent steps, never by adding Euler angles."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..errors import InputError
+from ..files.fields import Fields, child_location, listed
+from ..files.json_file import shown
+from ..files.kinds import Kind, Number, refuse
 from . import rotations
 from .skeleton import Skeleton
 
@@ -118,3 +124,142 @@ class Posture:
         dofs = self.skeleton.ball_dofs
         jacobian[..., dofs[:, :, None], dofs[:, None, :]] = rotations.right_jacobian(step[..., dofs])
         return jacobian
+
+
+# --- Postures as JSON fields
+
+
+FARTHEST_M = 1000.0
+LARGEST_ANGLE_RAD = 4.0 * np.pi
+DECIMALS = 6
+"""Micrometers and microradians: far below any measurement error, and files stay short."""
+
+
+def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
+    """A posture, or a batch along the first axis, by name of degree of freedom [m, rad].
+
+    `PostureValues` gives the same numbers back.
+    """
+    vector = posture.to_vector()  # (..., D)
+    # Rounded up past π, half a turn would be read as half a turn the other way.
+    turns = vector[..., posture.skeleton.ball_dofs]  # (..., B, 3)
+    size = np.linalg.norm(turns, axis=-1, keepdims=True)
+    longest = np.pi - 2.0 * 10.0**-decimals
+    vector[..., posture.skeleton.ball_dofs] = turns * np.minimum(1.0, longest / np.maximum(size, 1.0))
+    return dict(zip(posture.skeleton.dof_names, rounded(np.moveaxis(vector, -1, 0), decimals), strict=True))
+
+
+def rounded(values: Array, decimals: int = DECIMALS) -> Any:
+    """Nested lists of numbers, rounded, with no negative zero."""
+    return (np.round(values, decimals) + 0.0).tolist()
+
+
+@dataclass(frozen=True)
+class PostureValues(Kind):
+    """A single posture: its values by name of degree of freedom, in meters and radians."""
+
+    skeleton: Skeleton
+    farthest_m: float = FARTHEST_M
+    """Largest distance from the origin along an axis [m]."""
+    zeros_left_out: bool = False
+    """Whether an absent degree of freedom is zero; else it is an error."""
+    decimals: int = DECIMALS
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        return f"an object with {listed(self.skeleton.dof_names, 3)}"
+
+    @property
+    def numbers(self) -> Mapping[str, Number]:
+        """The values by name: meters for locations, radians for angles."""
+        place, angle = (
+            Number(-self.farthest_m, self.farthest_m),
+            Number(-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD),
+        )
+        return {name: place if ".location_" in name else angle for name in self.skeleton.dof_names}
+
+    def read(self, value: Any, where: str, name: str) -> Posture:
+        """See `Kind`."""
+        if not isinstance(value, Mapping):
+            refuse(where, name, value, self.valid)
+        fields, numbers = Fields(value, child_location(where, name)), self.numbers
+        unknown = [one for one in value if one not in numbers]
+        if unknown:
+            raise InputError(
+                f"{fields.where} names the unknown degree of freedom {shown(unknown[0])}; known are "
+                f"{listed(numbers)}"
+            )
+        vector = [
+            0.0
+            if self.zeros_left_out and dof not in value
+            else number.read(fields.required(dof, number.valid), fields.where, dof)
+            for dof, number in numbers.items()
+        ]
+        return Posture.from_vector(self.skeleton, np.asarray(vector))
+
+    def write(self, value: Posture) -> dict[str, float]:
+        """See `Kind`."""
+        values = posture_to_json(value, self.decimals)
+        return {name: one for name, one in values.items() if one or not self.zeros_left_out}
+
+
+# --- Headings
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def yaw_rotation(angle_rad: Array | float) -> Array:
+    """(..., 3, 3) rotations about the vertical by angles (...)."""
+    return rotations.hinge(UP, np.asarray(angle_rad))
+
+
+def facing_rad(direction: Array) -> float:
+    """Heading of a world direction (3,); 0 where it points straight up or down."""
+    x, y = float(direction[0]), float(direction[1])
+    return float(np.arctan2(x, -y)) if np.hypot(x, y) > 1e-9 else 0.0
+
+
+def headings_rad(posture: Posture) -> Array:
+    """(F,) headings of the pelvis; of the line through the hips where the pelvis faces up or down."""
+    return turn_headings_rad(posture.rotations[..., 0, :, :])
+
+
+def turn_headings_rad(turn: Array) -> Array:
+    """(F,) headings of turns (F, 3, 3); of what was across where they make the front face up or down."""
+    ahead = np.arctan2(-turn[..., 0, 1], turn[..., 1, 1])
+    across = np.arctan2(turn[..., 1, 0], turn[..., 0, 0])
+    level = np.hypot(turn[..., 0, 1], turn[..., 1, 1])
+    return np.where(level > np.sqrt(0.5), ahead, across)
+
+
+def yawed_at(posture: Posture, angle_rad: Array | float, hips: Array) -> Posture:
+    """Postures turned about the vertical, with their hips at given points.
+
+    Args:
+        posture: A batch of N.
+        angle_rad: (N,) or one angle.
+        hips: (N, 3) the hips' midpoint [m].
+    """
+    matrices = np.array(posture.rotations)
+    matrices[..., 0, :, :] = yaw_rotation(angle_rad) @ matrices[..., 0, :, :]
+    return Posture(posture.skeleton, hips, matrices, posture.angles)
+
+
+def yawed_in_place(posture: Posture, angle_rad: Array) -> Posture:
+    """A single posture turned about the vertical through its hips by each of N angles: a batch of N."""
+    batch = Posture.stack([posture] * len(angle_rad))
+    return yawed_at(batch, angle_rad, batch.translation)
+
+
+def turned_and_shifted(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
+    """Postures turned about the world's vertical axis, then shifted.
+
+    Args:
+        posture: A batch of F.
+        angle_rad: (F,) or one angle.
+        shift: (F, 3) or (3,) [m].
+    """
+    hips = (yaw_rotation(angle_rad) @ posture.translation[..., None])[..., 0] + shift
+    return yawed_at(posture, angle_rad, hips)

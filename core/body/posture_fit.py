@@ -1,19 +1,116 @@
-"""Inverse kinematics from thirteen points: Levenberg-Marquardt on the manifold from a geometric guess.
-
-Thirteen points leave some degrees of freedom free (forearm pronation, axial rotations, the share of
-pelvis and waist in a bend). Weak priors hold those near neutral, and a step is accepted only if it
-lowers the cost: plain Gauss-Newton diverges by decimeters here.
-"""
+"""Initial posture from thirteen points by geometry alone, close enough for a local fit to converge."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, BoolArray
-from ..numerics.least_squares import levenberg_marquardt
+from ..numerics.robust import levenberg_marquardt
+from ..numerics.vectors import across as any_across
+from ..numerics.vectors import unit
+from . import rotations
 from .kinematics import Body
 from .posture import Posture
-from .posture_guess import guess_posture
+from .skeleton import SIDES
+
+STRAIGHT = 0.15
+"""Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend."""
+
+
+def _frame(x: Array, y: Array, z: Array) -> Array:
+    return np.stack([x, y, z], axis=-1)
+
+
+def _least_turn(start: Array, goal: Array) -> Array:
+    """The smallest rotation taking unit vector `start` (3,) to unit vectors `goal` (N, 3)."""
+    axis = np.cross(start, goal)
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    angle = np.arctan2(sine, np.sum(start * goal, axis=-1, keepdims=True))
+    # Opposite vectors leave the axis free; any axis perpendicular to `start` will do.
+    axis = np.where(sine > 1e-6, axis / np.maximum(sine, 1e-9), any_across(start))
+    return rotations.exponential(axis * angle)
+
+
+def _limb(start: Array, upper: Array, lower: Array, bend: float) -> tuple[Array, Array]:
+    """Rotation (N, 3, 3) and flexion (N,) of a two-part limb that rests along `start`.
+
+    `upper` and `lower` are unit directions (N, 3) in the limb's parent frame; when flexed the lower
+    part moves towards `bend` times the limb's own y axis.
+    """
+    default = _least_turn(start, upper)
+    across = lower - np.sum(lower * upper, axis=-1, keepdims=True) * upper
+    y = bend * across + STRAIGHT * default[..., :, 1]
+    y = unit(y - np.sum(y * upper, axis=-1, keepdims=True) * upper)
+    flexion = np.arccos(np.clip(np.sum(upper * lower, axis=-1), -1.0, 1.0))
+    if abs(start[0]) > 0.5:
+        x = np.sign(start[0]) * upper
+        return _frame(x, y, np.cross(x, y)), flexion
+    z = np.sign(start[2]) * upper
+    return _frame(np.cross(y, z), y, z), flexion
+
+
+def guess_posture(body: Body, points: Array) -> Posture:
+    """Postures whose joints roughly reach the given points.
+
+    Args:
+        body: The actor's body; its skeleton must be the default human one.
+        points: (N, 13, 3) principal points in the world [m].
+
+    Returns:
+        A batch of N postures.
+    """
+    skeleton = body.skeleton
+    point = {name: points[:, i] for i, name in enumerate(skeleton.point_names)}
+    hips = 0.5 * (point["hip.L"] + point["hip.R"])
+    shoulders = 0.5 * (point["shoulder.L"] + point["shoulder.R"])
+    trunk = unit(shoulders - hips)
+    across = unit(point["hip.L"] - point["hip.R"])
+    back = unit(np.cross(trunk, across))
+    pelvis = _frame(across, back, np.cross(across, back))
+    level = point["shoulder.L"] - point["shoulder.R"]
+    level = unit(level - np.sum(level * trunk, axis=-1, keepdims=True) * trunk)
+    chest = _frame(level, np.cross(trunk, level), trunk)
+    turns = {"pelvis": pelvis, "waist": np.swapaxes(pelvis, -1, -2) @ chest}
+    turns["neck"] = _least_turn(np.array([0.0, 0.0, 1.0]), _in_frame(chest, unit(point["head"] - shoulders)))
+    angles: dict[str, Array] = {}
+    for side, out in zip(SIDES, (1.0, -1.0), strict=True):
+        for ball, middle, end, above, start, bend in (
+            ("shoulder", "elbow", "wrist", chest, np.array([out, 0.0, 0.0]), -1.0),
+            ("hip", "knee", "ankle", pelvis, np.array([0.0, 0.0, -1.0]), 1.0),
+        ):
+            upper = unit(point[f"{middle}.{side}"] - point[f"{ball}.{side}"])
+            lower = unit(point[f"{end}.{side}"] - point[f"{middle}.{side}"])
+            turn, flexion = _limb(start, _in_frame(above, upper), _in_frame(above, lower), bend)
+            turns[f"{ball}.{side}"], angles[f"{middle}.{side}"] = turn, flexion
+    return _assemble(body, hips, turns, angles)
+
+
+def _in_frame(frame: Array, direction: Array) -> Array:
+    return np.einsum("nji,nj->ni", frame, direction)
+
+
+def _nearest_rotation(matrix: Array) -> Array:
+    """The nearest rotation to each matrix (N, 3, 3); an arbitrary one where points coincide."""
+    left, _, right = np.linalg.svd(matrix)
+    left[..., 2] *= np.linalg.det(left @ right)[..., None]
+    return np.asarray(left @ right)
+
+
+def _assemble(body: Body, hips: Array, turns: dict[str, Array], angles: dict[str, Array]) -> Posture:
+    skeleton = body.skeleton
+    rest = Posture.rest(skeleton, (len(hips),))
+    matrices, hinges = np.array(rest.rotations), np.array(rest.angles)
+    for column, joint in enumerate(skeleton.ball_joints):
+        matrices[:, column] = _nearest_rotation(turns[skeleton.joints[joint].name])
+    for column, joint in enumerate(skeleton.hinge_joints):
+        name = skeleton.joints[joint].name
+        if name in angles:
+            hinges[:, column] = angles[name]
+    return Posture(skeleton, hips, matrices, hinges)
+
+
+# --- Inverse kinematics from thirteen points
+
 
 POINT_STD_M = 0.003
 NEUTRAL_STD_RAD = {

@@ -15,19 +15,18 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, IndexArray
 from ..body.actor import Actor
-from ..body.heading import facing_rad
+from ..body.body_volume import ARMS_LOWERED_RAD, standing_height_m, standing_posture
 from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
-from ..body.posture import Posture
+from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
-from ..body.standing_posture import ARMS_LOWERED_RAD, standing_height_m, standing_posture
+from ..evidence.keypoints import USUAL_PLACES, KeypointModel
+from ..evidence.regions import MarkerPlacement, RegionModel
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.robust import student_cost, student_weight
-from ..observation.keypoints import USUAL_PLACES, KeypointModel
-from ..observation.regions import MarkerPlacement, RegionModel
-from .calibration import (
+from .keyframe_rows import (
     LARGEST,
     PRIOR_STD,
     SMALLEST,
@@ -36,8 +35,8 @@ from .calibration import (
     placement_values,
     placements_from,
 )
-from .frame_residuals import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .performer_placement import ground_place
+from .single_frame import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import DEGREES

@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.kinematics import Pose
+from ..evidence.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
+from ..evidence.occlusion import PartOutlines
 from ..footage.appearance import Appearance
-from ..footage.band_colors import BANDS, LEVELS, BandColors, band_cells, learn_band_colors
-from ..observation.contours import ContourModel
-from ..observation.limb_axes import FREE, UNKNOWN, LimbAxes
-from ..observation.occlusion import PartOutlines
-from ..observation.part_map import part_map
+from ..footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
+from ..footage.surface_colors import LEVELS_BAND_COLORS as LEVELS
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
 LINES = np.array([-0.4, 0.0, 0.4])

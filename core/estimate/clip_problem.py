@@ -10,12 +10,11 @@ from ..body.posture import Posture
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
-from ..prior.turns import with_turns
-from .clip_state import ClipState
+from ..prior.keyframes import with_turns
+from .clip_state import ClipState, Window
 from .keyframe_evidence import KeyframeEvidence
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise
-from .windows import Window
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -1,25 +1,21 @@
-"""The paper's filter, method `ekf`: an extended Kalman filter whose process noise comes from fuzzy rules.
-
-One frame after the other: the fuzzy rules move the posture on (eqs. 10, 13, 17), then the markers'
-characteristics and the a priori depths correct it (eqs. 11, 12, 14 to 18). Postures live on a manifold, so
-steps are taken with `plus`, innovations of angles are wrapped, and a covariance is that of a tangent step.
-"""
+"""Options of the paper's filter that the paper leaves open: noise and fuzzy sets, with units."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from scipy.special import gammaincinv  # scipy.stats, which has chi2 by name, takes a second to import
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import gammaincinv
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..footage.camera import Camera
-from ..footage.region_tracks import RegionTracks
-from ..observation import depths
-from ..observation.line_ends import (
+from ..evidence import keypoints as depths
+from ..evidence.keypoints import DEPTH_STD_M
+from ..evidence.line_ends import (
     ANGLE,
     LOG_RATIO,
     LineEnds,
@@ -29,10 +25,102 @@ from ..observation.line_ends import (
     observed_characteristics,
     residual,
 )
+from ..footage.camera import Camera
+from ..footage.region_tracks import RegionTracks
 from ..progress import Part, Preview
 from . import fuzzy
-from .filter_options import FilterOptions
-from .measurement_update import normalized_innovation_squared, update
+from .fuzzy import Memberships
+
+
+@dataclass(frozen=True)
+class FilterOptions:
+    """Noise and sets of the paper's filter; docs/method.md says how each was settled.
+
+    A *natural deviation* is how far a degree of freedom usually lies from a prior interpolated between
+    keyframes (`Skeleton.deviations`).
+
+    Raises:
+        ValueError: A standard deviation or width is not positive, or the gate's probability not below 1.
+    """
+
+    centroid_std_px: float = 1.0
+    """Extraction noise of a centroid [px]."""
+    centroid_std_widths: float = 0.25
+    """How far a region's centroid lies from the middle of its segment's line [segment widths]."""
+    angle_std_rad: float = 0.1
+    """Noise of the direction of a region as thin as a line [rad]; rounder regions have more."""
+    log_ratio_std: float = 1.0
+    """Noise of log S_λ: wide, since sleeves and occlusion change the ratio more than the posture does."""
+    depth_std_m: float = DEPTH_STD_M
+    """Noise of the a priori depths [m]."""
+    initial_std: float = 0.5
+    """Deviation of the first frame from the prior [natural deviations]."""
+    near_width: float = 0.3
+    """Half-width of the near rule's output set, a frame's step [natural deviations]."""
+    far_width: float = 0.3
+    """Half-width of the far rule's output set, a frame's step [natural deviations]."""
+    gate_probability: float = 0.999
+    """Share of right observations that pass the gate; a marker past it counts for less in that frame."""
+    memberships: Memberships = field(default_factory=Memberships)
+    """The rules' input sets."""
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if option.name != "memberships" and not 0.0 < value < float("inf"):
+                raise ValueError(f"{option.name} is {value}; a finite number above 0 is valid")
+        if self.gate_probability >= 1.0:
+            raise ValueError(
+                f"gate_probability is {self.gate_probability}; a number between 0 and 1 is valid"
+            )
+
+
+# --- The measurement update of a Kalman filter, for rows scaled by their standard deviations
+
+
+class Update(NamedTuple):
+    """Update of a state by measurements."""
+
+    step: Array
+    """(D,) change of the mean."""
+    covariance: Array
+    """(D, D) after the update, symmetric."""
+    normalized_innovation_squared: float
+    """νᵀ S⁻¹ ν; χ² with m degrees of freedom if model and noise are right."""
+
+
+def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> Update:
+    """Kalman gain and update (paper, eqs. 14 to 17), for noise of covariance 1.
+
+    The paper scales its observations with their standard deviations too, so R is the identity. Joseph's form
+    keeps the covariance symmetric and positive where rounding would not.
+
+    Args:
+        covariance: M (D, D), before the update.
+        measurement_matrix: H (m, D), each row divided by its standard deviation; m may be 0.
+        innovation: ν (m,), observed - predicted, likewise divided.
+    """
+    M, H = covariance, measurement_matrix
+    if not len(H):
+        return Update(np.zeros(len(M)), M, 0.0)
+    MHt = M @ H.T
+    factor = cho_factor(H @ MHt + np.eye(len(H)), lower=True)
+    K = cho_solve(factor, MHt.T).T
+    rest = np.eye(len(M)) - K @ H
+    P = rest @ M @ rest.T + K @ K.T
+    nis = float(innovation @ cho_solve(factor, innovation))
+    return Update(K @ innovation, 0.5 * (P + P.T), nis)
+
+
+def normalized_innovation_squared(covariance: Array, measurement_matrix: Array, innovation: Array) -> float:
+    """νᵀ S⁻¹ ν of some rows alone, for gating; arguments as `update`."""
+    S = measurement_matrix @ covariance @ measurement_matrix.T + np.eye(len(innovation))
+    return float(innovation @ cho_solve(cho_factor(S, lower=True), innovation))
+
+
+# --- The paper's filter, method `ekf`
+
 
 LEAST_QUALITY = 0.05
 """Below this a region's noise grows no further; its gate still holds."""

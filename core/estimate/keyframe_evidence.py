@@ -15,21 +15,24 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.posture import Posture
+from ..evidence.regions import RegionModel
 from ..numerics.robust import student_weight
-from ..observation.regions import RegionModel
-from .calibration import (
+from .keyframe_rows import (
     LARGEST,
+    POINT_STD_M,
     PRIOR_STD,
     SMALLEST,
+    UNUSED,
+    EvidenceRows,
+    KeyframeRows,
     KnownFrames,
     placement_jacobian,
     placement_values,
     placements_from,
+    posing_covariance,
+    velocities,
 )
-from .depth_evidence import read_depths
-from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
-from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std
-from .posing_error import POINT_STD_M, posing_covariance, velocities
+from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import DEGREES

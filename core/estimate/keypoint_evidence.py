@@ -1,7 +1,7 @@
-"""Calibration of keypoints on posed keyframes: where each sits on its segment, and how far it errs.
+"""Calibration of hints of depth on posed keyframes: what a link's depth is expected to be by its guess.
 
-Both are shrunk toward usual values, since keyframes are few: places toward where detectors usually have a
-point and toward its mirror image's, errors toward the usual one and that of all points of the same name.
+By Bayesian linear regression, link by link, with links on both sides of the body alike. A guess that tells
+nothing gets a gain near zero, or an error so large that it does not matter.
 """
 
 from collections.abc import Mapping
@@ -11,27 +11,119 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
+from ..evidence.keypoints import USUAL_PLACES, DepthLinks, KeypointModel
 from ..footage.camera import Camera
-from ..footage.keypoints.body_points import mirrored_point
-from ..observation.depth_links import DepthLinks
-from ..observation.keypoints import USUAL_PLACES, KeypointModel
-from .depth_evidence import DepthEvidence
+from ..footage.keypoints.keypoints import mirrored_point
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
+
+USUAL_ERROR = 0.2
+"""Error of a guess over the link's length: the sine of some twelve degrees."""
+GAIN_STD, OFFSET_STD = 0.5, 0.2
+"""Standard deviation of the gain from 1, and of the offset over the link's length."""
+NAME_COUNT, LINK_COUNT = 12.0, 6.0
+"""Numbers of errors that the usual error, and that of a link's name, weigh as much as."""
+CLIP_FACTOR = 1.4
+"""Between keyframes errors count as this many times as large: those of neighboring links are alike."""
+MEMORY_S = 0.25
+"""Time in which an error fades to a third."""
+ROUNDS = 4
+LARGEST_ERROR = 4.0
+"""A larger error, in standard deviations, counts as one this large."""
+
+
+@dataclass(frozen=True, eq=False)
+class DepthEvidence:
+    """What the L links' guesses are worth."""
+
+    links: DepthLinks
+    gain: Array
+    """(L,) expected depth by a guess: gain times guess plus offset."""
+    offset_m: Array
+    """(L,)."""
+    std_m: Array
+    """(L,) error of what is expected [m]."""
+    memory_s: float = MEMORY_S
+    """Time in which an error fades to a third [s]."""
+
+    @classmethod
+    def usual(cls, links: DepthLinks, model: KeypointModel) -> "DepthEvidence":
+        """Guesses taken as they are, before any keyframe is posed."""
+        length = links.lengths_m(model)
+        return cls(links, np.ones_like(length), np.zeros_like(length), USUAL_ERROR * length)
+
+    @property
+    def error_m(self) -> Array:
+        """(L,) error that the estimate of a clip reckons with [m]."""
+        return CLIP_FACTOR * self.std_m
+
+    def expected(self, depth: Array) -> Array:
+        """(F, L) expected depths of the links by the points' guessed depths (F, N) [m]."""
+        return np.asarray(self.gain * self.links.guessed(depth) + self.offset_m)
+
+
+def read_depths(
+    evidence: DepthEvidence,
+    model: KeypointModel,
+    pose: Pose,
+    frame: IndexArray,
+    depth: Array,
+    posing_std_m: float,
+) -> DepthEvidence:
+    """The evidence as K posed keyframes have it.
+
+    Args:
+        evidence: The usual one.
+        model: The points' calibrated model.
+        pose: The keyframes' poses.
+        frame: (K,) their frames.
+        depth: (K, N) the points' guessed depths there [m].
+        posing_std_m: Error of a posed point [m].
+    """
+    links = evidence.links
+    guessed, true = links.guessed(depth), links.depths(model, pose, frame)
+    known = np.isfinite(guessed)
+    guess = np.where(known, guessed, 0.0)
+    length = links.lengths_m(model)
+    usual = (USUAL_ERROR * length) ** 2
+    posing = 2.0 * posing_std_m**2
+    variance, gain, offset = usual.copy(), evidence.gain.copy(), evidence.offset_m.copy()
+    names = np.array(links.names)
+    for _ in range(ROUNDS):
+        squared = np.zeros_like(guess)
+        for i in range(len(names)):
+            rows = np.stack([guess[:, i], np.ones(len(guess))], axis=-1) * known[:, i, None]
+            noise = variance[i] + posing
+            prior = np.array([GAIN_STD, OFFSET_STD * length[i]]) ** -2.0
+            information = rows.T @ rows / noise + np.diag(prior)
+            wanted = rows.T @ np.where(known[:, i], true[:, i], 0.0) / noise + prior * [1.0, 0.0]
+            gain[i], offset[i] = np.linalg.solve(information, wanted)
+            left = np.where(known[:, i], true[:, i], 0.0) - rows @ [gain[i], offset[i]]
+            doubt = np.sum(rows * np.linalg.solve(information, rows.T).T, axis=-1)
+            share = variance[i] / noise  # of what is left that is the guess's, not the keyframe's
+            squared[:, i] = share**2 * np.minimum(left**2, LARGEST_ERROR**2 * noise) + share * posing + doubt
+        for name in np.unique(names):
+            same = names == name
+            total, count = np.where(known, squared, 0.0)[:, same].sum(axis=0), known[:, same].sum(axis=0)
+            pooled = (NAME_COUNT * usual[same].mean() + total.sum()) / (NAME_COUNT + count.sum())
+            variance[same] = (LINK_COUNT * pooled + total) / (LINK_COUNT + count)
+    return replace(evidence, gain=gain, offset_m=offset, std_m=np.sqrt(variance))
+
+
+# --- Calibration of keypoints on posed keyframes
+
 
 MIRRORED = 0.7
 """Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
 sides."""
-NAME_COUNT, POINT_COUNT = 40.0, 12.0
+NAME_COUNT_KEYPOINT_EVIDENCE, POINT_COUNT = 40.0, 12.0
 """Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
-MEMORY_S = 0.15
+MEMORY_S_KEYPOINT_EVIDENCE = 0.15
 """Time in which an error fades to a third."""
-CLIP_FACTOR = 3.0
+CLIP_FACTOR_KEYPOINT_EVIDENCE = 3.0
 """Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
 a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
 turns it a long way toward or away from the camera, of which a linearised row knows nothing."""
-LARGEST_ERROR = 4.0
-"""A larger error, in standard deviations, is an outlier and counts as one this large."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +142,7 @@ class KeypointEvidence:
     """By source that is left out for it: frames by which it is late, or early where negative."""
     depths: DepthEvidence
     """What the hints of depth are worth."""
-    memory_s: float = MEMORY_S
+    memory_s: float = MEMORY_S_KEYPOINT_EVIDENCE
     """Time in which an error fades to a third [s]."""
 
     @classmethod
@@ -65,7 +157,7 @@ class KeypointEvidence:
     @property
     def error_m(self) -> Array:
         """(N,) error along each axis of the image that the estimate of a clip reckons with [m]."""
-        return np.where(self.trust > 0.0, CLIP_FACTOR * self.std_m, np.inf)
+        return np.where(self.trust > 0.0, CLIP_FACTOR_KEYPOINT_EVIDENCE * self.std_m, np.inf)
 
     def with_camera(self, camera: Camera) -> "KeypointEvidence":
         """The same before another camera."""
@@ -180,7 +272,9 @@ def learned_std(
     variance = np.empty(points)
     for stem in np.unique(stems):
         same = stems == stem
-        pooled = (NAME_COUNT * usual[same].mean() + total[same].sum()) / (NAME_COUNT + count[same].sum())
+        pooled = (NAME_COUNT_KEYPOINT_EVIDENCE * usual[same].mean() + total[same].sum()) / (
+            NAME_COUNT_KEYPOINT_EVIDENCE + count[same].sum()
+        )
         variance[same] = (POINT_COUNT * pooled + total[same]) / (POINT_COUNT + count[same])
     return np.sqrt(variance)
 

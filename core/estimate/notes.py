@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from ..files.fields import listed
 from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
-from ..take.clip_notes import VARIABLE_RATE
+from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 

@@ -12,29 +12,25 @@ from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
 from ..errors import InputError
+from ..evidence.regions import RegionModel
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
-from ..footage.reading import Reading
-from ..footage.reading_key import of_same_footage
+from ..footage.reading import Reading, of_same_footage
 from ..footage.region_tracks import RegionTracks
-from ..observation.regions import RegionModel
-from ..prior.evidence_speed import evidence_speed
-from ..prior.interpolation import interpolate
-from ..prior.performer_offset import with_offset
+from ..prior.keyframe_proposals import evidence_speed
+from ..prior.keyframes import interpolate, with_offset
 from ..progress import Job, Progress, stretch, within
 from ..take.clip_check import check_frame_count, check_in_front
-from ..take.methods import METHODS
+from ..take.conversion_settings import METHODS
 from ..take.motion import Motion
 from ..take.performer_keypoints import performer_keypoints
 from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
-from .ankle_height import found_ankle_m
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
-from .keyframe_selection import select_keyframes
-from .keypoint_fit import KeypointFit, observed_joints
-from .keypoint_notes import keypoint_notes
-from .match_error import place_depth_std_m, undetermined_covariance
+from .keyframe_trust import select_keyframes
+from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
+from .match_error import place_depth_std_m, undetermined_covariance, unobserved_variance
 from .notes import (
     contour_notes,
     evidence_notes,
@@ -43,8 +39,8 @@ from .notes import (
     left_out_notes,
     marker_notes,
 )
-from .seen_tracks import seen_tracks
-from .unobserved_variance import unobserved_variance
+from .performer_placement import found_ankle_m
+from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500

@@ -1,23 +1,140 @@
-"""What is learned once the markers are followed, before contours join them.
+"""How far the motion departs from the prior, learned from the estimate by the markers.
 
-In this order, since each step stands on those before it: which way round the body turns, how large the motion
-is, how the performer and the background look, and where markers are that were lost. Each changes the problem,
-and the states follow it.
+Keyframes tell only roughly how much happens between them: swings that all of them show at the same phase, or
+a gap as long as the swing, leave them alike. Once the markers are followed the footage itself tells, for each
+limb how fast it departs from the prior, and for each point and gap how far the prior misses it across the
+line of sight. It misses as much along it, where nothing is seen.
+
+The sizes are estimated from the solution and then believed (empirical Bayes: Robbins 1956; in state space
+models Shumway & Stoffer 1982, *An approach to time series smoothing and forecasting using the EM algorithm*).
 """
 
-from ..arrays import BoolArray
+from collections.abc import Generator
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Array, BoolArray
 from ..body.posture import Posture
+from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.clips.album import Album
+from ..prior.frame_prior import REFERENCE_STEP_S
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
-from .clip_state import ClipState
+from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence, learn_contours
-from .contour_schedule import contour_schedule
-from .motion_size import adapted
+from .contour_search import all_located, contour_schedule, points_locate
 from .second_look import find_lost
 from .turn_choice import choose_turns
 from .warm_start import changed_gaps
-from .windows import Window
+from .window_problem import WindowProblem
+
+USUAL_SIZE = 0.15
+"""Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
+solution is smoother than the motion, whose size is one."""
+SHRINKAGE = 0.7
+"""Power of the size: what a solution shows of a limb's motion is partly what was assumed of it."""
+LARGEST, LARGEST_PER_GAP_S, LARGEST_OF_ALL = 1.5, 4.5, 3.0
+"""Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a third of a
+second apart and show less of the swings between them. A looser motion has more local optima."""
+DEPENDENT_ROWS = 8.0
+"""Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
+but count as rows of their own."""
+BODY_SHARE = 0.5
+"""Share of the whole body's in a point's squared miss: depths of one body err together."""
+LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M = 0.1, 3.0
+
+
+def adapted(
+    problem: ClipProblem,
+    spans: list[Window],
+    states: list[ClipState],
+    among: BoolArray,
+    earlier: ClipProblem | None,
+) -> Generator[None, None, tuple[ClipProblem, list[ClipState]]]:
+    """The problem with sizes learned from its states, and the states that follow from it.
+
+    It yields now and then, so that a job can be canceled.
+
+    Args:
+        problem: The clip's problem, with sizes as the keyframes tell them.
+        spans: The windows.
+        states: The state of each by the markers.
+        among: (F,) frames in whose gaps it is asked how far the prior misses.
+        earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
+            prior misses in all other gaps; None without one.
+
+    Returns:
+        The same problem and states where the markers or keypoints do not show the whole body.
+    """
+    segments = tuple(one.segment for one in problem.evidence.model.placements)
+    if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
+        return problem, states
+    known = problem if earlier is None else earlier
+    factor = _depth_factor(problem, spans, states, among, known.depth_factor)
+    size = limb_sizes(problem, spans, states) if earlier is None else earlier.limb_size
+    problem = replace(problem, limb_size=size, depth_factor=factor)
+    solved = []
+    for window, state in zip(spans, states, strict=True):
+        scaled = replace(state, factor=problem.accelerations, variation=state.variation / size)
+        part = WindowProblem(problem, window, scaled)
+        for _ in part.settle():
+            yield
+        solved.append(part.state.without_cache())
+    return problem, solved
+
+
+def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
+    """(D,) factor on the usual accelerations of each degree of freedom's limb.
+
+    Args:
+        problem: The clip's problem.
+        spans: Windows that keep all of its frames.
+        states: The state of each.
+    """
+    kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
+    pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
+    variation = np.concatenate(kept)
+    size = np.ones(variation.shape[1])
+    if len(variation) < 3 or len(problem.keyframes) < 2:
+        return size
+    squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
+    gap_s = float(np.median(np.diff(problem.keyframes))) * pace * REFERENCE_STEP_S
+    largest = float(np.clip(LARGEST_PER_GAP_S * gap_s, LARGEST, LARGEST_OF_ALL))
+    for limb in problem.body.skeleton.limbs:
+        found = (np.sqrt(squared[limb].mean()) / USUAL_SIZE) ** SHRINKAGE
+        size[limb] = np.clip(found, 1.0, largest)
+    return size
+
+
+def _depth_factor(
+    problem: ClipProblem, spans: list[Window], states: list[ClipState], among: BoolArray, known: Array
+) -> Array:
+    """(F, P) factor on the noise of the prior's depths, alike within a gap, else as known."""
+    body, camera = problem.body, problem.camera
+    squared = np.full(problem.depth_factor.shape, np.nan)
+    for window, state in zip(spans, states, strict=True):
+        kept, frame = state.posture[window.kept], state.frame[window.kept]
+        points = body.points(body.pose(kept))
+        missed = points - body.points(body.pose(state.prior[window.kept]))
+        sight = camera.sight(points, frame[:, None])
+        missed = missed - np.sum(missed * sight, axis=-1, keepdims=True) * sight
+        squared[frame] = 0.5 * (missed**2).sum(axis=-1)  # two axes lie across
+    gap = np.searchsorted(problem.keyframes, np.arange(problem.frames), side="right")
+    told = np.isfinite(squared[:, 0])
+    gaps = len(problem.keyframes) + 1
+    # A gap of which only some frames are estimated again would not tell what all of it did.
+    asked = np.bincount(gap[among], minlength=gaps) > 0
+    told &= (asked & (np.bincount(gap[~told], minlength=gaps) == 0))[gap]
+    count = np.bincount(gap[told], minlength=gaps)
+    total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
+    mean = total / np.maximum(count, 1)[:, None]
+    mean = (1.0 - BODY_SHARE) * mean + BODY_SHARE * mean.mean(axis=-1, keepdims=True)
+    std = np.clip(DEPENDENT_ROWS * np.sqrt(mean), LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M)
+    return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], known)
+
+
+# --- What is learned once the markers are followed, before contours join them
 
 
 def refine(

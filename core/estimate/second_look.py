@@ -1,10 +1,4 @@
-"""A second look for markers that were lost, blurred or half hidden, once it is known where they should be.
-
-Tracking knows colors and paths; by now postures and the look of background and body are known too. Where the
-estimate predicts a marker in sight and none was tracked, the album's picture around is unmixed (`unmixing`).
-What is found there must be more than chance can make, about as large as predicted and, the farther off the
-prediction, in line with what is seen in the frames beside it.
-"""
+"""Tracks as the estimate has seen them: those of the reading, and the regions found at a second look."""
 
 from collections.abc import Generator
 from dataclasses import dataclass, replace
@@ -14,25 +8,36 @@ from scipy.ndimage import binary_dilation
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
-from ..body.limbs import limb_of
+from ..body.human import limb_of
 from ..body.posture import Posture
 from ..footage.ignored_regions import is_ignored
+from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import centroid_and_second_moment
 from ..footage.segmentation.unmixing import Palette, Traces, traces
-from ..footage.surface_colors import (
-    bare_surfaces,
-    common_colors,
-    is_alike,
-    marker_surfaces,
-    usual_background,
-)
+from ..footage.surface_colors import bare_surfaces, common_colors, is_alike, marker_surfaces, usual_background
 from ..progress import Part, scaled
 from .clip_problem import ClipProblem
-from .clip_state import ClipState
+from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
 from .terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from .window_problem import WindowProblem
-from .windows import Window
+
+
+def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks:
+    """The tracks with the regions that the estimate compared; what it did not find anew stays as tracked."""
+    found = np.isfinite(observed.area) & (observed.area != tracks.area)
+    return replace(
+        tracks,
+        centroid=np.where(found[..., None], observed.centroid, tracks.centroid),
+        second_moment=np.where(found[..., None, None], observed.second_moment, tracks.second_moment),
+        area=np.where(found, observed.area, tracks.area),
+        quality=np.where(found, observed.quality, tracks.quality),
+    )
+
+
+# --- A second look for markers that were lost, blurred or half hidden, once it is known where they should
+# be
+
 
 ROUNDS = 3
 """Looks at most: what is found moves the body, and with it where the rest is looked for."""

@@ -1,32 +1,131 @@
-"""One frame's posture from that frame's marker regions and keypoints: assisted posing.
+"""How far what is seen of one frame lies from where a posture has it, and what it does not explain."""
 
-Maximum a posteriori about a belief in the posture, by the same terms and steps as the whole clip's estimate.
-Five regions or a dozen keypoints do not determine 34 degrees of freedom, and the image is ambiguous in depth;
-so several starts descend side by side, each as if it were a frame of its own, and the most probable result is
-taken. The believed posture is among the candidates, so the result is never less probable than it. Keypoints
-are tried with left and right exchanged as well.
-"""
-
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
-from ..footage.keypoints.body_points import mirror_images
+from ..evidence import keypoints as depths
+from ..evidence.regions import RegionModel
+from ..footage.keypoints.keypoints import mirror_images
 from ..footage.region_tracks import ExpectedRegions
-from ..observation import depths
-from ..observation.regions import RegionModel
 from ..prior.frame_prior import FramePrior
 from ..progress import run
 from .clip_state import ClipState
-from .frame_descent import descend
-from .frame_residuals import FrameResiduals, frame_residuals
 from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
+from .terms.term import NormalEquations, Term, total_cost
+
+MISPLACED_WIDTHS = 1.5
+"""A marker farther off than this many of its limb's half-widths is misplaced ..."""
+MISPLACED_PX = 4.0
+"""... unless it is nearer than this [px]."""
+MISPLACED_M = 0.12
+"""A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
+SURE = 0.5
+"""Least confidence of a keypoint that is called misplaced."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameResiduals:
+    """Distances in the picture, and what is misplaced."""
+
+    marker_px: Array
+    """(M,) of the centroids [px]; NaN where a marker is hidden."""
+    keypoint_px: Array
+    """(N,) of the keypoints [px]; NaN where one is not seen."""
+    markers: tuple[int, ...]
+    """Indices of the markers that the posture does not explain."""
+    points: tuple[str, ...]
+    """Body points of the keypoints that it does not explain."""
+
+
+def frame_residuals(
+    evidence: KeyframeEvidence,
+    observed: ObservedRegions,
+    points: ObservedKeypoints | None,
+    posture: Posture,
+    frame: int,
+) -> FrameResiduals:
+    """Compare a posture with what is seen of one frame.
+
+    Args:
+        evidence: The models of markers and keypoints.
+        observed: The regions of this one frame, (1, M).
+        points: The keypoints of this one frame, (1, N); None for none.
+        posture: A single posture.
+        frame: The frame's index in the clip.
+    """
+    model, index = evidence.model, np.array([frame])
+    pose = model.body.pose(Posture.stack([posture]))
+    off = np.linalg.norm(model.evaluate(pose, index).centroid - observed.centroid, axis=-1)[0]
+    width = limb_widths(model, posture.translation[None], index)[0]
+    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX))
+    if points is None:
+        return FrameResiduals(off, np.zeros(0), tuple(map(int, markers)), ())
+    own = evidence.keypoints.model
+    depth = own.camera.depth(own.world(pose), index[:, None])[0]
+    far_px = MISPLACED_M * own.camera.focal_px / np.maximum(depth, 0.1)
+    point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
+    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED_PX)
+    misplaced = np.flatnonzero(far & (points.confidence[0] >= SURE))
+    names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
+    return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
+
+
+# --- Gauss-Newton from several starts of one frame, side by side, each as if it were a frame of its own
+
+
+TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
+"""From a start that may be far off; image noise is widened by these factors."""
+LARGEST_STEP = 0.4
+"""Largest change of a posture's unknown in one step [m, rad]."""
+CONVERGED = 2e-3
+
+
+def descend(
+    state: ClipState, terms: Sequence[Term], temperatures: Sequence[float] = TEMPERATURES
+) -> tuple[ClipState, Array]:
+    """Descend from every start of a state.
+
+    Args:
+        state: The starts; where each descent's prior lies elsewhere is a candidate, too.
+        terms: The frame's terms, for as many states of it.
+        temperatures: Factors of the image noise, one a step.
+
+    Returns:
+        The best state of each descent, never less probable than its prior's mean, and their costs (S,).
+    """
+    best = replace(state, variation=np.zeros_like(state.variation))
+    least = total_cost(terms, best)
+    for temperature in temperatures:
+        equations = NormalEquations(state.frames, state.unknowns.shape[1])
+        for term in terms:
+            term.add_to(equations, state, temperature)
+        step = equations.matrix.factorize().solve(-equations.gradient)
+        state, moved = state.stepped(step, LARGEST_STEP)
+        if temperature > 1.0:
+            continue
+        costs = total_cost(terms, state)
+        better = costs < least
+        best = replace(
+            best,
+            variation=np.where(better[:, None], state.variation, best.variation),
+            bias=np.where(better[:, None], state.bias, best.bias),
+        )
+        least = np.minimum(costs, least)
+        if moved < CONVERGED:
+            break
+    return best, least
+
+
+# --- One frame's posture from that frame's marker regions and keypoints
+
 
 CALIBRATED_FROM = 5
 """Fewest keyframes that calibrate: their placements are better than average ones."""

@@ -16,14 +16,13 @@ from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray
 from ..footage.camera import Camera
-from .calibration import PRIOR_STD, placement_values
 from .clip_problem import ClipProblem
+from .clip_state import Window, windows
 from .keyframe_evidence import KeyframeEvidence, keyframe_information
+from .keyframe_rows import PRIOR_STD, placement_values, posing_covariance, velocities
 from .keypoint_evidence import KeypointEvidence
-from .posing_error import posing_covariance, velocities
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions
-from .windows import Window, windows
 
 SAME = 1e-7
 """Differences of a posture's unknowns [m, rad] from reading it from Blender once more."""

@@ -15,33 +15,31 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..evidence.keypoints import KeypointModel
+from ..evidence.regions import MarkerPlacement, RegionModel
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
-from ..observation.keypoints import KeypointModel
-from ..observation.regions import MarkerPlacement, RegionModel
-from ..prior.process_noise import REFERENCE_STEP_S, process_noise_factor
+from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
-from .ankle_height import lower_ankle_m
 from .clip_problem import ClipProblem
-from .contour_evidence import ContourEvidence, learn_contours
-from .contour_keyframes import contour_rows
-from .contour_schedule import all_located, contour_schedule
+from .clip_state import Window, windows
+from .contour_evidence import ContourEvidence, contour_rows, learn_contours
+from .contour_search import all_located, contour_schedule
 from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
-from .keypoint_trust import keypoint_trust
+from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
 from .match_error import depth_std_m
+from .performer_placement import lower_ankle_m
 from .refinement import refine
-from .side_swaps import doubted_at_changes, exchanged_back, find_swaps
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
-from .windows import Window, windows
 
 MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6
 """Shares of the work that following the markers is, and all before contours are measured."""

@@ -9,15 +9,13 @@ from ..arrays import Array, BoolArray
 from ..body.posture import Posture
 from ..progress import Part, Preview, scaled
 from .clip_problem import ClipProblem
-from .clip_state import ClipState
+from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
 from .terms.assembly import window_terms, with_contours
-from .terms.contours import ContourTerm
+from .terms.contours import AxialTerm, ContourTerm
 from .terms.keypoints import KeypointTerm
-from .terms.limb_axes import AxialTerm
 from .terms.regions import FEATURES, RegionTerm
 from .terms.term import NormalEquations, total_cost
-from .windows import Window
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
 """Of a first descent: what is learned from its postures changes the problem before they have converged."""

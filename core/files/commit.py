@@ -16,8 +16,7 @@ from pathlib import Path, PureWindowsPath
 from typing import Any
 
 from ..errors import InputError
-from .fsync import fsync_path
-from .json_file import read_json
+from .json_file import fsync_path, read_json
 
 STAGING, ROLLBACK, JOURNAL, JOURNAL_DRAFT = "-new", "-old", ".json", ".json.new"
 """Endings of the hidden names. They and the journal's fields never change, so that a run that was interrupted

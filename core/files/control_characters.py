@@ -1,6 +1,11 @@
 """Control characters: invisible ones, which names and sentences may not hold."""
 
+import os
+import stat
 import unicodedata
+from pathlib import Path
+
+from ..errors import InputError
 
 CATEGORIES = ("Cc", "Cf", "Cs", "Zl", "Zp")
 """Unicode categories: control, formatting (also what turns the direction of writing), surrogates, line
@@ -17,3 +22,43 @@ def is_control_character(character: str, allowed: str = JOINERS) -> bool:
 def escape_control_characters(text: str) -> str:
     """A text with its control characters as escapes, for terminals, which would obey them."""
     return "".join(ascii(char)[1:-1] if is_control_character(char) else char for char in text)
+
+
+# --- Absolute paths, with and without their symbolic links
+
+
+def absolute_path(path: Path) -> Path:
+    """An absolute path without `..`: that of `/day1/../day2` has no parent `day1`."""
+    return Path(os.path.realpath(path)) if ".." in path.parts else path.absolute()
+
+
+def real_path(path: Path) -> Path:
+    """An absolute path, links resolved, that begins with one slash: two have a meaning in Blender."""
+    real = os.path.realpath(path)
+    return Path("/" + real.lstrip("/") if real.startswith("//") else real)
+
+
+# --- Regular files, told from devices and pipes, which may have no end, or never begin
+
+
+def regular_file_size(path: Path, valid: str) -> int:
+    """The size of a regular file in bytes; the file is not opened, which alone could wait for ever.
+
+    Args:
+        path: The file.
+        valid: What it must be, to follow `it must be`.
+
+    Raises:
+        InputError: It is missing, a folder, a device, a pipe or a socket, or cannot be looked at.
+    """
+    try:
+        state = path.stat()
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: no such file; it must be {valid}") from error
+    except (OSError, ValueError) as error:  # a name too long, or with a NUL in it
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"{path}: cannot be read ({reason}); it must be {valid}") from error
+    if not stat.S_ISREG(state.st_mode):
+        kind = "a folder" if stat.S_ISDIR(state.st_mode) else "a device, a pipe or a socket"
+        raise InputError(f"{path}: is {kind}, no file; it must be {valid}")
+    return state.st_size

@@ -1,19 +1,80 @@
-"""JSON files, read strictly and written atomically: no NaN, no infinite numbers, nothing half-written."""
+"""A folder of JSON files that people share: keyframe libraries and character maps, side by side."""
 
+import errno
 import json
 import os
 import re
 import shutil
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from math import isfinite
 from pathlib import Path
 from reprlib import Repr
 from typing import Any
 
 from ..errors import ConversionError, InputError
+from .control_characters import regular_file_size
 from .file_lock import LOCK, file_lock, hidden_prefix
-from .fsync import fsync_path
-from .regular_file import regular_file_size
+
+ENDING = ".json"
+MOST_FILES = 500
+"""Files read of one folder; further ones are ignored."""
+OURS = "keymark-"
+"""Beginning of the field `schema` of every format that such folders hold."""
+
+
+def json_files(folder: Path) -> list[Path]:
+    """The JSON files in a folder, by name; none where it is missing."""
+    try:
+        files = [path for path in folder.iterdir() if path.suffix.lower() == ENDING and path.is_file()]
+    except OSError:
+        return []
+    return sorted(files)[:MOST_FILES]
+
+
+def is_path(name_or_path: str | Path) -> bool:
+    """Whether a file is meant where names are valid too: it ends in `.json` or contains a path separator."""
+    text = os.fspath(name_or_path)
+    parted = any(mark in text for mark in (os.sep, os.altsep, "/") if mark)
+    return isinstance(name_or_path, Path) or parted or text.lower().endswith(ENDING)
+
+
+def is_other_format(value: Mapping[str, Any], schema: str) -> bool:
+    """Whether a file is of another of our formats, and thus no damaged one of this."""
+    own = value.get("schema")
+    return isinstance(own, str) and own.startswith(OURS) and own != schema
+
+
+# --- Flushing files and folders to the disk, so that they outlive a loss of power
+
+
+DISK_ERRORS = frozenset(
+    getattr(errno, name) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO") if hasattr(errno, name)
+)
+"""Errors that say the disk is full or broken, not that a path was ill chosen."""
+
+
+def fsync_path(path: Path) -> None:
+    """Wait until a file's content, or a folder's list of names, is on the disk, where the system can.
+
+    Raises:
+        OSError: The disk is full or broken.
+    """
+    if sys.platform == "win32" and path.is_dir():
+        return
+    try:
+        descriptor = os.open(path, os.O_RDWR if sys.platform == "win32" else os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
+    except OSError as error:
+        if error.errno in DISK_ERRORS:  # others only mean that this file system has no fsync
+            raise
+
+
+# --- JSON files, read strictly and written atomically
+
 
 LARGEST_BYTES = 64 * 2**20
 """A moving camera of an hour fits; a video given by mistake does not."""
@@ -228,3 +289,66 @@ def _int(text: str) -> int:
     if len(text.lstrip("-")) > MOST_DIGITS:
         raise ValueError(f"the whole number {text[:40]} is too large; at most {MOST_DIGITS} digits are read")
     return int(text)
+
+
+# --- JSON formatted for people
+
+
+WIDTH = 110
+"""Characters of a line: a list or an object of plain values that fits stands in one line."""
+INDENT = 2
+_AXIS = re.compile(r"_[xyz]$")
+
+
+def write_readable_json(path: Path, value: Any) -> None:
+    """Write a value as formatted strict JSON, atomically; the same value always gives the same bytes.
+
+    Raises:
+        ValueError: A number is NaN or infinite.
+        ConversionError: The file cannot be written.
+    """
+    text = format_json(value) + "\n"
+    write_atomically(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+
+
+def format_json(value: Any, depth: int = 0, before: int = 0) -> str:
+    """A value as JSON text, one item a line.
+
+    Short lists and objects stand in one line, and so do the components x, y and z of one quantity where names
+    of the object are compound ones: a change of one quantity is a change of one line.
+
+    Args:
+        value: A value that `json` can write.
+        depth: Spaces before its lines.
+        before: Characters before it in its line.
+    """
+    if not isinstance(value, Mapping | list | tuple) or not value:
+        return _plain(value)
+    if isinstance(value, Mapping):
+        compound = any("." in name for name in value)
+        rows = _rows(value)
+    else:
+        compound = False
+        rows = [[("", item)] for item in value]
+    flat = not any(isinstance(item, Mapping | list | tuple) for row in rows for _, item in row)
+    short = _plain(value)
+    if flat and not compound and depth + before + len(short) <= WIDTH:
+        return short
+    inner = depth + INDENT
+    lines = [", ".join(name + format_json(item, inner, len(name)) for name, item in row) for row in rows]
+    opening, closing = ("{", "}") if isinstance(value, Mapping) else ("[", "]")
+    between = "\n" + " " * inner
+    return opening + between + f",{between}".join(lines) + "\n" + " " * depth + closing
+
+
+def _plain(value: Any) -> str:
+    return json.dumps(value, allow_nan=False, ensure_ascii=False)
+
+
+def _rows(fields: Mapping[str, Any]) -> Iterable[list[tuple[str, Any]]]:
+    """The fields with their names as JSON; those that differ in the axis only share a row."""
+    rows: dict[str, list[tuple[str, Any]]] = {}
+    for name, item in fields.items():
+        stem = _AXIS.sub("", name) if "." in name else name
+        rows.setdefault(stem, []).append((f"{_plain(name)}: ", item))
+    return list(rows.values())

@@ -7,8 +7,7 @@ from typing import Any, NoReturn
 
 from ..errors import InputError
 from .control_characters import is_control_character
-from .fields import Fields, is_number, listed
-from .inherited_fields import child_location
+from .fields import Fields, child_location, is_number, listed
 from .json_file import shown
 
 _PLAIN = re.compile(r"[\w.-]{1,60}", re.ASCII)

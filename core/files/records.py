@@ -14,8 +14,7 @@ from functools import cache
 from typing import Annotated, Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from ..errors import InputError
-from .fields import Fields, listed
-from .inherited_fields import child_location
+from .fields import Fields, child_location, listed
 from .json_file import shown
 from .kinds import ByName, Flag, Items, Kind, Nullable, Whole, read_field, refuse
 

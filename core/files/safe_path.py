@@ -2,11 +2,16 @@
 
 import os
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any
 
+import numpy as np
+
+from ..arrays import Array
 from ..errors import InputError
 from .fields import Fields
-from .kinds import Text
+from .kinds import Kind, Text, refuse
 
 LONGEST_PATH, LONGEST_NAME_BYTES = 1000, 255
 """Characters of a path, and bytes of each name in it, as file systems have it."""
@@ -56,3 +61,53 @@ def check_symlinks(paths: Iterable[Path], folders: Iterable[Path]) -> None:
         real = os.path.realpath(path)
         if not any(Path(real).is_relative_to(root) for root in roots):
             raise InputError(f"{path}: leads by a link to {real}; it must stay inside {roots[0]}")
+
+
+# --- Nested lists of numbers in JSON, read as arrays
+
+
+def number_array(value: Any, *, nulls: bool = False) -> Array | None:
+    """Nested lists of numbers as an array.
+
+    Args:
+        value: The value of a JSON field.
+        nulls: Whether null may stand for a number, and becomes NaN; else all are finite.
+
+    Returns:
+        The array; None where lists of one level differ in length, or text, true, false or an object is among
+        the numbers.
+    """
+    try:
+        items = np.asarray(value, dtype=object)  # as float64, numpy would convert text and truth values
+    except ValueError:  # lists of several lengths
+        return None
+    kinds = set(map(type, items.ravel())) - ({type(None)} if nulls else set())
+    if not all(issubclass(kind, int | float) and kind is not bool for kind in kinds):
+        return None
+    array = items.astype(np.float64)
+    return array if nulls or np.isfinite(array).all() else None
+
+
+@dataclass(frozen=True)
+class NumberArray(Kind):
+    """Nested lists of numbers, an array once they are read."""
+
+    shape: tuple[int, ...]
+    """Lengths of its axes; -1 for any."""
+    limit: float
+    """Largest absolute value."""
+
+    @property
+    def valid(self) -> str:  # type: ignore[override]
+        """Follows "it must be"."""
+        words = " x ".join("any number" if length < 0 else str(length) for length in self.shape)
+        return f"a list of numbers of shape {words}, each within {self.limit:g}"
+
+    def read(self, value: Any, where: str, name: str) -> Array:
+        """See `Kind`."""
+        array = number_array(value)
+        if array is None or array.ndim != len(self.shape) or not np.all(np.abs(array) <= self.limit):
+            refuse(where, name, value, self.valid)
+        if any(length not in (-1, given) for length, given in zip(self.shape, array.shape, strict=True)):
+            refuse(where, name, value, self.valid)
+        return array

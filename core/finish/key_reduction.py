@@ -1,11 +1,4 @@
-"""Key reduction: as few keys as keep every point of the body within a tolerance in every frame.
-
-Keys are first added where the body has an error, more than needed, and then removed, the most dispensable
-first, as long as the body stays within the tolerance. The error is that of the body in the world, not of the
-curves: a degree at the hips moves a hand further than one at the elbow, and errors along a limb add up or
-cancel. Between keys lie the cubics of `hermite`, fitted to all frames, so that the noise of single frames is
-smoothed and not keyed.
-"""
+"""Angles of joints over time, without leaps that no joint makes and without a tremor from frame to frame."""
 
 import heapq
 from collections.abc import Generator, Sequence
@@ -14,10 +7,207 @@ from itertools import count
 
 import numpy as np
 
-from ..arrays import Array, IndexArray
-from .hermite import Spline
-from .keyed_body import KeyedBody
-from .rig import Rig
+from ..arrays import Array, BoolArray, IndexArray
+from ..body import rotations
+from ..numerics.vectors import gaussian, usual_step
+from .hermite import Spline, fit_keys, refit
+from .rig import Rig, RigPose
+
+FASTEST_RAD_S = np.radians(700.0)
+"""Angular speed of an ankle in a sprinter's push-off."""
+SMOOTHING_S = 0.03
+
+
+def steadied(angles: Array, time_s: Array) -> Array:
+    """Angles (F, ...) no faster than a joint, smoothed a little.
+
+    Args:
+        angles: (F, ...) [rad].
+        time_s: (F,) rising times [s].
+    """
+    if len(time_s) < 2:
+        return angles
+    slow = _slowed(angles, FASTEST_RAD_S * np.diff(time_s))
+    return gaussian(slow, SMOOTHING_S / usual_step(time_s), truncate=3.0)
+
+
+def _slowed(angles: Array, steps: Array) -> Array:
+    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
+
+    The mean of the lowest such curve above them and the highest below.
+    """
+    above, below = angles.copy(), angles.copy()
+    for frame, step in enumerate(steps):
+        above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
+        below[frame + 1] = np.minimum(below[frame + 1], below[frame] + step)
+    for frame in range(len(steps) - 1, -1, -1):
+        above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
+        below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
+    return np.asarray(0.5 * (above + below))
+
+
+# --- A body's motion by keys
+
+
+REACH = 3
+"""Number of keys on either side of a new or removed one that are fitted anew."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """The curves and their pose without one of the keys."""
+
+    group: int
+    spline: Spline
+    frames: slice
+    """The frames that change."""
+    pose: RigPose
+    worst: float
+    """Largest error of any point in those frames, in units of its tolerance."""
+
+
+class KeyedBody:
+    """Curves through keys for groups of bones; the bones of a group share their keys' frames."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        times: Array,
+        values: Sequence[Array],
+        tolerance_m: Array,
+        exact: IndexArray,
+        groups: Sequence[tuple[int, ...]],
+    ) -> None:
+        """Keys at the first, the last and the exact frames only.
+
+        Args:
+            rig: The bones.
+            times: (F,) rising times of the frames.
+            values: For each bone its channels, (F, C): the target.
+            tolerance_m: (F, P) largest allowed error of each of the rig's points in each frame [m].
+            exact: Indices of frames that stay keys, with their own values.
+            groups: Indices of bones, each bone in one group.
+        """
+        self.rig, self.times, self.posed, self.groups = rig, times, exact, groups
+        self.pinned = [exact for _ in groups]
+        """For each group the frames at which its keys have the target's own values."""
+        self.tolerance_m = tolerance_m
+        self.data = [np.concatenate([values[bone] for bone in group], axis=1) for group in groups]
+        self._ends = [np.cumsum([values[bone].shape[1] for bone in group]) for group in groups]
+        self.target = rig.pose(list(values))
+        keys = np.union1d([0, len(times) - 1], exact).astype(np.intp)
+        self.splines = [fit_keys(times, data, keys, exact) for data in self.data]
+        self.update()
+
+    def update(self) -> None:
+        """Evaluate all curves and the pose they give."""
+        values: dict[int, Array] = {}
+        for group, spline in enumerate(self.splines):
+            values |= self._by_bone(group, spline.evaluate(self.times, 0, len(self.times) - 1))
+        self.pose = self.rig.pose([values[bone] for bone in range(len(self.rig.bones))])
+
+    def error_m(self) -> Array:
+        """(F, P) distance of each point from its target [m]."""
+        return np.asarray(np.linalg.norm(self.pose.points - self.target.points, axis=-1))
+
+    def normalized_error(self) -> Array:
+        """(F, P) the error in units of each point's tolerance."""
+        return self.error_m() / self.tolerance_m
+
+    def bone_splines(self) -> tuple[Spline, ...]:
+        """The keys of each bone, in the order of the rig's."""
+        found: dict[int, Spline] = {}
+        for group, ends, spline in zip(self.groups, self._ends, self.splines, strict=True):
+            starts = [0, *ends[:-1]]
+            for bone, first, last in zip(group, starts, ends, strict=True):
+                found[bone] = spline.columns(first, last)
+        return tuple(found[bone] for bone in range(len(self.rig.bones)))
+
+    def insert(self, group: int, frames: IndexArray, everywhere: bool) -> None:
+        """Add keys to a group and fit all its keys anew, or only those near the new ones.
+
+        A frame that is a key already is pinned: from now on the key has the target's own value.
+        """
+        again = np.intersect1d(frames, self.splines[group].keys)
+        self.pinned[group] = np.union1d(self.pinned[group], again).astype(np.intp)
+        spline, data = self.splines[group].with_keys(self.times, frames), self.data[group]
+        last = len(spline.keys) - 1
+        if everywhere:
+            self.splines[group] = refit(self.times, data, spline, 0, last, self.pinned[group])
+            return
+        for at in np.searchsorted(spline.keys, frames):
+            low, high = max(int(at) - REACH, 0), min(int(at) + REACH, last)
+            spline = refit(self.times, data, spline, low, high, self.pinned[group])
+        self.splines[group] = spline
+
+    def without_key(self, group: int, frame: int) -> Trial:
+        """The result without the group's key at a frame, its neighbors fitted anew."""
+        at = int(np.searchsorted(self.splines[group].keys, frame))
+        spline = self.splines[group].without_key(at)
+        last = len(spline.keys) - 1
+        low, high = max(at - REACH, 0), min(at + REACH - 1, last)
+        spline = refit(self.times, self.data[group], spline, low, high, self.pinned[group])
+        start, stop = int(spline.keys[max(low - 1, 0)]), int(spline.keys[min(high + 1, last)])
+        frames = slice(start, stop + 1)
+        changed = self._by_bone(group, spline.evaluate(self.times, start, stop))
+        pose = self.rig.pose_changed(self.pose, frames, changed)
+        distance = np.linalg.norm(pose.points - self.target.points[frames], axis=-1)
+        return Trial(group, spline, frames, pose, float((distance / self.tolerance_m[frames]).max()))
+
+    def accept(self, trial: Trial) -> None:
+        """Adopt a trial."""
+        self.splines[trial.group] = trial.spline
+        self.pose.rotation[:, trial.frames] = trial.pose.rotation
+        self.pose.points[trial.frames] = trial.pose.points
+
+    def influence(self, group: int, off: BoolArray) -> Array:
+        """Largest displacement of the points with errors that comes from a group's own error.
+
+        Args:
+            group: The group.
+            off: (F, P) which points have an error.
+
+        Returns:
+            (F,) [m], to first order; 0 where the group is pinned already.
+        """
+        moved = np.zeros(len(self.times))
+        for bone in self.groups[group]:
+            moved = np.maximum(moved, np.where(off, self._moved_by(bone), 0.0).max(axis=1))
+        moved[self.pinned[group]] = 0.0
+        return moved
+
+    def _moved_by(self, bone: int) -> Array:
+        """(F, P) displacement of each point by a bone's own error [m]; 0 for those it does not carry."""
+        rig, every = self.rig, slice(None)
+        joint = rig.point_slices[bone].start
+        error = self.pose.local(rig, bone, every) @ np.swapaxes(self.target.local(rig, bone, every), -1, -2)
+        vector = rotations.logarithm(error)[:, None]  # (F, 1, 3) in the turner's frame
+        shift = np.zeros_like(vector)
+        turner, above = rig.bones[bone].turner, rig.bones[bone].parent
+        if turner >= 0:
+            vector = vector @ np.swapaxes(self.target.rotation[turner], -1, -2)
+        if rig.bones[bone].location_axes is not None:
+            shift = (self.pose.place(rig, bone, every) - self.target.place(rig, bone, every))[:, None]
+            if above >= 0:
+                shift = shift @ np.swapaxes(self.target.rotation[above], -1, -2)
+        carried = np.concatenate(
+            [
+                np.arange(where.start, where.stop)
+                for where in (rig.point_slices[b] for b in rig.subtrees[bone])
+            ]
+        )
+        arm = self.target.points[:, carried] - self.target.points[:, joint, None]
+        moved = np.zeros(self.target.points.shape[:2])
+        moved[:, carried] = np.linalg.norm(rotations.cross(vector, arm) + shift, axis=-1)
+        return moved
+
+    def _by_bone(self, group: int, values: Array) -> dict[int, Array]:
+        parts = np.split(values, self._ends[group][:-1], axis=1)
+        return dict(zip(self.groups[group], parts, strict=True))
+
+
+# --- Key reduction
+
 
 ADDING_MARGIN = 0.5
 """Share of the tolerance that added keys must reach; removal then chooses among them."""

@@ -1,17 +1,218 @@
-"""Natural hands and feet for a motion, whose postures leave them rigid with forearms and shins."""
+"""Feet that lie flat while they rest, roll over heel and toes, and never pass the ground.
+
+The skeleton's feet are rigid with the shins. Here each is turned about its ankle: it follows the shin as far
+as the ground and the ankle's range let it, so that it comes down on its heel, lies flat, rolls over its tip
+as the heel rises, and hangs once it is high. Its heading is the shin's, but that a resting foot stays.
+"""
 
 from collections.abc import Sequence
 from types import MappingProxyType
 
+import numpy as np
+
 from ..arrays import Array
-from ..body.extremities import Extremities
-from ..body.kinematics import Body
+from ..body.kinematics import Body, Extremities, Pose
 from ..body.posture import Posture
-from .contacts import Contact, find_contacts
-from .foot_ground import find_ground, on_ground
-from .foot_pitch import Shins, Soles
-from .foot_turns import foot_turns
-from .hand_turns import hand_turns
+from ..body.rotations import exponential, hinge
+from ..body.skeleton import SIDES
+from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smooth_step
+from .key_reduction import steadied
+from .planted_feet import Contact, find_contacts
+
+HANGING_RAD = np.radians(20.0)
+"""Plantarflexion of a foot that hangs free, well above the ground; near it the toes are kept up."""
+HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5
+"""Heights of the sole above the ground between which a foot begins to hang."""
+SWING_CLEARANCE_M = 0.013
+"""Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72)."""
+STANDS_M_S, SWINGS_M_S = 1.0, 2.5
+"""Speeds of the ankle below which no clearance is kept, and above which all of it."""
+STILL_M_S, LOW_M = 0.2, 0.04
+"""Speed, and height above a flat foot's, at which a foot that does not rest, because it sways or slides, is
+held flat by half."""
+SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)
+"""Eversion and inversion (AAOS 1965, *Joint Motion*)."""
+LEVEL_WITHIN_M = 0.1
+"""Height above a flat foot's at which its sole is no longer held level across."""
+LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)
+"""Leans of a shin to its side from which on, and at which, the ground no longer turns its foot."""
+FREE_HEADING_RAD = np.radians(25.0)
+"""A resting foot keeps its heading while the shin above it turns by no more than this."""
+FADE_S = 0.2
+"""Time in which a resting foot's heading comes and goes."""
+
+
+def foot_turns(
+    shins: Shins, soles: Soles, ground: FootGround, time_s: Array, contacts: Sequence[Contact]
+) -> dict[str, Array]:
+    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment.
+
+    Args:
+        shins: The shins in F frames.
+        soles: The soles under them.
+        ground: The ground under them.
+        time_s: (F,) time of each frame [s].
+        contacts: Rests of the ankles, 0 the left and 1 the right.
+    """
+    upright = _upright(shins)
+    height = shins.ankle[..., 2] - ground.height_m
+    above = height - soles.flat_m
+    speed = _speed(shins.ankle, time_s)
+    near = np.maximum(ground.resting, 1.0 - smooth_step(above / LEVEL_WITHIN_M))
+    leveling = -upright * near * _within_range(shins.roll)
+    swing = smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
+    lifted = np.maximum(height - SWING_CLEARANCE_M * swing, 0.0)
+    pitch = soles.above_ground(
+        _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
+    )
+    standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
+    pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
+    turned = upright * _held_heading(shins, contacts, time_s)
+    steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
+    flexion, leveling, turned = np.moveaxis(steady, 1, 0)
+    level = np.cos(shins.roll + leveling)
+    return _by_side(shins, soles.above_ground(shins.pitch + flexion, height, level, shins), leveling, turned)
+
+
+def feet_on_floor(shins: Shins, soles: Soles, floor_m: float) -> dict[str, Array]:
+    """Turns as of `foot_turns`, of postures without time: rigid but where a sole would dip into the floor."""
+    height = np.maximum(shins.ankle[..., 2] - floor_m, soles.flat_m)
+    nothing = np.zeros_like(height)
+    pitch = soles.ahead(shins.pitch, height, np.cos(shins.roll))
+    return _by_side(shins, pitch, nothing, nothing)
+
+
+def _upright(shins: Shins) -> Array:
+    """(F, 2) 1 for shins that stand, 0 for those that lie on their sides."""
+    return 1.0 - smooth_step((np.abs(shins.roll) - LEANING_RAD) / (LYING_RAD - LEANING_RAD))
+
+
+def _free_pitch(shins: Shins, soles: Soles, ground: FootGround, height: Array) -> Array:
+    """(F, 2) pitch of feet that no ground is in the way of, within the ankle's range."""
+    above = (height - soles.flat_m - HANGING_FROM_M) / (HANGING_AT_M - HANGING_FROM_M)
+    pitch = shins.pitch + HANGING_RAD * smooth_step(above)
+    pitch += ground.on_toes * np.maximum(soles.on_toes(height) - pitch, 0.0)
+    return np.clip(pitch, shins.lowest_pitch, shins.highest_pitch)
+
+
+def _speed(places: Array, time_s: Array) -> Array:
+    """(F, 2) speed of both ankles [m/s]."""
+    if len(time_s) < 2:
+        return np.zeros(places.shape[:2])
+    return np.asarray(np.linalg.norm(np.gradient(places, time_s, axis=0), axis=-1))
+
+
+def _still(speed: Array, above: Array) -> Array:
+    """(F, 2) how far feet stand by their speed and their height above flat feet's, 0 to 1."""
+    return np.asarray(1.0 / (1.0 + (speed / STILL_M_S) ** 4) / (1.0 + (above / LOW_M) ** 4))
+
+
+def _within_range(roll: Array) -> Array:
+    """(F, 2) the rolls of shins as far as the ankles can counter them."""
+    # A positive roll lowers the left foot's outer edge; countering it turns the sole outward.
+    out = np.array([1.0, -1.0])
+    return np.asarray(out * np.clip(out * roll, -SOLE_IN_RAD, SOLE_OUT_RAD))
+
+
+def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> Array:
+    """(F, 2) turns about the vertical that keep resting feet's headings."""
+    turned, weight = np.zeros_like(shins.heading), np.zeros_like(shins.heading)
+    for contact in contacts:
+        foot, rows = contact.point, slice(contact.first, contact.last + 1)
+        heading = np.unwrap(shins.heading[:, foot])
+        middle = 0.5 * (heading[rows].min() + heading[rows].max())
+        apart = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
+        near = 1.0 - smooth_step(apart / FADE_S)
+        turned[:, foot] += near * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
+        weight[:, foot] += near
+    # Two rests that follow closely share the time between them.
+    return np.asarray(turned / np.maximum(weight, 1.0))
+
+
+def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict[str, Array]:
+    """(F, 3, 3) turn of each foot in its shin's frame.
+
+    Args:
+        shins: The shins.
+        pitch: (F, 2) the feet's pitches.
+        leveling: (F, 2) by how much their rolls differ from the shins'.
+        turned: (F, 2) by how much their headings do.
+    """
+    x, y, z = np.eye(3)
+    # The shin's own pitch and roll are undone before the foot's are done: where the shin lies on its side and
+    # its pitch means nothing, only the difference counts.
+    undone = hinge(x, -shins.pitch) @ hinge(y, -shins.roll) @ hinge(z, turned)
+    turns = undone @ hinge(y, shins.roll + leveling) @ hinge(x, pitch)
+    return {f"foot.{side}": turns[:, number] for number, side in enumerate(SIDES)}
+
+
+# --- Hands that hang relaxed
+
+
+CURL_RAD = np.radians(10.0)
+"""Bend of a relaxed hand toward the palm, half-closed fingers included, which one bone stands for."""
+DROOP_RAD = np.radians(8.0)
+"""What its weight bends a hand by when the forearm is level."""
+BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)
+"""Extension and flexion of a wrist (AAOS 1965, *Joint Motion*)."""
+THICKNESS_M = 0.012
+"""Height of the fingers' middle above the ground that they lie on."""
+BACK_FROM_RAD = np.radians(-15.0)
+"""The hand bends back where what is straight down lies beyond this bend, or else toward the palm."""
+DOWN = np.array([0.0, 0.0, -1.0])
+
+
+def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[str, Array]:
+    """(F, 3, 3) turn of each hand in its forearm's frame, by name of segment.
+
+    Args:
+        body: The body.
+        pose: Its poses in F frames.
+        ground_m: (F,) height of the ground.
+        time_s: (F,) time of each frame [s].
+    """
+    turns = {}
+    for side in SIDES:
+        name = f"hand.{side}"
+        hand = next(segment for segment in body.skeleton.segments if segment.name == name)
+        along = body.local(hand.end) - body.local(hand.start)
+        length = float(np.linalg.norm(along))
+        to_palm, aside = np.cross(along / length, DOWN), DOWN
+        frame = pose.rotation[:, hand.joint]
+        down = np.swapaxes(frame, -1, -2) @ DOWN
+        droop = DROOP_RAD * np.cross(along / length, down)
+        bend = CURL_RAD + droop @ to_palm
+        wrist = pose.place(hand.joint, body.local(hand.start))[:, 2]
+        over = (wrist - ground_m - THICKNESS_M) / length
+        ahead, palm = -down @ (along / length), -down @ DOWN
+        bend = steadied(_above_ground(bend, over, ahead, palm), time_s)
+        bend = _above_ground(bend, over, ahead, palm)
+        turns[name] = exponential(bend[:, None] * to_palm) @ exponential((droop @ aside)[:, None] * aside)
+    return turns
+
+
+def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
+    """The bends (F,) that keep fingertips above the ground, as far as the wrists let them.
+
+    Args:
+        bend: (F,) the relaxed ones [rad].
+        over: (F,) height of the wrist above the ground, in lengths of the hand.
+        ahead: (F,) upward component of the forearm's direction; of a straight hand's.
+        palm: (F,) upward component of the direction that the palm faces.
+    """
+    # A tip rises by ahead cos(bend) + palm sin(bend), least where the hand is as steep as its hinge lets it.
+    steepness = np.hypot(ahead, palm)
+    steepest = np.arctan2(-palm, -ahead)
+    closeness = np.clip(over / np.maximum(steepness, 1e-6), -1.0, 1.0)
+    apart = np.arccos(closeness)
+    back = np.minimum(bend, steepest - apart)
+    forth = np.maximum(bend, steepest + apart)
+    passing = np.abs(np.remainder(bend - steepest + np.pi, 2.0 * np.pi) - np.pi) < apart
+    kept = np.where(steepest > BACK_FROM_RAD, back, forth)
+    return np.clip(np.where(passing, kept, bend), -BACK_RAD, TO_PALM_RAD)
+
+
+# --- Natural hands and feet for a motion, whose postures leave them rigid with forearms and shins
 
 
 def natural_extremities(

@@ -24,7 +24,7 @@ from ..numerics.robust import multivariate_cost
 from ..numerics.vectors import unit
 from .camera import Camera
 from .camera_evidence import CLICK_STD_PX, CameraEvidence
-from .camera_placement import CameraPlacement
+from .camera_fields import CameraPlacement
 
 HEIGHT, TILT, ROLL, LENS = "height", "tilt", "roll", "lens"
 PARAMETERS = (HEIGHT, TILT, ROLL, LENS)

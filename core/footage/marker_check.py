@@ -1,24 +1,82 @@
-"""Marker check: how reliably each marker is detected in sampled frames, as numbers and warnings."""
+"""Assignment of detected regions to markers, for tracking and for the marker check."""
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, IntArray
-from .association import Candidates, gather_candidates
-from .clips.clip_samples import ClipSamples
-from .colors.color_confusion import color_confusion
+from ..arrays import Array, BoolArray, IntArray
+from .association import (
+    Candidates,
+    MarkerRegion,
+    gather_candidates,
+    join_fragments,
+    region_costs,
+    rival_costs,
+    static_clutter,
+    typical_area,
+)
+from .clips.clip import ClipSamples
 from .colors.color_model import ColorModel
 from .colors.streaming_color_learning import StreamingColorLearner
+from .colors.strong_colors import color_confusion
 from .ignored_regions import IgnoredPixels, IgnoredRegion, PixelBox
-from .marker_style import MarkerStyle
-from .marker_warnings import Likeness, alike_warnings, marker_warnings
-from .region_assignment import HIGHEST_FRAGMENT_COST, assign_regions
-from .region_tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions, MarkerStyle
+from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
-from .still_areas import places, still_areas
+from .still_areas import Likeness, alike_warnings, marker_warnings, places, still_areas
+
+HIGHEST_FRAGMENT_COST = 10.0
+"""Highest cost of a region that counts as a fragment of a marker."""
+
+
+def assign_regions(
+    found: Sequence[Candidates],
+    groups: Sequence[Sequence[int]],
+    expected: ExpectedRegions | None,
+    choose: Callable[[Candidates, Array, float], IntArray],
+) -> dict[int, MarkerRegion]:
+    """Assign regions to markers in every frame; return each marker's by its index.
+
+    Args:
+        found: The regions of each color.
+        groups: The markers of each color.
+        expected: Expected regions of the markers.
+        choose: Function of a color's regions, their costs (N,) and the marker's length in px that gives the
+            index of its main region in each frame (F,), -1 where it is hidden.
+    """
+    alone = [len(group) == 1 for group in groups]
+    clutter = [
+        static_clutter(one) if single else np.zeros(len(one.frame), dtype=np.bool_)
+        for one, single in zip(found, alone, strict=True)
+    ]
+    usual = [typical_area(one, still) for one, still in zip(found, clutter, strict=True)]
+    reach = 0.5 * float(np.sqrt(max(usual, default=0.0)))  # about the width of a limb that covers a marker
+    own = {}
+    for color, group in enumerate(groups):
+        one = found[color]
+        length = _length(one, clutter[color], usual[color])
+        taken = np.zeros(len(one.frame), dtype=np.bool_)
+        for marker in group:
+            cost = region_costs(one, clutter[color], usual[color], expected, marker)
+            cost += rival_costs(one, taken, expected, marker, [other for other in group if other != marker])
+            path = choose(one, cost, length)
+            own[marker] = join_fragments(one, path, cost, reach, HIGHEST_FRAGMENT_COST)
+            taken[path[path >= 0]] = True
+    return own
+
+
+def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
+    """The marker's length in px: the long axis of regions of the usual size."""
+    full = ~clutter & (found.area >= 0.7 * usual_area)
+    if not full.any():
+        return 1.0
+    _, second = centroid_and_second_moment(found.moments[full])
+    return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
+
+
+# --- Marker check
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from ..arrays import Image
 from ..errors import InputError
 from ..progress import Job, Progress
 from .clips.clip import Clip
-from .keypoints.people import People, SeenPeople
+from .keypoints.keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"

@@ -1,11 +1,25 @@
 """A reading: the result of one pass over a clip, for all later steps."""
 
-from dataclasses import dataclass
+import itertools
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
-from .clips.album import Album
-from .clips.frame_checks import NO_FINDINGS, FrameFindings
-from .detections import Detections
-from .region_tracks import RegionTracks
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..errors import InputError
+from ..files.digest import digest, file_fingerprint
+from .clips.album import Album, watch_clip
+from .clips.clip import Clip
+from .clips.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
+from .clips.image_sequence import find_images
+from .ignored_regions import IgnoredRegion
+from .markers import assign_detections, detect_markers, still_valid
+from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, RegionTracks
+from .segmentation.regions import Regions
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,3 +38,282 @@ class Reading:
     """Cache key of the clip and the settings, see `reading_key`; empty where unknown."""
     frame_findings: FrameFindings = NO_FINDINGS
     """Blank frames, cuts and interlacing."""
+
+
+# --- A reading as named arrays of numbers and text, and back
+
+
+Arrays = dict[str, NDArray[Any]]
+
+TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
+
+
+def reading_arrays(reading: Reading) -> Arrays:
+    """A reading as arrays by name."""
+    tracks, findings = reading.tracks, reading.frame_findings
+    arrays: Arrays = {f"tracks.{name}": getattr(tracks, name) for name in TRACKED}
+    arrays |= {
+        "key": np.array(reading.key),
+        "notes": _text(reading.notes),
+        "noticed.blank": np.array(findings.blank, dtype=np.int64),
+        "noticed.cuts": np.array(findings.cuts, dtype=np.int64),
+        "noticed.rest": np.array([findings.frames, findings.interlaced], dtype=np.int64),
+        "tracks.names": _text(tracks.names),
+        "tracks.notes": _text(tracks.notes),
+        "tracks.size": np.array(tracks.size),
+    }
+    if reading.album is not None:
+        arrays |= {f"album.{name}": array for name, array in reading.album.to_arrays().items()}
+    if reading.detections is not None:
+        arrays |= {f"seen.{name}": array for name, array in _detections_arrays(reading.detections).items()}
+    return arrays
+
+
+def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
+    """The reading that `reading_arrays` gave as arrays.
+
+    Raises:
+        KeyError, ValueError: They are not of a reading.
+    """
+    width, height = arrays["tracks.size"].tolist()
+    tracks = RegionTracks(
+        names=tuple(arrays["tracks.names"].tolist()),
+        size=(width, height),
+        notes=tuple(arrays["tracks.notes"].tolist()),
+        **{name: arrays[f"tracks.{name}"] for name in TRACKED},
+    )
+    album = Album.from_arrays(_under("album", arrays)) if "album.picture" in arrays else None
+    seen = _detections(_under("seen", arrays), tracks) if "seen.start" in arrays else None
+    frames, interlaced = arrays["noticed.rest"].tolist()
+    blank, cuts = (tuple(arrays[f"noticed.{name}"].tolist()) for name in ("blank", "cuts"))
+    findings = FrameFindings(frames, blank, cuts, bool(interlaced))
+    return Reading(tracks, album, seen, tuple(arrays["notes"].tolist()), str(arrays["key"]), findings)
+
+
+def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
+    return {
+        key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")
+    }
+
+
+def _text(lines: tuple[str, ...]) -> NDArray[Any]:
+    return np.array(lines, dtype=np.str_) if lines else np.zeros(0, dtype="<U1")
+
+
+def _detections_arrays(seen: Detections) -> Arrays:
+    """Concatenated regions with the index of each frame's first one; learning rounds likewise."""
+    counts = [len(found.color) for found in seen.regions]
+    learned = [len(one.frames) for one in seen.learning_rounds]
+    frames = sorted(seen.samples)
+    return {
+        "start": np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        **{name: np.concatenate([getattr(one, name) for one in seen.regions]) for name in Regions._fields},
+        "lesson_start": np.concatenate([[0], np.cumsum(learned)]).astype(np.int64),
+        "lesson_frames": np.array([f for one in seen.learning_rounds for f in one.frames], dtype=np.int64),
+        "taught": _text(tuple(one.model_digest for one in seen.learning_rounds)),
+        "sample_frames": np.array(frames, dtype=np.int64),
+        "samples": np.stack([seen.samples[frame] for frame in frames]),
+    }
+
+
+def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
+    everything = Regions(*(arrays[name] for name in Regions._fields))
+    regions = tuple(everything.part(a, b) for a, b in itertools.pairwise(arrays["start"].tolist()))
+    frames, starts = arrays["lesson_frames"].tolist(), arrays["lesson_start"].tolist()
+    learning_rounds = tuple(
+        LearningRound(tuple(frames[a:b]), taught)
+        for (a, b), taught in zip(itertools.pairwise(starts), arrays["taught"].tolist(), strict=True)
+    )
+    samples = dict(zip(arrays["sample_frames"].tolist(), arrays["samples"], strict=True))
+    return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
+
+
+# --- Cache key of a reading
+
+
+FORMAT = 2
+"""Version of the reading's algorithm and arrays; raised whenever either changes."""
+MOST_SAMPLED = 24
+"""Images of a longer sequence whose content is hashed, evenly spread."""
+PREFIX = "reading"
+
+
+def reading_key(
+    path: Path,
+    fps: float,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> str:
+    """Cache key that changes with everything a reading depends on.
+
+    Args:
+        path: The clip, as `Clip.open` takes it.
+        fps: Frames per second of an image sequence.
+        styles: The markers.
+        expected: Their expected regions.
+        ignored: Regions of the picture that are never a marker.
+
+    Raises:
+        InputError: The clip is missing or cannot be read.
+    """
+    try:
+        footage = _footage(path, fps)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
+    regions = None if expected is None else (expected.center, expected.radius)
+    left_out = [(one.box, one.stroke, one.radius_px, one.frames) for one in ignored] if wanted else []
+    return f"{PREFIX}-{digest(FORMAT, footage, wanted, *left_out)}-{digest(regions)}"
+
+
+def of_same_footage(key: str, other: str) -> bool:
+    """Whether two keys differ at most in the markers' expected regions."""
+    return bool(key) and key.rpartition("-")[0] == other.rpartition("-")[0]
+
+
+def footage_digest(path: Path) -> str:
+    """Digest of a clip's file, or of the images of a sequence, independent of their folder.
+
+    Args:
+        path: The clip, as `Clip.open` takes it.
+
+    Raises:
+        InputError: The clip is missing or cannot be read.
+    """
+    try:
+        return digest(*_footage(path, 0.0))
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+
+
+def _footage(path: Path, fps: float) -> tuple[object, ...]:
+    images = find_images(path)
+    if images is None:
+        return (file_fingerprint(path),)
+    states = [file.stat() for file in images]
+    names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
+    step = max(1, len(images) // MOST_SAMPLED)
+    return fps, names, tuple(file_fingerprint(file) for file in images[::step])
+
+
+# --- One pass over a clip for all later steps, or none where a cached reading is still valid
+
+
+def read_clip(
+    clip: Clip,
+    styles: Sequence[MarkerStyle],
+    expected: ExpectedRegions | None = None,
+    with_album: bool = True,
+    kept: Reading | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> Generator[float, None, Reading]:
+    """Track the markers through a clip, check its frames and keep a small picture of each.
+
+    Args:
+        clip: The footage.
+        styles: The markers.
+        expected: Expected regions of the markers; optional.
+        with_album: Whether pictures are kept.
+        kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
+            if only the expected regions differ and the colors would be learned alike, its detections are
+            assigned to the markers anew.
+        ignored: Regions of the picture that are never a marker.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Returns:
+        The reading, to the last digit the same as without a cached one.
+
+    Raises:
+        InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
+    """
+    yield 0.0
+    key = reading_key(clip.path, clip.fps, styles, expected, ignored)
+    if kept is not None and (kept.album is not None or not with_album):
+        kept = kept if with_album else replace(kept, album=None)
+        if kept.key == key:
+            return kept
+        seen = kept.detections
+        same = seen is not None and of_same_footage(kept.key, key)
+        if seen is not None and same and still_valid(seen, styles, expected, ignored):
+            return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
+    album, checks = Album() if with_album else None, FrameChecks()
+    if not styles:
+        tracks = yield from _watch(watch_clip(clip, checks, album))
+        return Reading(tracks, album, key=key, frame_findings=checks.findings())
+    try:
+        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected, ignored)
+    except InputError as error:
+        why = checks.nothing_seen()
+        if why is not None:
+            raise InputError(f"{clip.path}: {why}") from error
+        if clip.notes:
+            raise InputError("; ".join([str(error), *clip.notes])) from error
+        raise
+    yield 1.0
+    return Reading(
+        assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
+    )
+
+
+def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
+    """Decode a clip in which no marker is followed, for its checks, pictures and times."""
+    time_s: list[float] = []
+    for _, stamp, _ in clip.frames():
+        time_s.append(stamp)
+        yield min(len(time_s) / clip.frame_count, 1.0)
+    return RegionTracks.unmarked(np.array(time_s), clip.size)
+
+
+# --- Times of a clip's frames
+
+
+MOST_CLIPS = 8
+"""Clips whose times are remembered: those of the takes at hand."""
+_known: dict[tuple[str, float], Array] = {}
+
+
+def clip_times(
+    clip: Clip,
+    kept: Reading | None = None,
+    styles: Sequence[MarkerStyle] = (),
+    ignored: Sequence[IgnoredRegion] = (),
+) -> Generator[float, None, Array]:
+    """Find the time of every frame of a clip, by a pass over it unless its file is known and unchanged.
+
+    Args:
+        clip: The clip.
+        kept: A cached reading of any clip; it knows the times where it is one of this clip, ...
+        styles: ... with these markers ...
+        ignored: ... and these regions that are never one.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Returns:
+        (F,) times [s].
+
+    Raises:
+        InputError: The clip is missing or cannot be read.
+    """
+    key = footage_digest(clip.path), clip.fps
+    if key not in _known and kept is not None:
+        own = reading_key(clip.path, clip.fps, styles, None, ignored)
+        if of_same_footage(kept.key, own):
+            _remember(key, kept.tracks.time_s)
+    if key not in _known:
+        stamps: list[float] = []
+        for stamp in clip.source.time_stamps():
+            stamps.append(stamp)
+            yield min(len(stamps) / clip.frame_count, 1.0)
+        _remember(key, np.array(stamps, dtype=np.float64))
+    return _known[key]
+
+
+def _remember(key: tuple[str, float], time_s: Array) -> None:
+    _known[key] = time_s.copy()
+    _known[key].setflags(write=False)
+    for oldest in list(_known)[:-MOST_CLIPS]:
+        del _known[oldest]

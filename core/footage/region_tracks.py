@@ -1,11 +1,54 @@
-"""Tracks of the markers' image regions, and the regions expected beforehand."""
+"""Marker styles: a marker's name, segment and color sample, and groups of markers that look alike."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array, BoolArray, Image
 from .clips.clip_timing import is_variable_frame_rate
+from .colors.color_learning import sample_distribution
+from .segmentation.regions import Regions
+
+ALIKE_DISTANCE = 2.5
+"""Squared Mahalanobis distance of two samples below which light may make them equal."""
+
+
+@dataclass(frozen=True)
+class MarkerStyle:
+    """A colored surface marker as the performer wears it."""
+
+    name: str
+    """The marker's name."""
+    segment: str
+    """The body segment it is bound to."""
+    color_srgb: tuple[int, int, int]
+    """One eyedropper sample of the footage, (red, green, blue) in 0..255."""
+
+
+def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
+    """Group the indices of the markers by color; markers of indistinguishable colors are together."""
+    groups: list[list[int]] = []
+    for index, style in enumerate(styles):
+        for group in groups:
+            if any(_distance(style.color_srgb, styles[other].color_srgb) < ALIKE_DISTANCE for other in group):
+                group.append(index)
+                break
+        else:
+            groups.append([index])
+    return groups
+
+
+def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> float:
+    """Squared Mahalanobis distance of two samples, by the covariance of their difference."""
+    one, other = sample_distribution(first), sample_distribution(second)
+    offset = one.mean - other.mean
+    squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))
+    light = (one.log_luma - other.log_luma) ** 2
+    return squared + light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)
+
+
+# --- Tracks of the markers' image regions, and the regions expected beforehand
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,3 +168,32 @@ class ExpectedRegions:
         for name, array in (("center", center), ("radius", radius)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+
+
+# --- Detections
+
+
+@dataclass(frozen=True)
+class LearningRound:
+    """One round of color learning."""
+
+    frames: tuple[int, ...]
+    """Indices of the frames learned from."""
+    model_digest: str
+    """Digest of the color model that was learned."""
+
+
+@dataclass(frozen=True, eq=False)
+class Detections:
+    """All regions of the markers' colors in a clip of F frames."""
+
+    regions: tuple[Regions, ...]
+    """Regions of each frame, in pixels of the measuring grid."""
+    time_s: Array
+    """(F,) time stamps of the frames in seconds."""
+    size: tuple[int, int]
+    """Width and height of the clip's images in px."""
+    learning_rounds: tuple[LearningRound, ...]
+    """Rounds in which the colors were learned, in order."""
+    samples: Mapping[int, Image]
+    """The images (rows, columns, 3) that were learned from, by frame."""

@@ -8,14 +8,14 @@ single moments are doubted.
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.body_volume import standing_posture
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..body.skeleton import SIDES
-from ..body.standing_posture import standing_posture
 from .camera_evidence import COMMON_LEAN_RAD, STATURE_STD, Uprights
 from .keypoints.keypoints import Keypoints
-from .keypoints.principal_keypoints import principal_keypoints
+from .keypoints.performer import principal_keypoints
 
 APART_S = 0.3
 """Time after which a posture is another one: half a step of someone who walks."""

@@ -1,11 +1,14 @@
 """The colors that a performer wears, as unmixing needs them: of each marker, and of all that is no marker."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import correlate1d
 
-from ..arrays import Array, BoolArray, IndexArray, SingleArray
-from .appearance import CELL_VOLUME, LEVELS, UNSEEN_LOG_DENSITY, Appearance
+from ..arrays import Array, BoolArray, Image, IndexArray, SingleArray
+from .appearance import CELL_VOLUME, LEVELS, NO_PART, UNSEEN, UNSEEN_LOG_DENSITY, Appearance, histogram_cells
 from .clips.album import Album
 from .segmentation.unmixing import Surface, contrast, mixed, surface_of
 
@@ -138,3 +141,74 @@ def usual_background(appearance: Appearance) -> SingleArray:
     """(rows, columns, 3) the background's colors; NaN where unknown."""
     known = appearance.known[..., None]
     return np.where(known, appearance.color, np.nan).astype(np.float32)
+
+
+# --- Colors along limbs
+
+
+BANDS = 6
+"""Bands of a part's length."""
+BITS = 4
+"""Coarser than whole parts' colors: a band has a sixth of their pixels."""
+LEVELS_BAND_COLORS = 1 << BITS
+CELLS = LEVELS_BAND_COLORS**3
+BLUR = np.array([0.16, 0.68, 0.16])
+"""Smoothing of a histogram along each of its axes: noise of a few levels."""
+SHARED = 0.25
+"""Share of a band's colors that are the whole part's: folds and shadows wander."""
+
+
+@dataclass(frozen=True, eq=False)
+class BandColors:
+    """Log likelihoods of colors, as densities per cell."""
+
+    bands: Array
+    """(O, BANDS, cells) of each part's bands."""
+    parts: Array
+    """(O, cells) of whole parts."""
+    anything: Array
+    """(cells,) of performer and background together."""
+
+
+def learn_band_colors(
+    images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], count: int
+) -> BandColors:
+    """Learn the colors along all parts.
+
+    Args:
+        images: Frames (rows, columns, 3).
+        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
+        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
+            the part is seen end on.
+        count: Number of parts, O.
+    """
+    size = count * BANDS * CELLS
+    counts, background = np.zeros(size), np.zeros(CELLS)
+    for image, label, share in zip(images, labels, shares, strict=True):
+        cell = band_cells(image)
+        inside = (label != NO_PART) & np.isfinite(share)
+        band = np.clip(share[inside] * BANDS, 0, BANDS - 1).astype(np.intp)
+        where = (label[inside].astype(np.intp) * BANDS + band) * CELLS + cell[inside]
+        counts += np.bincount(where, minlength=size)
+        background += np.bincount(cell[label == NO_PART], minlength=CELLS)
+    own = counts.reshape(count, BANDS, CELLS)
+    whole = _densities(own.sum(axis=1))
+    bands = (1.0 - SHARED) * _densities(own) + SHARED * whole[:, None]
+    anything = 0.5 * (whole.mean(axis=0) + _densities(background))
+    return BandColors(np.log(bands), np.log(whole), np.log(anything))
+
+
+def band_cells(pixels: Image) -> IndexArray:
+    """Histogram cell of pixels (..., 3)."""
+    return histogram_cells(pixels, BITS)
+
+
+def _densities(counts: Array) -> Array:
+    """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
+    grid = counts.reshape(*counts.shape[:-1], LEVELS_BAND_COLORS, LEVELS_BAND_COLORS, LEVELS_BAND_COLORS)
+    for axis in (-3, -2, -1):
+        grid = correlate1d(grid, BLUR, axis=axis, mode="nearest")
+    smoothed = grid.reshape(counts.shape)
+    total = smoothed.sum(axis=-1, keepdims=True)
+    share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / CELLS)
+    return np.asarray((1.0 - UNSEEN) * share + UNSEEN / CELLS)

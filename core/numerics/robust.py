@@ -3,11 +3,12 @@
 Lange, Little & Taylor (1989), *Robust statistical modeling using the t distribution*, JASA 84.
 """
 
+from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
 
-from ..arrays import Array, IndexArray, SingleArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
 
 Floats = TypeVar("Floats", Array, SingleArray)
 
@@ -37,3 +38,56 @@ def multivariate_weight(squared: Array, degrees: float, dimensions: float) -> Ar
 def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Floats:
     """Negative logarithm of a `dimensions`-variate t of squared distances, up to a constant."""
     return 0.5 * (degrees + dimensions) * np.log1p(squared / degrees)
+
+
+# --- Levenberg-Marquardt for a batch of problems, on vectors or on a manifold
+
+
+State = TypeVar("State")
+Equations = tuple[Array, Array, Array]
+"""Of N problems in D unknowns: cost (N,), normal matrix (N, D, D) and gradient (N, D)."""
+FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
+REWARD, PENALTY = 0.2, 8.0
+"""Factors on the damping after a step that lowers the cost, and after one that does not."""
+RIDGE = 1e-9
+"""Added to the diagonal, so that what nothing determines stays."""
+
+
+def levenberg_marquardt(
+    equations: Callable[[State], Equations],
+    start: State,
+    plus: Callable[[State, Array], State],
+    choose: Callable[[BoolArray, State, State], State],
+    iterations: int,
+    converged: float,
+) -> State:
+    """Lower the cost of N problems together.
+
+    Args:
+        equations: Cost, normal matrix and gradient of each at a state.
+        start: The state to start from.
+        plus: A state changed by steps (N, D).
+        choose: Of each problem the first state where a mask (N,) holds, else the second.
+        iterations: Steps at most.
+        converged: Share of its cost below which a step's gain ends a problem.
+    """
+    state = start
+    cost, normal, gradient = equations(state)
+    damping = np.full(len(cost), FIRST_DAMPING)
+    diagonal = np.arange(gradient.shape[-1])
+    for _ in range(iterations):
+        damped = normal.copy()
+        damped[:, diagonal, diagonal] *= 1.0 + damping[:, None]
+        damped[:, diagonal, diagonal] += RIDGE
+        trial = plus(state, -np.linalg.solve(damped, gradient[..., None])[..., 0])
+        trial_cost, trial_normal, trial_gradient = equations(trial)
+        better = trial_cost < cost
+        gain = np.where(better, (cost - trial_cost) / np.maximum(cost, 1e-12), 0.0)
+        state = choose(better, trial, state)
+        cost = np.where(better, trial_cost, cost)
+        normal = np.where(better[:, None, None], trial_normal, normal)
+        gradient = np.where(better[:, None], trial_gradient, gradient)
+        damping = np.clip(np.where(better, damping * REWARD, damping * PENALTY), LEAST_DAMPING, 1e9)
+        if np.all(np.where(better, gain < converged, damping > MOST_DAMPING)):
+            break
+    return state

@@ -1,8 +1,9 @@
 """Directions in space."""
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
-from ..arrays import Array
+from ..arrays import Array, IndexArray
 
 SHORTEST = 1e-12
 """Length below which a vector has no direction."""
@@ -17,3 +18,32 @@ def unit(vectors: Array) -> Array:
 def across(vector: Array) -> Array:
     """Some unit vector (3,) at right angles to a vector (3,)."""
     return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
+
+
+# --- Signals over time
+
+
+def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
+    """Median step of times (F,) that advances [s]; `otherwise` where none does."""
+    step = np.diff(time_s)
+    advancing = step[np.isfinite(step) & (step > 0.0)]
+    return float(np.median(advancing)) if len(advancing) else otherwise
+
+
+def columns_at(at: Array | IndexArray, known: Array | IndexArray, values: Array) -> Array:
+    """Columns (K, N) known at rising places (K,), interpolated linearly at (F,), as (F, N); flat beyond."""
+    return np.stack([np.interp(at, known, column) for column in np.asarray(values).T], axis=-1)
+
+
+def gaussian(values: Array, deviation: float, truncate: float = 4.0) -> Array:
+    """Values (F, ...) under a Gaussian of a `deviation` in rows, which ends after `truncate` deviations."""
+    if len(values) < 2 or not deviation > 0.0:
+        return values
+    return np.asarray(gaussian_filter1d(values, deviation, axis=0, mode="nearest", truncate=truncate))
+
+
+def weighted_median(values: Array, weights: Array) -> float:
+    """The value up to which, in order, half of the weights (N,) lie."""
+    order = np.argsort(values)
+    half = int(np.searchsorted(np.cumsum(weights[order]), 0.5 * weights.sum()))
+    return float(values[order[min(half, len(order) - 1)]])

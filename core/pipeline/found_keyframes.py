@@ -1,20 +1,42 @@
-"""Reconstruction of a take whose keyframes are posed, found in the footage, or both."""
+"""A take as it is read where keyframes are to be found: with those that a person posed, or with none."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from ..estimate.reconstruct import Reconstruction, reconstruct
-from ..library.library import Library
 from ..posing.found_poses import FoundPoses, with_found
 from ..posing.pose_clip import pose_clip
+from ..prior.library import Library
 from ..progress import Job, stretch
 from ..take.conversion_settings import ConversionSettings
 from ..take.description import Description
 from ..take.read_footage import read_footage
 from ..take.take import Take
 from ..take.take_file import read_described
-from ..take.take_to_pose import take_to_pose
+
+
+def take_to_pose(
+    description: Description, keyframes: Path | None, settings: ConversionSettings | None = None
+) -> Take:
+    """Read a take with the keyframes that a person posed, or with none where no file is named.
+
+    Keyframes that an earlier run has found are left out, since they are found anew. `settings` say which
+    keypoints are read and which evidence is used, by default the take's own.
+
+    Raises:
+        InputError: The take or the keyframe file is unusable.
+    """
+    fewest = 0 if keyframes is None else 1
+    take = read_described(
+        description, keyframes, keyframes_required=False, fewest_keyframes=fewest, settings=settings
+    )
+    return replace(take, keyframes=tuple(k for k in take.keyframes if k.matched is None))
+
+
+# --- Reconstruction of a take whose keyframes are posed, found in the footage, or both
+
 
 READ, POSED = 0.2, 0.7
 """Fractions of the whole job after reading the footage and after finding its keyframes."""

@@ -8,13 +8,11 @@ import numpy as np
 
 from ..estimate.reconstruct import Reconstruction
 from ..files.digest import content_digest
-from ..library.library import Library
-from ..library.library_file import library_digest
-from ..posing.contradiction_notes import contradiction_notes
-from ..posing.found_poses import FoundPoses
+from ..posing.found_poses import FoundPoses, contradiction_notes
+from ..prior.library import Library, library_digest
 from ..progress import run
+from ..review.frame_evidence import used_evidence
 from ..review.review import review
-from ..review.used_evidence import used_evidence
 from ..take.conversion_record import ConversionRecord
 from ..take.take import Take
 

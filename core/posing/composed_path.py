@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.human import HUMAN
-from ..body.limbs import LIMBS
+from ..body.human import HUMAN, LIMBS
 from ..numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from .composed_states import LEGS, FrameCosts, FrameStates
-from .frame_likelihood import student_cost
+from .match_evidence import student_cost
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]

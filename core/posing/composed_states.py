@@ -12,12 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
-from ..body.center_of_mass import mass_weights
-from ..body.human import HUMAN
-from ..body.limbs import LIMBS
-from .frame_likelihood import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
+from ..body.human import HUMAN, LIMBS, mass_weights
 from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
 from .library_motion import PartBelief
+from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 

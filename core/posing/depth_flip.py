@@ -7,15 +7,22 @@ import numpy as np
 
 from ..arrays import Array
 from ..body import rotations
+from ..body.human import LIMBS, TRUNK
 from ..body.kinematics import Body
-from ..body.limbs import LIMBS, TRUNK
 from ..body.posture import Posture
 from ..footage.camera import Camera
+from .drag import Pull, SightLine, pulled
 from .dragged import planted
-from .limb_chain import LimbChain, limb_chain, swing
-from .limb_in_sight import DISTINCT_M, LimbInSight, depths_m, sight_lines, ways_in_sight
-from .reach import Pull, pulled
-from .sight_lines import SightLine
+from .limb_chain import (
+    DISTINCT_M,
+    LimbChain,
+    LimbInSight,
+    depths_m,
+    limb_chain,
+    sight_lines,
+    swing,
+    ways_in_sight,
+)
 
 
 class FlippedPart(Enum):

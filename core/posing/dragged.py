@@ -6,13 +6,12 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array
+from ..body.human import TRUNK, limb_of
 from ..body.kinematics import Body
-from ..body.limbs import TRUNK, limb_of
 from ..body.mirror import other_side
 from ..body.posture import Posture
+from .drag import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
-from .reach import Pull, pulled
-from .sight_lines import SightLine
 
 ON_SIGHT_M = 0.001
 """A dragged joint lies under the mouse: a millimeter is less than a pixel of any footage, ..."""

@@ -1,9 +1,4 @@
-"""The postures of one frame, with no keyframe at all: a few distinct candidates, each with a confidence.
-
-What is seen of a frame does not tell a posture: several explain it alike. So the hypotheses of a search
-(`frame_search`) are gathered around the likeliest ones; each candidate is the mean of those near it, weighed
-by their probability and brought to the evidence again, which is nearer to the truth than the best single one.
-"""
+"""What keyframes nearby tell of a frame: one more hypothesis, and a cost of all others."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,18 +6,108 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..body.limbs import TRUNK
+from ..body.human import TRUNK, limb_of
 from ..body.posture import Posture
 from ..errors import InputError
-from ..estimate.single_frame import fit_frame
-from ..library.library import Library
-from ..prior.frame_prior import FramePrior
+from ..estimate.single_frame import FrameFit, fit_frame, frame_residuals
+from ..evidence.keypoints import JOINT_ERROR_STD_M, USUAL_PLACES
+from ..prior.frame_prior import FramePrior, unrelated_std
+from ..prior.library import Library
 from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate, distinct_rows
-from .frame_belief import belief_costs, believed_fit
-from .frame_contradictions import unexplained, unworn_marker
-from .frame_search import Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
-from .frame_shown import FrameShown
-from .known_postures import part_shapes
+from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
+from .known_motions import PARTS, part_shapes
+
+TOGETHER = 0.5
+"""Share of the degrees of freedom that vary on their own: a body's change together."""
+
+
+def belief_costs(belief: FramePrior, posture: Posture) -> Array:
+    """(S,) cost of postures beside keyframes: Gaussian near them, bounded by what tells them from others.
+
+    Far from all keyframes their belief is as wide as that of unrelated postures, and the cost vanishes.
+    """
+    deviation = posture.minus(Posture.stack([belief.posture])) / belief.std
+    told = np.log(np.maximum(unrelated_std(posture.skeleton) / belief.std, 1.0)).sum()
+    return np.asarray(TOGETHER * np.minimum(0.5 * (deviation**2).sum(axis=-1), told))
+
+
+def believed_fit(
+    known: Knowledge, shown: FrameShown, belief: FramePrior, floor_m: float | None
+) -> tuple[FrameFit, float]:
+    """The posture nearest to what keyframes tell that explains the frame, and its cost among hypotheses."""
+    points = shown.points_of(False)
+    fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=points)
+    sides = np.array([False] if points is None else [False, True])
+    postures = Posture.stack([fit.posture] * len(sides))
+    nothing = np.zeros(len(sides))
+    alone = Hypotheses(postures, nothing, nothing.astype(np.intp), sides)
+    cost = refined(known, shown, alone, floor_m).cost.min()
+    return fit, float(cost + belief_costs(belief, postures[:1])[0])
+
+
+# --- What contradicts a frame's plausible postures
+
+
+UNWORN_COST = 12.0
+"""Cost of a region that nobody wears: one marker in twenty, at one of some ten thousand places and sizes that
+can be told apart in a picture."""
+KEYPOINT_COST = 0.5
+"""What a keypoint costs where the posture is right, its guessed depth included: no gain of leaving a
+marker out."""
+FEW_STARTS = 24
+"""Starts of a search without a marker, which only asks how well the rest can be explained."""
+
+
+@dataclass(frozen=True, eq=False)
+class Unworn:
+    """A region that nobody wears."""
+
+    name: str
+    """Its marker."""
+    shown: FrameShown
+    """The frame without it."""
+
+
+def unworn_marker(
+    known: Knowledge, shown: FrameShown, found: Hypotheses, floor_m: float | None
+) -> Unworn | None:
+    """The marker without which the rest of the frame is explained far better; None where there is none."""
+    least = float(found.cost.min())
+    visible = np.flatnonzero(shown.tracks.visible[0])
+    # Nothing is left to gain where all is well explained.
+    alone = len(visible) + int(shown.points.seen.sum()) < 2
+    if least < UNWORN_COST + KEYPOINT_COST * shown.points.seen.sum() or alone or not len(visible):
+        return None
+    rest = {int(marker): shown.without(int(marker)) for marker in visible}
+    gains = {
+        marker: least - float(search(known, one, floor_m, FEW_STARTS).cost.min())
+        for marker, one in rest.items()
+    }
+    best = max(gains, key=lambda marker: gains[marker])
+    if gains[best] < UNWORN_COST:
+        return None
+    return Unworn(shown.tracks.names[best], rest[best])
+
+
+def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[str, ...]:
+    """Names of what a posture does not explain, and of what is seen on limbs that it contorts."""
+    points = shown.points_of(False)
+    off = frame_residuals(shown.evidence, shown.regions, points, posture, shown.frame)
+    names = [shown.tracks.names[marker] for marker in off.markers]
+    # Hands and feet turn about wrists and ankles, of which a posture knows nothing.
+    names += [name for name in off.points if USUAL_PLACES[name].error_std_m <= JOINT_ERROR_STD_M]
+    bent = known.plausibility.contorted(known.pools.body.pose(Posture.stack([posture])))[0]
+    parts = [part for part, is_bent in zip(PARTS, bent, strict=True) if is_bent]
+    worn = zip(shown.tracks.names, shown.segments, shown.tracks.visible[0], strict=True)
+    names += [name for name, segment, seen in worn if seen and limb_of(segment) in parts]
+    if not shown.segments:
+        seen = zip(shown.keypoints.names, shown.points.seen[0], strict=True)
+        names += [name for name, is_seen in seen if is_seen and limb_of(name) in parts]
+    return tuple(dict.fromkeys(names))
+
+
+# --- The postures of one frame, with no keyframe at all
+
 
 MOST_CANDIDATES = 4
 MOST_MEANS = 8

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import IndexArray, SingleArray
-from ..estimate.terms.balance import STEP_M
+from ..estimate.terms.contact import STEP_M
 from ..numerics.robust import multivariate_cost
-from .frame_likelihood import student_cost
+from .match_evidence import student_cost
 
 MOST_PAIRED = 12
 """Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""

@@ -12,18 +12,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.heading import headings_rad, yaw_rotation, yawed_at
-from ..body.human import HUMAN
+from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
-from ..body.limbs import LIMBS
-from ..body.posture import Posture
+from ..body.posture import Posture, headings_rad, yaw_rotation, yawed_at
 from ..numerics.markov_chain import path_posteriors
 from ..progress import Part
-from .frame_likelihood import (
+from .known_motions import KnownMotions
+from .match_evidence import (
     DEGREES_OF_FREEDOM,
     ENTRIES,
     EXCHANGED_COST,
     FrameLikelihood,
+    MatchEvidence,
     extent_cost,
     frame_likelihoods,
     lowest,
@@ -31,8 +31,6 @@ from .frame_likelihood import (
     products,
     student_cost,
 )
-from .known_motions import KnownMotions
-from .match_evidence import MatchEvidence
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM, PartPools
 from .posing_input import PosingInput, tempering

@@ -4,16 +4,22 @@ A marker's region counts with its centroid and its extent, a keypoint with its p
 guessed it, its depth behind the hips.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, BoolArray, IndexArray
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..body.body_volume import PieceStack
 from ..body.human import HUMAN
-from ..footage.keypoints.body_points import mirrored_point
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.principal_keypoints import principal_keypoints
+from ..body.kinematics import Body
+from ..body.posture import Posture
+from ..evidence.regions import MarkerPlacement
+from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints, mirrored_point
+from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 
 CENTROID_STD_M = {"trunk": 0.05, "pelvis": 0.04, "chest": 0.06, "head": 0.07, "girdle": 0.06}
@@ -137,3 +143,193 @@ def _selected(keypoints: Keypoints, index: IndexArray) -> Keypoints:
 def _marker_deviation(segment: str) -> float:
     name = segment.split(".")[0]
     return CENTROID_STD_M.get(name) or LIMB_STD_M.get(name, 0.1)
+
+
+# --- What one frame shows, as postures are compared with it
+
+
+DEGREES_OF_FREEDOM = 4.0
+"""Of Student's t distribution."""
+EXTENT_STD_M = 0.025
+"""Deviation of a marker's extent: clothes, the color's ends, a limb turned by a few degrees."""
+EXCHANGED_COST = np.float32(3.0)
+"""Cost of taking a detector's left for right in a frame: one in twenty."""
+ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Entries of a symmetric matrix in the order of `second_moment`."""
+ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0
+"""Second moments of a cylinder's flat silhouette: across it in squared radii, along it in squared lengths."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrameLikelihood:
+    """One frame: A points, M of them markers, and G guessed depths, one a keypoint or none."""
+
+    weight: Array
+    """(A,) one over the standard deviation of each point's place [1/m]; 0 where it is not visible."""
+    backward: Array
+    """(3,) the camera's backward axis in the world."""
+    location: Array
+    """(3,) the camera's place [m]."""
+    image_axes: Array
+    """(A, 2, 3) directions in the world along which a marker's image extends to the right and upwards."""
+    extent: Array
+    """(M, 3) square root of the observed second moments per meter of depth, xx, xy, yy."""
+    sight: Array
+    """(3,) line of sight to the performer, along which depths are guessed."""
+    depth_m: Array
+    """(G,) guessed depth of each keypoint behind the hips [m]; 0 where there is none."""
+    depth_weight: Array
+    """(G,) one over its standard deviation [1/m]; 0 where there is none."""
+    pixel_size: float
+    """Size of a pixel per meter of depth."""
+    visible: BoolArray
+    """(A,) points found in the frame."""
+    unclipped: BoolArray
+    """(M,) markers found whose region is not cut off by the picture's edge."""
+    share: float
+    """Weight of each point's cost, since they do not differ independently."""
+
+
+def frame_likelihoods(
+    camera: Camera, evidence: MatchEvidence, frames: IndexArray, scale: float = 1.0
+) -> list[FrameLikelihood]:
+    """What some frames show.
+
+    Args:
+        camera: The camera.
+        evidence: The markers' regions and the keypoints.
+        frames: Which frames.
+        scale: Deviation of the postures that are compared, relative to another performer's.
+    """
+    return [_frame_likelihood(camera, evidence, int(frame), scale) for frame in frames]
+
+
+def _frame_likelihood(camera: Camera, evidence: MatchEvidence, frame: int, scale: float) -> FrameLikelihood:
+    tracks, quality = evidence.tracks, evidence.quality[frame]
+    visible = evidence.visible[frame]
+    rotation, location = camera.pose(frame)
+    right, up, backward = rotation.T
+    pixels = np.where(visible[:, None], evidence.pixel[frame], camera.principal_point)
+    _, ray = camera.rays(pixels, frame)
+    away = -ray @ backward
+    x, y = ray @ right / away, ray @ up / away
+    lost = ~np.isfinite(x + y)
+    visible, x, y = visible & ~lost, np.where(lost, 0.0, x), np.where(lost, 0.0, y)
+    trust = np.sqrt(np.clip(quality, LEAST_QUALITY, 1.0))
+    depth = evidence.keypoints.hint_m[frame, :, 2] if evidence.keypoints.has_hints else np.zeros(0)
+    known = np.isfinite(depth) & visible[evidence.marker_count :][: len(depth)]
+    pixel_size = 1.0 / camera.focal_px
+    moments = tracks.second_moment[frame] * pixel_size**2
+    unclipped = visible[: evidence.marker_count] & ~tracks.clipped[frame]
+    # Image rows run down, the camera's axis up.
+    extent = square_root(moments[:, 0, 0], -moments[:, 0, 1], moments[:, 1, 1])
+    return FrameLikelihood(
+        np.where(visible, trust / (scale * evidence.deviation_m), 0.0),
+        backward,
+        location,
+        np.stack([right + x[:, None] * backward, up + y[:, None] * backward], axis=1),
+        np.where(unclipped[:, None], np.stack(extent, axis=-1), 0.0),
+        _line_of_sight(ray[visible], backward),
+        np.where(known, depth, 0.0),
+        np.where(known, 1.0 / evidence.depth_deviation_m[: len(depth)], 0.0),
+        pixel_size,
+        visible,
+        unclipped,
+        evidence.share,
+    )
+
+
+def _line_of_sight(ray: Array, backward: Array) -> Array:
+    """(3,) unit mean of some rays; straight ahead without any."""
+    if not len(ray):
+        return -backward
+    mean = ray.mean(axis=0)
+    return np.asarray(mean / np.linalg.norm(mean))
+
+
+def extent_cost(
+    seen: FrameLikelihood, marker: int, entries: Sequence[Any], depth: SingleArray
+) -> SingleArray:
+    """Cost of predicted second moments xx, xy, yy of a marker [m²] at some depths [m]."""
+    predicted = square_root(*entries)
+    depth = np.maximum(depth, np.float32(0.1))
+    variance = np.float32(EXTENT_STD_M**2) + (np.float32(seen.pixel_size) * depth) ** 2
+    observed = seen.extent[marker].astype(np.float32)
+    squared = sum(
+        (predicted[k] - observed[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
+    )
+    return student_cost(np.asarray(squared / variance), 3)
+
+
+def square_root(xx: Array, xy: Array, yy: Array) -> tuple[Array, Array, Array]:
+    """Square root of symmetric 2 x 2 matrices, given and returned by entries."""
+    root = np.sqrt(np.maximum(xx * yy - xy * xy, 0.0))
+    scale = 1.0 / np.sqrt(np.maximum(xx + yy + 2.0 * root, 1e-12))
+    return (xx + root) * scale, xy * scale, (yy + root) * scale
+
+
+def products(first: SingleArray, second: SingleArray) -> SingleArray:
+    """(..., 6) coefficients of a symmetric matrix's entries in uᵀ S v, see `ENTRIES`."""
+    u, v = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+    mixed = [u[i] * v[j] + u[j] * v[i] for i, j in ENTRIES[3:]]
+    return np.stack([u[0] * v[0], u[1] * v[1], u[2] * v[2], *mixed], axis=-1)
+
+
+def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
+    """Negative log likelihood under Student's t of squared distances, up to a constant."""
+    factor = np.float32(0.5 * (DEGREES_OF_FREEDOM + dimensions))
+    return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
+
+
+def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
+    """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
+    kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))
+    if len(kept) > count:
+        kept = np.sort(kept[np.argpartition(cost[kept], count)[:count]])
+    return kept
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerMoments:
+    """Moments of M markers and places of K keypoints, A = M + K, in N postures, in the world's axes.
+
+    A limb's image has nearly the moments of their projection, which is linear in them.
+    """
+
+    centroid: Array
+    """(N, A, 3) of the markers' volumes, then the keypoints, relative to the hips' midpoint [m]."""
+    second_moment: Array
+    """(N, M, 3, 3) the markers' second central moments [m²]."""
+    points: Array
+    """(N, P, 3) the body's points relative to the hips' midpoint [m]."""
+
+
+def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> MarkerMoments:
+    """Moments of the markers and places of the keypoints of some evidence, in N postures."""
+    segments = evidence.segments
+    pose = body.pose(posture)
+    centroid = np.empty((len(posture.translation), len(segments), 3))
+    second_moment = np.empty((*centroid.shape, 3))
+    for marker, segment in enumerate(segments):
+        pieces = PieceStack.of(MarkerPlacement.usual(segment).pieces(body))
+        start, end = pieces.place(pose, pieces.start), pieces.place(pose, pieces.end)  # (N, Q, 3)
+        axis = end - start
+        width = pieces.half_widths.mean(axis=1)  # (Q, 2)
+        share = np.linalg.norm(axis, axis=-1) * width.mean(axis=1)
+        share = share / share.sum(axis=1, keepdims=True)
+        center = 0.5 * (start + end)
+        centroid[:, marker] = np.einsum("nq,nqi->ni", share, center)
+        own = ALONG * _outer(axis)
+        for side, direction in enumerate((pieces.lateral, pieces.sagittal)):
+            own += ACROSS * width[:, side, None, None] ** 2 * _outer(pieces.turn(pose, direction))
+        own += _outer(center - centroid[:, marker, None])
+        second_moment[:, marker] = np.einsum("nq,nqij->nij", share, own)
+    centroid -= posture.translation[:, None]
+    points = np.asarray(body.points(pose) - posture.translation[:, None])
+    return MarkerMoments(
+        np.concatenate([centroid, points[:, evidence.points]], axis=1), second_moment, points
+    )
+
+
+def _outer(vector: Array) -> Array:
+    return np.asarray(vector[..., :, None] * vector[..., None, :])

@@ -9,15 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IndexArray, SingleArray
-from ..body.heading import yaw_rotation
-from ..body.human import HUMAN
-from ..body.limbs import LIMBS, TRUNK, limb_of
+from ..body.body_volume import sole_places
+from ..body.human import HUMAN, LIMBS, TRUNK, limb_of
 from ..body.mirror import mirrored
-from ..body.posture import Posture
-from ..body.soles import sole_places
-from ..estimate.ankle_height import standing_ankle_m
-from .frame_likelihood import ENTRIES, marker_moments
-from .match_evidence import MatchEvidence
+from ..body.posture import Posture, yaw_rotation
+from ..estimate.performer_placement import standing_ankle_m
+from .match_evidence import ENTRIES, MatchEvidence, marker_moments
 from .part_pools import ARM, PartPool, PartPools
 
 HEADINGS = 24

@@ -13,13 +13,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..arrays import Array, IndexArray
-from ..body.heading import yawed_at
-from ..body.human import HUMAN
+from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
-from ..body.limbs import LIMBS
 from ..body.mirror import mirrored
-from ..body.posture import Posture
-from ..library.library import Library
+from ..body.posture import Posture, yawed_at
+from ..prior.library import Library
 from .known_motions import KnownMotions, known_motions
 
 Learned = TypeVar("Learned")

@@ -13,19 +13,18 @@ from threadpoolctl import threadpool_limits
 from ..arrays import Array
 from ..body.posture import Posture
 from ..errors import InputError
-from ..estimate.ankle_height import found_ankle_m
+from ..estimate.performer_placement import found_ankle_m
 from ..estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from ..footage.reading import Reading
-from ..library.library import Library
-from ..library.several_libraries import COMPOSED
-from ..prior.interpolation import interpolate
-from ..prior.keyframes import Keyframe
+from ..prior.keyframes import Keyframe, interpolate
+from ..prior.library import Library
+from ..prior.texts import COMPOSED
 from ..progress import Job, Part, Progress, stretch, within
 from ..take.take import Take
 from .candidates import MatchedFrame, composed_candidates
 from .compose_clip import Composition, compose_frames
 from .found_poses import FoundPoses
-from .frame_likelihood import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
+from .match_evidence import DEGREES_OF_FREEDOM, frame_likelihoods, marker_moments
 from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, posing_input, stretch_of, tempering

@@ -1,11 +1,23 @@
 """A frame that a person has posed, among frames that are composed: its parts are the nearest ones."""
 
-import numpy as np
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
-from ..arrays import Array, IndexArray, SingleArray
+import numpy as np
+from scipy.special import logsumexp
+
+from ..arrays import Array, BoolArray, IndexArray, SingleArray
+from ..body.human import TRUNK
+from ..body.kinematics import Body, Pose
+from ..body.skeleton import Skeleton
+from ..numerics.robust import multivariate_cost
+from ..prior.library import Library
 from .composed_states import FrameCosts, FrameStates
-from .frame_likelihood import FrameLikelihood
+from .known_motions import PARTS, KnownPostures, known_postures, part_shapes
+from .match_evidence import FrameLikelihood
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
+from .part_pools import JOINTS, TORSO
 
 POINT_STD_M = 0.06
 """Distance of a posed point from the nearest part's: what pools are rough by, and a person's error."""
@@ -59,3 +71,93 @@ class PosedCosts(FrameCosts):
     def states(self, depths_m: Array) -> FrameStates:
         """The nearest states; there is one distance."""
         return super().states(depths_m[:1])
+
+
+# --- How plausible a body's parts are by all postures that are known
+
+
+KERNEL_M = 0.05
+"""Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
+differ by in the same posture, as the likeliest width for one library by the others is 3 to 4 cm and these
+come from one hand."""
+DEGREES = 4.0
+"""Of Student's t, the shape of a kernel: the likeliest for one library by the others, too."""
+DIMENSIONS = 4.0
+"""Degrees of freedom of a part: two directions of a limb's two segments; lean, turn and bend of a trunk."""
+UNUSUAL_SHARE = 0.002
+"""Share of known postures, each by the libraries it is not from, that are more unusual than is called
+plausible."""
+MARGIN = 6.0
+"""Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
+BEYOND_RAD = 0.25
+"""A joint this far beyond its range is contorted, whatever is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plausibility:
+    """The density of known postures, part by part."""
+
+    known: KnownPostures
+
+    def costs(self, pose: Pose) -> Array:
+        """(N, 5) negative log density of each of `PARTS`, 0 for the median known posture."""
+        shapes = part_shapes(self.known.body, pose)
+        return np.stack(
+            [_cost(shapes[part], self.known.parts[part]) - self.usual[part][0] for part in PARTS], axis=-1
+        )
+
+    def contorted(self, pose: Pose) -> BoolArray:
+        """(N, 5) whether each part is where no known posture has anything like it."""
+        most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
+        skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
+        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
+        parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
+        return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
+
+    @cached_property
+    def usual(self) -> Mapping[str, tuple[float, float]]:
+        """Median cost of a known posture by the libraries it is not from, and that of the unusual ones."""
+        library = self.known.library
+        several = len(np.unique(library)) > 1
+        other = library[:, None] != library if several else ~np.eye(len(library), dtype=bool)
+        found = {}
+        for part in PARTS:
+            shape = self.known.parts[part]
+            cost = _cost(shape, shape, other)
+            median, unusual = np.quantile(cost, [0.5, 1.0 - UNUSUAL_SHARE])
+            found[part] = (float(median), float(unusual))
+        return found
+
+
+def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
+    """The density of the postures of some libraries on a body.
+
+    Raises:
+        InputError: No library has a posture.
+    """
+    return Plausibility(known_postures(body, libraries))
+
+
+def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
+    """Degrees of freedom of a part."""
+    kind, _, side = part.partition(".")
+    stems = JOINTS[TORSO if part == TRUNK else kind]
+    joints = {f"{stem}.{side}" if side else stem for stem in stems}
+    return np.flatnonzero([name.rpartition(".")[0] in joints for name in skeleton.dof_names])
+
+
+def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
+    """(N,) negative logarithm of the mean kernel of shapes (N, K) by known ones (M, K).
+
+    Args:
+        shape: The shapes to judge.
+        known: Those in the kernels' middles.
+        other: (N, M) which of them count for which; None for all.
+    """
+    # |a - b|² = |a|² + |b|² - 2 a·b: one product instead of all differences.
+    squared = (shape**2).sum(-1)[:, None] + (known**2).sum(-1) - 2.0 * shape @ known.T
+    kernel = -multivariate_cost(np.maximum(squared, 0.0) / KERNEL_M**2, DEGREES, DIMENSIONS)
+    if other is None:
+        return np.asarray(np.log(len(known)) - logsumexp(kernel, axis=-1))
+    kernel = np.where(other, kernel, -np.inf)
+    return np.asarray(np.log(other.sum(-1)) - logsumexp(kernel, axis=-1))

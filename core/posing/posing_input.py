@@ -7,16 +7,15 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array, IndexArray
+from ..body.body_volume import sole_heights_m
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.soles import sole_heights_m
 from ..errors import InputError
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.reading import Reading
 from ..footage.region_tracks import RegionTracks
-from ..prior.evidence_speed import evidence_speed
-from ..prior.keyframe_proposals import propose_keyframes
+from ..prior.keyframe_proposals import evidence_speed, propose_keyframes
 from ..prior.keyframes import Keyframe
 from ..progress import run
 from ..take.performer_keypoints import performer_keypoints

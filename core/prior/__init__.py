@@ -1,1 +1,1 @@
-"""The prior: keyframes, the posture between them and its process noise, and priors of single frames."""
+"""What is believed beforehand: keyframes and what lies between them, libraries, learning and transfer."""

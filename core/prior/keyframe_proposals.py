@@ -1,17 +1,146 @@
-"""Frames proposed as keyframes, from the markers' summed speed V_sum.
-
-The paper poses its keyframes where V_sum (eq. 8) is small: there a posture is held, the image is sharp and
-a mistimed keyframe costs least. Minima alone leave fast stretches without support, which measured worse
-than even spacing; so keyframes are spaced evenly first and then moved to a minimum nearby.
-"""
+"""V_sum, the summed speed of the markers in the image (paper, eq. 8)."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.ndimage import median_filter
 
 from ..arrays import Array, IndexArray
+from ..body.human import limb_of
 from ..errors import InputError
+from ..footage.clips.album import Album, picture_motion
+from ..footage.keypoints.keypoints import Keypoints
+from ..footage.region_tracks import RegionTracks
+from ..numerics.vectors import columns_at, gaussian, usual_step
+from ..progress import Part
+
+SMOOTHING_FRAMES = 1.0
+
+
+def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAMES) -> Array:
+    """V_sum(t), the sum of the speeds of the markers' centroids in the image (paper, eq. 8).
+
+    The text calls it a square sum, the equation is a sum of speeds; the equation is followed. A hidden
+    marker is interpolated linearly between its detections; before the first and after the last it keeps
+    its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
+    frames adds nothing.
+
+    Args:
+        tracks: F frames of M regions; uneven time stamps are respected.
+        smoothing_frames: Standard deviation of a Gaussian filter over the sum [frames]; 0 for none.
+
+    Returns:
+        (F,) [px per frame of the clip's median duration].
+    """
+    time = frame_times(tracks.time_s)
+    total = np.zeros(tracks.frame_count)
+    for marker in range(len(tracks.names)):
+        total += point_speed(tracks.centroid[:, marker], time)
+    return gaussian(total, smoothing_frames)
+
+
+def frame_times(time_s: Array) -> Array:
+    """Time stamps (F,) in median frame durations; a stamp that does not advance counts as one duration."""
+    step = np.diff(time_s)
+    advancing = np.isfinite(step) & (step > 0.0)
+    usual = float(np.median(step[advancing])) if advancing.any() else 1.0
+    return np.concatenate([[0.0], np.cumsum(np.where(advancing, step / usual, 1.0))])
+
+
+def point_speed(centroid: Array, time: Array) -> Array:
+    """Speed (F,) of one centroid (F, 2) [px]; zero if it is detected in fewer than two frames."""
+    seen = np.flatnonzero(np.all(np.isfinite(centroid), axis=-1))
+    if len(seen) < 2:
+        return np.zeros(len(time))
+    within = slice(seen[0], seen[-1] + 1)
+    path = columns_at(time[within], time[seen], centroid[seen])
+    speed = np.linalg.norm(np.gradient(path, time[within], axis=0), axis=-1)
+    return np.asarray(np.interp(np.arange(len(time)), np.arange(seen[0], seen[-1] + 1), speed))
+
+
+# --- V_sum of whatever shows the performer
+
+
+OUTLIER_S = 0.17
+"""Time of which a keypoint's path is the median: less than half of it a detector may be wrong."""
+JITTER_S = 0.067
+"""Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
+FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
+FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes are spaced evenly"
+
+
+@dataclass(frozen=True, eq=False)
+class EvidenceSpeed:
+    """V_sum, and what it was made from."""
+
+    values: Array
+    """(F,) [px per frame]."""
+    note: str = ""
+    """What else than markers and keypoints had to be used, for people; empty where one of them is seen."""
+
+
+def evidence_speed(
+    tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints, album: Album | None = None
+) -> Part[EvidenceSpeed]:
+    """The summed speed of the performer's parts in the image.
+
+    Args:
+        tracks: The markers' regions, of F frames.
+        segments: The segment each marker is bound to.
+        keypoints: The performer's keypoints.
+        album: Pictures of the clip; None where there are none.
+
+    Yields:
+        The fraction done.
+    """
+    if keypoints.seen.any():
+        return EvidenceSpeed(_speed_of_parts(tracks, segments, keypoints))
+    if tracks.visible.any():
+        return EvidenceSpeed(marker_speed(tracks))
+    if album is None:
+        return EvidenceSpeed(np.zeros(tracks.frame_count), FROM_NOTHING)
+    moved = yield from picture_motion(album, tracks.frame_count)
+    return EvidenceSpeed(gaussian(moved, JITTER_S / usual_step(tracks.time_s)), FROM_PICTURES)
+
+
+def _speed_of_parts(tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints) -> Array:
+    """(F,) sum over the parts of the body of the mean speed of what shows each."""
+    time = frame_times(tracks.time_s)
+    parts: dict[str, list[tuple[float, Array]]] = {}
+    for marker, segment in enumerate(segments):
+        share = float(tracks.visible[:, marker].mean())
+        parts.setdefault(limb_of(segment), []).append((share, point_speed(tracks.centroid[:, marker], time)))
+    for index, name in enumerate(keypoints.names):
+        path = _cleaned(keypoints.pixel[:, index], tracks.time_s)
+        share = float(keypoints.score[:, index].mean())
+        parts.setdefault(limb_of(name), []).append((share, point_speed(path, time)))
+    total = np.zeros(tracks.frame_count)
+    for speeds in parts.values():
+        weight = sum(share for share, _ in speeds)
+        if weight > 0.0:
+            total += sum((share * speed for share, speed in speeds), np.zeros(len(total))) / weight
+    return gaussian(total, SMOOTHING_FRAMES)
+
+
+def _cleaned(pixel: Array, time_s: Array) -> Array:
+    """A path (F, 2) without outliers and jitter, interpolated where it is not seen; NaN outside."""
+    seen = np.flatnonzero(np.isfinite(pixel).all(axis=-1))
+    if len(seen) < 2:
+        return pixel
+    within = np.arange(seen[0], seen[-1] + 1)
+    frames = np.arange(len(pixel))
+    path = columns_at(within, seen, pixel[seen])
+    half = max(1, round(0.5 * OUTLIER_S / usual_step(time_s)))
+    calm = median_filter(path, size=(2 * half + 1, 1), mode="nearest")
+    cleaned = np.full((len(frames), 2), np.nan)
+    cleaned[within] = gaussian(calm, JITTER_S / usual_step(time_s))
+    return cleaned
+
+
+# --- Frames proposed as keyframes, from the markers' summed speed V_sum
+
 
 KEYFRAMES_PER_100_FRAMES = 10.0
 SNAP_SHARE = 0.35

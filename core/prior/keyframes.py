@@ -1,12 +1,17 @@
 """Keyframes: frames with a given posture, posed by a person or found in the footage."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
-from ..body.posture import Posture
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from ..arrays import Array, IndexArray
+from ..body.posture import Posture, headings_rad, yawed_at
+from ..body.posture_spline import cubic_spline, linear_spline
 from ..files.kinds import Number, Text
 from ..files.records import Record
-from ..library.several_libraries import COMPOSED
+from .texts import COMPOSED
 
 DOUBTFUL = 0.5
 """Confidence below which a found keyframe is doubtful: more likely wrong than about right."""
@@ -53,3 +58,161 @@ class Keyframe:
     """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
     matched: Matched | None = None
     """What was found; None for a keyframe that a person has posed or corrected."""
+
+
+# --- Turns between keyframes the other way round
+
+
+FULL_TURN = 2.0 * np.pi
+
+
+def heading_steps_rad(posed: Posture) -> Array:
+    """(K - 1,) turns from each of K postures to the next, the short way round, -π to π."""
+    step = np.diff(headings_rad(posed))
+    return np.asarray(step - FULL_TURN * np.round(step / FULL_TURN))
+
+
+def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Posture:
+    """Interpolated postures with whole turns added between keyframes, spread smoothly.
+
+    The heading is the monotone cubic (Fritsch & Carlson 1980) through the keyframes' headings unwound with
+    these turns instead of without; leans and all else stay those of the interpolation, seen from the body.
+
+    Args:
+        prior: F postures that pass through the keyframes and turn the short way round.
+        keyframes: (K,) their frames, increasing.
+        turns: (K - 1,) turns added in each gap, counterclockwise seen from above; 0 for none.
+    """
+    if not turns.any():
+        return prior
+    wound = np.concatenate([[0.0], np.cumsum(heading_steps_rad(prior[keyframes]))])
+    more = np.concatenate([[0.0], np.cumsum(FULL_TURN * turns)])
+    frame = np.clip(np.arange(prior.batch[0]), keyframes[0], keyframes[-1])
+    added = _monotone(keyframes, wound + more, frame) - _monotone(keyframes, wound, frame)
+    # Whole turns are none: far from those added the interpolation stays as it is, to the last digit.
+    added -= FULL_TURN * np.round(added / FULL_TURN)
+    added[np.abs(added) < 1e-9] = 0.0
+    turned = np.flatnonzero(added)
+    if not len(turned):
+        return prior
+    changed = yawed_at(prior[turned], added[turned], prior.translation[turned])
+    rotations = prior.rotations.copy()
+    rotations[turned] = changed.rotations
+    return Posture(prior.skeleton, prior.translation, rotations, prior.angles)
+
+
+def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
+    return np.asarray(PchipInterpolator(knots.astype(np.float64), values)(times.astype(np.float64)))
+
+
+# --- The prior mean between keyframes
+
+
+def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
+    """The a priori posture of every frame.
+
+    Args:
+        keyframes: At least two, in order of frame.
+        frame_count: Frames F of the clip.
+
+    Returns:
+        A batch of F postures that passes through every keyframe.
+    """
+    return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
+
+
+def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
+    """Like `interpolate`, with constant velocity between keyframes (slerp): the plainest baseline."""
+    return linear_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
+
+
+def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
+    """The keyframes' postures and their frames (K,)."""
+    index = np.array([keyframe.index for keyframe in keyframes], dtype=np.float64)
+    return Posture.stack([keyframe.posture for keyframe in keyframes]), index
+
+
+# --- Performer offset
+
+
+CONSTANT_SHARE = 0.5
+"""Share of the offset's variance that is constant over the clip."""
+CORRELATION_TIME_S = 0.5
+"""Correlation time of the rest."""
+POSED_VARIANCE = 0.1
+"""Variance of a person's own error, relative to the offset's."""
+LEAST_VARIANCE = 0.05
+"""Share of the offset's variance that remains beside any posed keyframe."""
+BEYOND_S = 0.1
+"""Time outside the matched keyframes over which the nearest of them ceases to stand for the library."""
+
+
+def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
+    """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
+
+    Args:
+        keyframes: Posed and matched ones, in order of frame.
+        fps: Frames per second.
+
+    Returns:
+        The keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1 where
+        nothing was posed, less near posed keyframes, and 0 at these.
+    """
+    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
+    found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    matched = [key for key in found if key.matched is not None and not key.matched.is_composed]
+    doubt = np.array([0.0 if keyframe.matched is None else 1.0 for keyframe in keyframes])
+    if not posed or not found:
+        return keyframes, doubt
+    difference, beyond_s = _differences(posed, matched or found, fps)
+    at, wanted = (np.array([k.index for k in some]) / fps for some in (posed, found))
+    known = _known(at, beyond_s)
+    across = _covariance(at, wanted)
+    share = np.linalg.solve(known, across).T  # (found, posed)
+    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), LEAST_VARIANCE))
+    step = np.where([[key in matched] for key in found], share @ difference, 0.0)
+    changed = Posture.stack([key.posture for key in found]).plus(step)
+    both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
+    return tuple(sorted(both, key=lambda keyframe: keyframe.index)), doubt
+
+
+def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[Array, Array]:
+    """Leave-one-out residuals of posed keyframes, predicted from the library and the other posed ones.
+
+    Rasmussen & Williams (2006), eq. 5.12.
+
+    Args:
+        keyframes: Posed and matched ones, at least one of either.
+        fps: Frames per second.
+
+    Returns:
+        (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
+    """
+    posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
+    matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
+    difference, beyond_s = _differences(posed, matched, fps)
+    information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
+    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
+    return (information @ difference) / np.diag(information)[:, None], weight
+
+
+def _known(at: Array, beyond_s: Array) -> Array:
+    """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
+    return np.asarray(_covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2))
+
+
+def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:
+    """Offset from the library to each posed keyframe (P, D), and its time outside the matched ones [s]."""
+    first, last = matched[0].index, matched[-1].index
+    if len(matched) > 1:
+        predicted = interpolate(tuple(matched), max(last, posed[-1].index) + 1)
+    else:
+        predicted = Posture.stack([matched[0].posture] * (max(last, posed[-1].index) + 1))
+    index = np.array([keyframe.index for keyframe in posed])
+    beyond = np.maximum(np.maximum(first - index, index - last), 0)
+    return Posture.stack([keyframe.posture for keyframe in posed]).minus(predicted[index]), beyond / fps
+
+
+def _covariance(one: Array, other: Array) -> Array:
+    apart = np.abs(one[:, None] - other)
+    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * np.exp(-apart / CORRELATION_TIME_S))

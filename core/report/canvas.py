@@ -1,11 +1,15 @@
 """An anti-aliased picture to draw on, in pixels with fractions."""
 
+import unicodedata
+
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, Image
-from ..body.side_colors import STRONG
+from ..body.human import STRONG
+from ..footage.camera import Camera
+from ..numerics.vectors import unit
 
 Color = tuple[int, int, int]
 """Blue, green, red, 0 to 255."""
@@ -135,3 +139,52 @@ def _fixed(points: Array) -> NDArray[np.int32]:
 
 def _width(thickness: float) -> int:
     return max(1, round(thickness * SCALE))
+
+
+# --- Captions from texts that people wrote
+
+
+ELLIPSIS = "..."
+
+
+def ascii_text(text: str) -> str:
+    """The text in ASCII; accents are dropped, as are other characters that the font lacks."""
+    return unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+
+
+def truncated(text: str, width: float, size: float) -> str:
+    """The text, truncated to a `width` in letters of a `size`."""
+    if Canvas.text_width(text, size) <= width:
+        return text
+    while text and Canvas.text_width(text + ELLIPSIS, size) > width:
+        text = text[:-1]
+    return text.rstrip() + ELLIPSIS
+
+
+# --- The view from the side, which follows the camera, and its grid
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def side_directions(camera: Camera) -> Array:
+    """World directions (3, 3) that a view from the side shows to the right, upwards, and away, as rows.
+
+    To the right is the camera's direction made level.
+    """
+    matrix = camera.matrix_world.reshape(-1, 4, 4)[0]
+    level = -matrix[:3, 2] * [1.0, 1.0, 0.0]
+    if np.linalg.norm(level) < 0.1:  # looking straight down or up: the picture's upper edge is ahead
+        level = matrix[:3, 1] * [1.0, 1.0, 0.0]
+    ahead = unit(level)
+    return np.stack([ahead, UP, np.cross(UP, ahead)])
+
+
+def draw_grid(tile: Canvas, step: float, floor: float) -> None:
+    """Draw lines every `step` pixels from the middle and from the row `floor`, which is darker."""
+    reach = int(max(tile.width, tile.height) / step) + 1
+    for number in np.arange(-reach, reach + 1):
+        x, y = 0.5 * tile.width + step * number, floor - step * number
+        tile.line([[x, 0.0], [x, tile.height]], PALE)
+        tile.line([[0.0, y], [tile.width, y]], PALE)
+    tile.line([[0.0, floor], [tile.width, floor]], GRAY, 1.6)

@@ -6,12 +6,10 @@ import numpy as np
 
 from ..arrays import Array, Image
 from ..footage.camera import Camera
-from .canvas import GRAY, INK, Canvas
-from .captions import ascii_text
-from .character_figure import CharacterFigure, draw_character
-from .contact_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
-from .square_crop import square_of, squares_around
-from .view_directions import draw_grid, side_directions
+from .canvas import GRAY, INK, Canvas, ascii_text, draw_grid, side_directions
+from .mannequin import CharacterFigure, draw_character
+from .overlay_sheet import FOOT, GAP, MARGIN, TITLE, Cell, frame_label
+from .stick_figure import square_of, squares_around
 
 PICTURE = "character.png"
 """Name of the picture."""

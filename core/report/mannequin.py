@@ -1,20 +1,62 @@
-"""A posture as a shaded body in parallel projection, with a shadow on the floor."""
+"""A character as shaded triangles, drawn through any projection."""
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-from ..arrays import Array, Image
+from ..arrays import Array, Image, IndexArray
 from ..body.body_volume import Piece, body_pieces, ring_quads
-from ..body.extremities import Extremities, segment_turn
-from ..body.kinematics import Body
-from ..body.posture import Posture
-from ..body.side_colors import STRONG
-from ..finish.foot_pitch import Shins, Soles
-from ..finish.foot_turns import feet_on_floor
-from .canvas import Canvas
-from .character_figure import CharacterFigure, draw_character
+from ..body.human import STRONG
+from ..body.kinematics import Body, Extremities, segment_turn
+from ..body.posture import Posture, facing_rad
+from ..finish.foot_ground import Shins, Soles
+from ..finish.natural_extremities import feet_on_floor
+from ..numerics.vectors import unit
+from ..prior.library import Library
+from .canvas import GRAY, INK, Canvas, Color, ascii_text, truncated
+from .stick_figure import Projection
+
+LIGHT = np.array([0.35, -0.5, 0.8])
+"""Direction to the light in the world."""
+DARKEST = 0.45
+SKIN: Color = (196, 190, 186)
+
+
+@dataclass(frozen=True, eq=False)
+class CharacterFigure:
+    """A character in one frame."""
+
+    points: Array
+    """(N, 3) corners of the triangles in the world [m]."""
+    triangles: IndexArray
+    """(T, 3) rows of `points`, counterclockwise seen from outside."""
+    colors: Array
+    """(T, 3) blue, green, red, 0 to 255."""
+
+
+def draw_character(canvas: Canvas, figure: CharacterFigure, project: Projection) -> None:
+    """Draw the triangles that face the eye, the farthest first."""
+    if not len(figure.triangles):
+        return
+    pixels, depth = project(figure.points)
+    corners = pixels[figure.triangles]  # (T, 3, 2)
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    # y runs down in a picture: what is counterclockwise from outside turns the other way there.
+    facing = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] < 0.0
+    away = depth[figure.triangles].mean(axis=1)
+    shown = np.flatnonzero(facing & np.isfinite(corners).all(axis=(1, 2)) & np.isfinite(away))
+    world = figure.points[figure.triangles[shown]]
+    normal = np.cross(world[:, 1] - world[:, 0], world[:, 2] - world[:, 0])
+    lit = unit(normal) @ unit(LIGHT)
+    shaded = figure.colors[shown] * (DARKEST + (1.0 - DARKEST) * (0.5 + 0.5 * lit))[:, None]
+    for row in np.argsort(-away[shown], kind="stable"):
+        blue, green, red = (int(value) for value in np.clip(shaded[row], 0.0, 255.0))
+        canvas.polygon(corners[shown[row]], (blue, green, red))
+
+
+# --- A posture as a shaded body in parallel projection, with a shadow on the floor
+
 
 SIDES_OF_RING, BANDS_OF_CAP, BANDS_OF_SHAFT = 16, 4, 5
 TRUNK = (186, 182, 180)
@@ -101,3 +143,76 @@ def _pieces(body: Body) -> tuple[Piece, ...]:
     return *pieces, Piece(
         "nose", head.joint, middle, middle - length * head.sagittal, head.lateral, up, widths
     )
+
+
+# --- A small square picture of a posture for an asset browser
+
+
+SIZE = 256
+EDGE = 8
+TURN_RAD = np.radians(-35.0)
+"""Turn of the view from the front, with the face to the right of the picture."""
+TILT_RAD = 0.16
+"""Downward tilt of the view, which shows where on the floor the feet are."""
+WALL = np.array([250.0, 249.0, 248.0])
+FLOOR = np.array([229.0, 225.0, 222.0])
+BEHIND_M = 0.45
+"""Distance of the wall behind the figure."""
+
+
+def posture_picture(body: Body, posture: Posture) -> Image:
+    """Draw a single posture; the floor is z = 0.
+
+    Returns:
+        (256, 256, 3) blue, green, red.
+    """
+    figure = mannequin(body, posture)
+    turn = facing_rad(-posture.rotations[0, :, 1]) + TURN_RAD
+    seen = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(figure.points)[0]
+    floor = View(turn, TILT_RAD, 1.0, (0.0, 0.0)).project(posture.translation * [1.0, 1.0, 0.0])[0][1]
+    (left, high), (right, low) = seen.min(axis=0), seen.max(axis=0)
+    low = max(low, floor + 0.1)
+    scale = (SIZE - 2 * EDGE) / max(low - high, right - left, 1.08 * body.actor.stature_m)
+    center = (0.5 * SIZE - scale * 0.5 * (left + right), SIZE - EDGE - scale * low)
+    wall = backdrop(SIZE, SIZE, center[1] + scale * floor, scale)
+    return draw_mannequin(wall, figure, View(turn, TILT_RAD, scale, center))
+
+
+def backdrop(height: int, width: int, floor: float, scale: float) -> Image:
+    """A floor before a wall.
+
+    Args:
+        height: Height of the picture.
+        width: Width of the picture.
+        floor: Picture row of the floor under the figure.
+        scale: Pixels a meter.
+    """
+    rows = np.arange(height) + 0.5 - (floor - scale * BEHIND_M * np.sin(TILT_RAD))
+    share = np.clip(rows + 0.5, 0.0, 1.0)  # of each row, that is floor
+    fade = np.clip(rows / (3.0 * scale * BEHIND_M * np.sin(TILT_RAD)), 0.0, 1.0)
+    ground = FLOOR + fade[:, None] * 0.6 * (WALL - FLOOR)
+    colors = WALL + share[:, None] * (ground - WALL)
+    return np.asarray(np.repeat(np.round(colors)[:, None], width, axis=1), dtype=np.uint8)
+
+
+# --- All postures of a library on one sheet, each with its name
+
+
+COLUMNS, CELL, CAPTION = 10, 128, 18
+HEADER, MARGIN = 64, 16
+
+
+def library_sheet(library: Library) -> Image:
+    """Draw a library, (height, width, 3) blue, green, red."""
+    body, count = Body(library.actor), len(library.postures)
+    rows = -(-count // COLUMNS)
+    canvas = Canvas(2 * MARGIN + COLUMNS * CELL, HEADER + rows * (CELL + CAPTION) + MARGIN)
+    canvas.text(truncated(ascii_text(library.title), COLUMNS * CELL, 14.0), MARGIN, 32.0, 14.0, INK)
+    words = f"{library.identifier}, version {library.version}, {library.size}, by {library.author}"
+    canvas.text(truncated(ascii_text(words), COLUMNS * CELL, 8.5), MARGIN, 50.0, 8.5, GRAY)
+    for index, entry in enumerate(library.postures):
+        left, top = MARGIN + index % COLUMNS * CELL, HEADER + index // COLUMNS * (CELL + CAPTION)
+        canvas.paste(posture_picture(body, entry.posture), left, top, CELL, CELL)
+        name = truncated(ascii_text(entry.name), CELL - 6.0, 7.5)
+        canvas.text(name, left + 0.5 * CELL, top + CELL + 11.0, 7.5, INK, "middle")
+    return canvas.image()

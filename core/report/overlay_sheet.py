@@ -1,22 +1,211 @@
-"""Contact sheet of the footage with the estimate over it: does the skeleton lie on the performer?"""
+"""Outlines of the performer's limbs and trunk over the footage, where no marker shows how the motion fits."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
 from ..arrays import Array, Image
+from ..body.kinematics import Pose
+from ..estimate.reconstruct import Reconstruction
+from ..evidence.contours import SHARES, SIDES, ContourModel
 from ..footage.region_tracks import RegionTracks
-from ..footage.segmentation.region_outlines import ellipse_outline
-from ..observation.contours import ContourModel
+from ..footage.segmentation.regions import ellipse_outline
 from ..review.compared_keypoints import ComparedKeypoints
 from ..take.motion import Motion
 from ..take.take import Take
-from .body_outlines import draw_outlines
-from .canvas import INK, WHITE, Canvas, Color
-from .contact_sheet import MARGIN, Cell, frame_label, sheet
-from .keypoint_marks import draw_keypoint_legend, draw_keypoints
+from .canvas import ACCENT, GRAY, INK, WHITE, Canvas, Color, ascii_text, truncated
 from .stick_figure import StickFigure, draw_figure, legend, stick_figure
+
+OUTLINE: Color = (150, 70, 150)
+
+
+def performer_contours(reconstruction: Reconstruction) -> ContourModel:
+    """The contours of a reconstruction's performer: those learned from the footage, or of an average body."""
+    solution = reconstruction.solution
+    if solution is not None and solution.contours is not None:
+        return solution.contours.model
+    return ContourModel.average(reconstruction.motion.body, reconstruction.model.camera)
+
+
+def draw_outlines(
+    canvas: Canvas, model: ContourModel, pose: Pose, frame: int, to_canvas: Callable[[Array], Array]
+) -> None:
+    """Draw the contour lines that the motion predicts in one frame, those of nearer parts over others.
+
+    Args:
+        canvas: The canvas.
+        model: The contours of the performer's parts.
+        pose: Forward kinematics of the clip's postures.
+        frame: Frame index in the clip.
+        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
+    """
+    index = slice(frame, frame + 1)
+    predicted = model.evaluate(pose[index], np.array([frame]))
+    pixels = to_canvas(predicted.pixel[0]).reshape(-1, len(SHARES), len(SIDES), 2)
+    depth = predicted.depth[0].reshape(len(pixels), -1).mean(axis=1)
+    for part in np.argsort(-depth):
+        for side in range(len(SIDES)):
+            line = pixels[part, :, side]
+            canvas.line(line, WHITE, 2.4)
+            canvas.line(line, OUTLINE, 1.2)
+
+
+# --- Keypoints over the footage
+
+
+SOURCE_COLORS: tuple[Color, ...] = ((167, 121, 204), (66, 228, 240), (233, 180, 86), (0, 159, 230))
+"""Purple, yellow, sky blue and orange for the first sources, Okabe and Ito's beside those of the limbs."""
+THROWN_OUT: Color = (40, 30, 200)
+ARM = 3.4
+"""Half-length of a cross's arms [px]; half of it for a small figure."""
+RING = 2.2
+"""Radius of the ring at the predicted place [px]; the same."""
+LARGE = 220.0
+"""Height of a figure whose marks are of full size [px]."""
+LONGEST_SOURCE = 150.0
+"""Width of a source's name in the legend [px]."""
+
+
+def source_color(keypoints: ComparedKeypoints, source: str) -> Color:
+    """The color of a source's keypoints."""
+    index = list(dict.fromkeys(keypoints.sources)).index(source)
+    return SOURCE_COLORS[index % len(SOURCE_COLORS)]
+
+
+def draw_keypoints(
+    canvas: Canvas, keypoints: ComparedKeypoints, frame: int, to_canvas: Callable[[Array], Array]
+) -> None:
+    """Draw the keypoints of one frame, the marks of a small figure smaller.
+
+    Args:
+        canvas: The canvas.
+        keypoints: The keypoints.
+        frame: Frame index in the clip.
+        to_canvas: From pixels of the clip (N, 2) to points of the canvas.
+    """
+    seen, predicted = to_canvas(keypoints.seen[frame]), to_canvas(keypoints.predicted[frame])
+    colors = [source_color(keypoints, source) for source in keypoints.sources]
+    thrown_out, swapped = keypoints.thrown_out[frame], keypoints.swapped[frame]
+    size = _size(predicted)
+    for index, color in enumerate(colors):
+        if not thrown_out[index]:
+            canvas.line([seen[index], predicted[index]], color, 1.0)
+    for place, color in zip(predicted, colors, strict=True):
+        _ring(canvas, place, color, size)
+    for index, color in enumerate(colors):
+        if np.isfinite(seen[index]).all():
+            _cross(canvas, seen[index], color, size, bool(thrown_out[index]), bool(swapped[index]))
+
+
+def draw_keypoint_legend(
+    canvas: Canvas, keypoints: ComparedKeypoints, left: float, right: float, y: float
+) -> None:
+    """Explain the marks on a line with its baseline at `y` that ends at `right`; nothing if it lacks room."""
+    names = [
+        truncated(ascii_text(source), LONGEST_SOURCE, 8.0) for source in dict.fromkeys(keypoints.sources)
+    ]
+    words = [("Cross: keypoint of", GRAY)]
+    words += [(name, SOURCE_COLORS[index % len(SOURCE_COLORS)]) for index, name in enumerate(names)]
+    words.append(("slanting: not believed; boxed: sides exchanged; ring: where the motion puts it", GRAY))
+    x = right - sum(canvas.text_width(word, 8.0) + 8.0 for word, _ in words)
+    if x < left:
+        return
+    for word, color in words:
+        canvas.text(word, x, y, 8.0, color)
+        x += canvas.text_width(word, 8.0) + 8.0
+
+
+def _size(predicted: Array) -> float:
+    """Size of the marks, from the height of the figure on the canvas."""
+    rows = predicted[np.isfinite(predicted).all(axis=-1), 1]
+    return float(np.clip(np.ptp(rows) / LARGE, 0.5, 1.0)) if len(rows) else 1.0
+
+
+def _ring(canvas: Canvas, place: Array, color: Color, size: float) -> None:
+    canvas.ring(place, size * RING, WHITE, 2.0)
+    canvas.ring(place, size * RING, color, 1.0)
+
+
+def _cross(canvas: Canvas, place: Array, color: Color, size: float, thrown_out: bool, swapped: bool) -> None:
+    """An upright cross; a slanting one where it is thrown out, one in a square where sides are exchanged."""
+    arms = size * ARM * (np.array([[0.7, 0.7], [0.7, -0.7]]) if thrown_out else np.eye(2))
+    color = THROWN_OUT if thrown_out else color
+    for width, ink in ((2.0, WHITE), (1.0, color)):
+        for arm in arms:
+            canvas.line([place - arm, place + arm], ink, width)
+        if swapped:
+            corners = place + 1.2 * size * ARM * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+            canvas.line(corners, ink, width, closed=True)
+
+
+# --- Layout of a contact sheet
+
+
+MARGIN = 16
+GAP = 8
+TITLE = 34
+FOOT = 22
+LABEL = 20
+"""Height of the frame's number within its cell."""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A rectangle of the sheet for one frame."""
+
+    frame: int
+    """Index in the clip."""
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+def evenly_spaced_frames(frame_count: int, most: int = 12) -> tuple[int, ...]:
+    """At most `most` frame indices of the clip, evenly spaced, with the first and the last."""
+    return tuple(int(i) for i in np.unique(np.round(np.linspace(0, frame_count - 1, min(most, frame_count)))))
+
+
+def sheet(
+    title: str, footer: str, frames: Collection[int], columns: int, cell_width: int, cell_height: int
+) -> tuple[Canvas, list[Cell]]:
+    """A canvas with a title above, a line of explanation below, and a cell for each frame, row by row."""
+    columns = min(columns, len(frames))
+    rows = -(-len(frames) // columns)
+    width = 2 * MARGIN + columns * cell_width + (columns - 1) * GAP
+    height = MARGIN + TITLE + rows * cell_height + (rows - 1) * GAP + FOOT + MARGIN
+    canvas = Canvas(width, height)
+    canvas.text(title, MARGIN, MARGIN + 15, 12.0, INK)
+    canvas.text(footer, MARGIN, height - MARGIN, 8.0, GRAY)
+    cells = [
+        Cell(
+            frame,
+            MARGIN + (index % columns) * (cell_width + GAP),
+            MARGIN + TITLE + (index // columns) * (cell_height + GAP),
+            cell_width,
+            cell_height,
+        )
+        for index, frame in enumerate(frames)
+    ]
+    return canvas, cells
+
+
+def frame_label(canvas: Canvas, cell: Cell, scene_frame: int, keyframe: bool) -> None:
+    """Write a frame's number into the cell's bottom right corner; keyframes carry a diamond as well."""
+    words = f"{scene_frame} key" if keyframe else f"{scene_frame}"
+    width = canvas.text_width(words) + (28.0 if keyframe else 14.0)
+    right, bottom = cell.left + cell.width, cell.top + cell.height
+    canvas.box(right - width, bottom - LABEL, right, bottom, ACCENT if keyframe else INK)
+    canvas.text(words, right - 7.0, bottom - 5.5, 9.0, WHITE, "right")
+    if keyframe:
+        x, y = right - width + 11.0, bottom - 10.0
+        canvas.polygon([[x - 4.5, y], [x, y - 4.5], [x + 4.5, y], [x, y + 4.5]], WHITE)
+
+
+# --- Contact sheet of the footage with the estimate over it
+
 
 CELL_WIDTH = 400
 COLUMNS = 4

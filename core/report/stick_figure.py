@@ -1,15 +1,17 @@
 """The performer as a stick figure: left limbs solid, right limbs hollow, near ones over far ones."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
-from ..arrays import Array
-from ..body.extremities import segment_ends
+from ..arrays import Array, Image
+from ..body.kinematics import segment_ends
 from ..finish.natural_extremities import natural_extremities
+from ..footage.camera import Camera
 from ..take.motion import Motion
-from .canvas import INK, LEFT, RIGHT, WHITE, Canvas, Color
+from .canvas import GRAY, INK, LEFT, RIGHT, WHITE, Canvas, Color
 
 Projection = Callable[[Array], tuple[Array, Array]]
 """From world points (N, 3) to canvas points (N, 2) and depths (N,), which grow with the distance."""
@@ -122,3 +124,109 @@ def legend(canvas: Canvas, right: float, y: float) -> None:
         right -= canvas.text_width(text) + 8.0
         _draw_limb(canvas, np.array([[right - 26.0, y - 4.5], [right, y - 4.5]]), side, 4.0, False)
         right -= 26.0 + 18.0
+
+
+# --- Squares cut from frames around a figure, so that a small one in a wide shot is still seen
+
+
+PAPER = (226, 222, 219)
+"""Color where the square is larger than the picture, or there is none."""
+PADDING = 1.35
+"""Side of the square in heights or widths of the largest figure, whose points end at the head's center."""
+SMALLEST_SIDE = 0.3
+"""Smallest side of the square, of the picture's shorter side: limits the magnification of a tiny figure."""
+
+
+def squares_around(
+    points: Array | Mapping[int, Array], camera: Camera, frames: Sequence[int]
+) -> tuple[Array, float]:
+    """Centers (K, 2) and common side of squares around the figure in each frame [px].
+
+    They stay inside the picture where they fit.
+
+    Args:
+        points: (N, 3) places of the figure by frame index [m].
+        camera: The camera.
+        frames: Frame indices of the K pictures.
+    """
+    size = np.array(camera.resolution, dtype=np.float64)
+    centers, extents = np.tile(0.5 * size, (len(frames), 1)), np.zeros(len(frames))
+    for index, frame in enumerate(frames):
+        pixels, _ = camera.project(points[frame], frame)
+        seen = pixels[np.isfinite(pixels).all(axis=-1)]
+        if len(seen):
+            low, high = np.clip(seen.min(axis=0), 0.0, size), np.clip(seen.max(axis=0), 0.0, size)
+            centers[index], extents[index] = 0.5 * (low + high), (high - low).max()
+    wanted = PADDING * extents.max() if extents.any() else size.max()
+    side = float(np.clip(wanted, SMALLEST_SIDE * size.min(), size.max()))
+    half = np.minimum(0.5 * side, 0.5 * size)
+    return np.clip(centers, half, size - half), side
+
+
+def square_of(image: Image, corner: Array, side: float, resolution: tuple[int, int]) -> Image:
+    """The square of a frame that may be reduced, padded where it reaches beyond the picture."""
+    shrunk = image.shape[1] / resolution[0]
+    across = max(round(shrunk * side), 1)
+    left, top = (int(value) for value in np.round(shrunk * corner))
+    rows = slice(max(top, 0), min(top + across, image.shape[0]))
+    columns = slice(max(left, 0), min(left + across, image.shape[1]))
+    inside = image[rows, columns]
+    above, before = rows.start - top, columns.start - left
+    below, behind = across - above - inside.shape[0], across - before - inside.shape[1]
+    filled = cv2.copyMakeBorder(inside, above, below, before, behind, cv2.BORDER_CONSTANT, value=PAPER)
+    return np.asarray(filled, dtype=np.uint8)
+
+
+# --- A small square picture of a motion for an asset browser
+
+
+SIZE = 256
+PAPER_THUMBNAIL = (250, 249, 248)
+POSES = 3
+TURN_RAD = 0.5
+"""Turn of the view from the performer's front, from where limbs show best."""
+EDGE = 14
+LIMB_WIDTH = 5.0
+
+
+def thumbnail(motion: Motion) -> Image:
+    """Draw three poses of a motion, the earliest at the left, in parallel projection.
+
+    Args:
+        motion: The motion, F frames.
+
+    Returns:
+        (256, 256, 3) blue, green, red.
+    """
+    frames = np.round(np.linspace(0, len(motion.time_s) - 1, 2 * POSES + 1)[1::2]).astype(np.intp)
+    figure = stick_figure(motion)
+    axes = _axes(motion)
+    points = np.concatenate([limb.points for limb in figure.limbs], axis=1)[frames]  # (K, N, 3)
+    seen = points @ axes.T
+    middle = 0.5 * (seen[..., 0].max(axis=1) + seen[..., 0].min(axis=1))  # (K,)
+    floor, top = seen[..., 1].min(), seen[..., 1].max() + figure.head_radius_m
+    wide = float(np.ptp(seen[..., 0], axis=1).max())
+    column = (SIZE - 2 * EDGE) / POSES
+    scale = min((SIZE - 2 * EDGE) / (top - floor), 1.25 * column / wide)
+    ground = 0.5 * (SIZE + scale * (top - floor))
+    canvas = Canvas(SIZE, SIZE, PAPER_THUMBNAIL)
+    canvas.line([[EDGE, ground], [SIZE - EDGE, ground]], GRAY, 1.5)
+    for number, frame in enumerate(frames):
+        center = EDGE + column * (number + 0.5)
+
+        def project(points: Array, center: float = center, number: int = number) -> tuple[Array, Array]:
+            right, upward, away = axes @ points.T
+            x, y = center + scale * (right - middle[number]), ground - scale * (upward - floor)
+            return np.stack([x, y], axis=-1), away
+
+        draw_figure(canvas, figure, int(frame), project, LIMB_WIDTH, outlined=True)
+    return canvas.image()
+
+
+def _axes(motion: Motion) -> Array:
+    """World directions (3, 3) to the right, upwards, and away from the eye, as rows."""
+    names = motion.body.skeleton.point_names
+    side = (motion.points[:, names.index("hip.L")] - motion.points[:, names.index("hip.R")]).mean(axis=0)
+    angle = float(np.arctan2(side[1], side[0])) + TURN_RAD  # the performer's left is on the right of the view
+    right = np.array([np.cos(angle), np.sin(angle), 0.0])
+    return np.stack([right, [0.0, 0.0, 1.0], [-right[1], right[0], 0.0]])

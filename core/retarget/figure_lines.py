@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from .character import LIMBS, MIDDLE
 from .maps.character_map import CharacterMap
-from .roles import LIMBS, MIDDLE
 
 
 @dataclass(frozen=True)

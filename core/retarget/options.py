@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..take.conversion_settings import CharacterOptions
+
 
 class RootMotion(Enum):
     """Where the way over the ground goes."""
@@ -47,3 +49,22 @@ class RetargetOptions:
     tolerance_m: float | None = 0.005
     """Largest distance of any joint, end or sole of the character from the motion [m]; None for a key on
     every frame."""
+
+
+# --- Options of retargeting from the words of files and of the command line
+
+
+MM = 1000.0
+
+
+def retarget_options(words: CharacterOptions) -> RetargetOptions:
+    """The options that words ask for."""
+    return RetargetOptions(
+        root_motion=RootMotion(words.root_motion.replace("-", "_")),
+        placement=Placement(words.place),
+        arms=LimbKeys(words.arms),
+        legs=LimbKeys(words.legs),
+        plant_feet=words.plant_feet,
+        reach_hands=words.reach_hands,
+        tolerance_m=words.tolerance_mm / MM if words.tolerance_mm > 0.0 else None,
+    )

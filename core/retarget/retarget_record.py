@@ -5,14 +5,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from ..files.json_file import read_json
-from ..files.json_layout import write_readable_json
+from ..files.json_file import read_json, write_readable_json
 from ..files.kinds import ByName, Choice, Number, Text
 from ..files.records import Record
-from ..take.character_settings import CharacterOptions
-from ..take.record_fields import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
+from ..take.conversion_settings import CharacterOptions
+from ..take.evidence_kinds import FileDigests, Frame, FrameCount, FrameRate, Line, Notes, Sha256
+from .character import LIMBS
 from .maps.character_map import Roles, roles_mistake
-from .roles import LIMBS
 
 RECORD_FILE = "retarget.json"
 LARGEST_BYTES = 2**22

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, BoolArray
-from ..footage.keypoints.body_points import FACE
+from ..footage.keypoints.keypoints import FACE
 from .confidence import misfits
 
 PREFIX = "keypoint_"

@@ -1,19 +1,89 @@
-"""Evidence of each frame of any kind together: what is hidden, what contradicts the motion.
+"""The contours of a motion in the pictures, part by part: which show, and which lie beside their edges.
 
-A marker or a contour covers a segment, keypoints show its ends: what one of them sees is not hidden because
-another misses it.
+They judge a motion where no marker does.
 """
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 
 from ..arrays import Array
+from ..body.kinematics import extremity_names
+from ..estimate.keypoint_evidence import KeypointEvidence
+from ..estimate.keypoint_fit import KeypointFit, keypoint_fit
+from ..estimate.reconstruct import Reconstruction
+from ..estimate.terms.contours import SURFACE_SHARE
+from ..estimate.terms.keypoints import ObservedKeypoints
+from ..estimate.whole_clip import WholeClipResult
+from ..evidence.contours import SHARES, SIDES
+from ..take.evidence_kinds import UsedEvidence, UsedKeypoints
 from .compared_keypoints import ComparedKeypoints
-from .contour_sight import ContourSight
 from .weak_frames import FrameEvidence
+
+SELDOM = 0.25
+"""Share of a part's contour below which it seldom shows: the trunk's behind the arms."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContourSight:
+    """The O parts of the body in F frames, without hands and feet."""
+
+    parts: tuple[str, ...]
+    """(O,) their segments."""
+    quality: Array
+    """(F, O) share of a part's contour near which an edge was found, of what usually is."""
+    misfit: Array
+    """(F, O) reduced squared distance from these edges; NaN where none was found."""
+    lines: Array
+    """(F, L, S, 2) contour lines of all parts, hands and feet included, as the motion predicts them [px]."""
+
+    @classmethod
+    def none(cls, frames: int) -> "ContourSight":
+        """No contour at all, O = 0."""
+        return cls((), np.zeros((frames, 0)), np.zeros((frames, 0)), np.zeros((frames, 0, len(SHARES), 2)))
+
+
+def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, ContourSight]:
+    """Look for the edges near a motion's contours; yields the fraction done.
+
+    Args:
+        reconstruction: The result of `reconstruct`.
+
+    Returns:
+        None of them where markers judge the motion, or where no contour was followed.
+    """
+    motion, solution = reconstruction.motion, reconstruction.solution
+    frame = np.arange(len(motion.time_s))
+    if reconstruction.tracks.names or solution is None or solution.contours is None:
+        return ContourSight.none(len(frame))
+    found = yield from solution.contours.measure(motion.posture, frame)
+    model = found.model
+    predicted = model.evaluate(motion.body.pose(motion.posture), frame)
+    distance = np.sum(found.normal * (predicted.pixel - found.edge), axis=-1)
+    squared = distance**2 / (found.variance + (SURFACE_SHARE * predicted.half_width) ** 2)
+    loose = extremity_names(motion.body.skeleton)  # no posture turns hands and feet
+    parts = [part for part in model.parts.segments if part not in loose]
+    index = [model.parts.segments.index(part) for part in parts]
+    own = (model.part_of[:, None] == np.array(index)).astype(np.float64)  # (N, O)
+    seen = np.isfinite(squared)
+    number = seen @ own
+    misfit = np.where(seen, squared, 0.0) @ own / np.maximum(number, 1.0)
+    quality = _relative(number / own.sum(axis=0))
+    along = predicted.pixel.reshape(len(frame), -1, len(SHARES), len(SIDES), 2)
+    lines = np.swapaxes(along, 2, 3).reshape(len(frame), -1, len(SHARES), 2)
+    return ContourSight(tuple(parts), quality, np.where(number > 0.0, misfit, np.nan), lines)
+
+
+def _relative(share: Array) -> Array:
+    """Shares (F, O) of what usually shows of each part; 1 for one that seldom shows, as nobody misses it."""
+    usual = np.median(share, axis=0)
+    return np.asarray(np.where(usual < SELDOM, 1.0, np.clip(share / np.maximum(usual, SELDOM), 0.0, 1.0)))
+
+
+# --- Evidence of each frame of any kind together
+
 
 LIMBS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -102,3 +172,78 @@ def frame_evidence(
         speed,
         (*contours.parts, *points),
     )
+
+
+# --- Comparison of a take's keypoints with the places where its motion puts them
+
+
+def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
+    """The performer's keypoints beside the motion's, with what the estimate made of them.
+
+    A method that does not follow keypoints is compared with them as if they were where they usually are.
+
+    Args:
+        reconstruction: The result of `reconstruct`.
+    """
+    if not reconstruction.keypoints.names:
+        return ComparedKeypoints.none(len(reconstruction.motion.time_s))
+    fit = reconstruction.keypoint_fit or _usual_fit(reconstruction)
+    return ComparedKeypoints(
+        names=fit.keypoints.names,
+        sources=fit.keypoints.sources,
+        seen=fit.keypoints.pixel,
+        predicted=fit.predicted_px,
+        confidence=ObservedKeypoints.of(fit.keypoints).confidence,
+        distance_px=fit.residual_px,
+        expected_px=fit.std_px,
+        thrown_out=fit.thrown_out,
+        swapped=fit.swapped,
+    )
+
+
+def _usual_fit(reconstruction: Reconstruction) -> KeypointFit:
+    keypoints, motion = reconstruction.keypoints, reconstruction.motion
+    camera = reconstruction.model.camera
+    evidence = KeypointEvidence.usual(motion.body, camera, keypoints.names, keypoints.sources)
+    none = np.zeros(keypoints.score.shape, dtype=bool)
+    return keypoint_fit(evidence, keypoints, ObservedKeypoints.of(keypoints), none, motion.posture)
+
+
+# --- Evidence that a reconstruction rests on beside its keyframes
+
+
+def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
+    """What a motion was held against: all that a take has, but with the paper's filter its markers alone."""
+    method, markers = reconstruction.motion.method, reconstruction.tracks.names
+    solution = reconstruction.solution
+    if method != "map" or solution is None:
+        return UsedEvidence(markers if method == "ekf" else ())
+    return UsedEvidence(
+        markers,
+        _used_keypoints(reconstruction),
+        _uses_hints(solution),
+        solution.contours is not None,
+    )
+
+
+def _uses_hints(solution: WholeClipResult) -> bool:
+    """Whether any believed point has a guessed depth."""
+    trusted = solution.evidence.keypoints.trust > 0.0
+    return bool(np.isfinite(solution.problem.points.depth_m[:, trusted]).any())
+
+
+def _used_keypoints(reconstruction: Reconstruction) -> tuple[UsedKeypoints, ...]:
+    """The sources of keypoints, in their order."""
+    compared = compare_keypoints(reconstruction)
+    seen = np.isfinite(compared.seen).all(axis=-1)
+    used = []
+    for source in dict.fromkeys(compared.sources):
+        own = [index for index, other in enumerate(compared.sources) if other == source]
+        count = int(seen[:, own].sum())
+        doubted, swapped = (
+            float((seen & flags)[:, own].sum()) / max(count, 1)
+            for flags in (compared.thrown_out, compared.swapped)
+        )
+        names = tuple(dict.fromkeys(compared.names[index] for index in own))
+        used.append(UsedKeypoints(source, names, 1.0 - doubted if count else 0.0, swapped))
+    return tuple(used)

@@ -12,15 +12,20 @@ from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.regions import RegionNoise, limb_widths
-from ..footage.segmentation.region_outlines import CORNERS, ellipse_outline
-from ..observation.regions import RegionModel
+from ..evidence.regions import RegionModel
+from ..footage.segmentation.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take
-from .compare_keypoints import compare_keypoints
 from .compared_keypoints import ComparedKeypoints
 from .confidence import TOLERANCE_SHARE, confidence, expected_covariance, misfits
-from .contour_sight import ContourSight, contour_sight
-from .frame_evidence import MarkerSight, believed_misfits, frame_evidence
+from .frame_evidence import (
+    ContourSight,
+    MarkerSight,
+    believed_misfits,
+    compare_keypoints,
+    contour_sight,
+    frame_evidence,
+)
 from .weak_frames import Reason, WeakFrame, find_weak_frames
 
 __all__ = ["Reason", "Review", "WeakFrame", "review"]

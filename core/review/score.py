@@ -13,12 +13,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..body.human import HUMAN
-from ..body.posture_fields import FARTHEST_M
+from ..body.posture import FARTHEST_M
 from ..errors import InputError
 from ..files.json_file import read_json, shown
 from ..files.kinds import ByName, Items, Whole
-from ..files.number_lists import NumberArray
 from ..files.records import Record
+from ..files.safe_path import NumberArray
 from ..footage.camera import Camera
 
 STANDING_M = 0.004

@@ -1,23 +1,86 @@
-"""Discovery of takes: below a folder, in a list (JSON Lines), of one file; and the rules for their names."""
+"""A shoot: the takes below a folder, or those of a list."""
 
 import os
 import unicodedata
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path, PurePath, PurePosixPath
 from typing import Any
 
 from ..errors import InputError
-from ..files.fields import Fields
-from ..files.inherited_fields import COMMENT_PREFIX
+from ..files.control_characters import regular_file_size
+from ..files.fields import COMMENT_PREFIX, Fields
 from ..files.json_file import parse_json, shown
-from ..files.regular_file import regular_file_size
 from ..files.safe_path import check_symlinks, safe_path
 from ..footage.clips.image_sequence import is_image, stem_of_number
 from ..take.conversion_record import RECORD_FILE
-from ..take.description import TAKE_FILE, clip_name
-from ..take.shoot_file import SETTING_FIELDS, SHARED_FIELDS, SHOOT_FILE, find_shoot_files
-from .shoot import MOST_TAKES, Shoot, ShootTake
+from ..take.conversion_settings import NO_SETTINGS, ConversionSettings
+from ..take.description import (
+    SETTING_FIELDS,
+    SHARED_FIELDS,
+    SHOOT_FILE,
+    TAKE_FILE,
+    Description,
+    clip_name,
+    describe,
+    effective_settings,
+    find_shoot_files,
+)
+
+MOST_TAKES = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class ShootTake:
+    """One take of a shoot; none of its files has been read yet."""
+
+    name: str
+    """Its path from the shoot's folder, with slashes, without a clip's ending; also that of its results."""
+    path: Path
+    """The take's folder, or a bare clip."""
+    overrides: Mapping[str, Any] | None = None
+    """Fields in a line of a list, which override all files."""
+    overrides_location: str = ""
+    """Location of these fields, for sentences."""
+
+    def describe(self) -> Description:
+        """Merge all files that describe the take.
+
+        Raises:
+            InputError: A file is unusable.
+        """
+        return describe(self.path, self.overrides, self.overrides_location)
+
+    def settings(
+        self, description: Description, defaults: ConversionSettings = NO_SETTINGS
+    ) -> ConversionSettings:
+        """The settings of its conversion; `defaults` for what the description leaves out."""
+        return effective_settings(description, defaults)
+
+
+@dataclass(frozen=True, eq=False)
+class Shoot:
+    """Takes that are converted together."""
+
+    path: Path
+    """The folder, the list, or the one clip."""
+    takes: tuple[ShootTake, ...]
+    """In the order of their names, each name once."""
+
+    @property
+    def folder(self) -> Path:
+        """The folder that the takes' names are relative to."""
+        return self.path if self.path.is_dir() else self.path.parent
+
+
+def part_of(takes: Collection[ShootTake], part: int, parts: int) -> list[ShootTake]:
+    """The share of one of several machines: every `parts`-th take, beginning with the `part`-th, from 1."""
+    return [take for index, take in enumerate(takes) if index % parts == part - 1]
+
+
+# --- Discovery of takes
+
 
 RESERVED = (".keymark", "summary.html", "summary.jsonl")
 """Files and folders that a batch itself writes into the folder of the results."""

@@ -6,19 +6,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..arrays import Image
-from ..errors import InputError
+from ..errors import InputError, pluralize
 from ..files.fields import listed
-from ..footage.clips.clip import Clip
-from ..footage.clips.spread_frames import sample_spread_frames
+from ..footage.camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
+from ..footage.clips.clip import Clip, sample_spread_frames
 from ..footage.colors.strong_colors import StrongColor, strong_colors
-from ..footage.default_camera import EYE_HEIGHT_M, default_camera_pose, guess_lens
-from ..library.several_libraries import EVERY_LIBRARY
+from ..prior.texts import EVERY_LIBRARY
 from ..progress import run
-from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, TAKE_FILE, sidecar_file
+from ..take.description import KEYFRAME_FILE, KEYPOINT_FILE, SCHEMA_VERSION, TAKE_FILE, sidecar_file
 from ..take.evidence_kinds import KEYPOINTS, MARKERS
-from ..take.shoot_file import SCHEMA_VERSION
-from ..text import pluralize
-from .shoot import Shoot, ShootTake
+from .discovery import Shoot, ShootTake
 
 COLORED_CLIPS = 48
 """Clips that are sampled for colors at most: a few of every day, of all performers."""

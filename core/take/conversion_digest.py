@@ -10,12 +10,9 @@ from ..errors import InputError
 from ..files.digest import content_digest, digest
 from ..files.json_file import read_json
 from ..footage.clips.image_sequence import find_images
-from ..library.several_libraries import COMPOSED, EVERY_LIBRARY
-from .character_settings import CharacterSettings
-from .conversion_settings import ConversionSettings
-from .description import Description, keypoint_files
-from .methods import METHODS
-from .shoot_file import FILE_FIELDS, SETTING_FIELDS
+from ..prior.texts import COMPOSED, EVERY_LIBRARY
+from .conversion_settings import METHODS, CharacterSettings, ConversionSettings
+from .description import FILE_FIELDS, SETTING_FIELDS, Description, keypoint_files
 
 FORMAT = 2
 """Raised whenever the same input gives another result without a new version."""

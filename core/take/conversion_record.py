@@ -14,7 +14,7 @@ from ..errors import InputError
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number, Whole
 from ..files.records import Record
-from .record_fields import (
+from .evidence_kinds import (
     FARTHEST_FRAME,
     MOST_FRAMES,
     FileDigests,
@@ -23,8 +23,8 @@ from .record_fields import (
     FrameRate,
     Line,
     Notes,
+    UsedEvidence,
 )
-from .used_evidence import UsedEvidence
 
 RECORD_FILE = "conversion.json"
 LARGEST_BYTES = 2**22

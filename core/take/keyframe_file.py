@@ -10,15 +10,14 @@ import numpy as np
 from ..arrays import chunks
 from ..body.human import HUMAN
 from ..body.kinematics import Body
-from ..body.posture import Posture
-from ..body.posture_fields import FARTHEST_M, PostureValues, rounded
+from ..body.posture import FARTHEST_M, Posture, PostureValues, rounded
 from ..body.posture_fit import fit_posture
 from ..errors import InputError
 from ..files.json_file import read_json, write_json
 from ..files.kinds import ByName, Items, Number
 from ..files.records import Record
 from ..prior.keyframes import Keyframe, Matched
-from .record_fields import Frame
+from .evidence_kinds import Frame
 
 FEWEST_KEYFRAMES = 2
 """Fewest that can be interpolated."""

@@ -2,13 +2,23 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
+from typing import Annotated, Any
 
 import numpy as np
 
 from ..arrays import Array
+from ..body.actor import Actor
+from ..body.human import HUMAN
 from ..body.kinematics import Body
-from ..body.posture import Posture
+from ..body.posture import Posture, posture_to_json, rounded
+from ..errors import ConversionError
+from ..files.json_file import read_json, shown, write_json
+from ..files.kinds import ByName, Items, Kind, Whole, refuse
+from ..files.records import Record
+from ..files.safe_path import NumberArray, number_array
+from .evidence_kinds import MOST_FRAMES, Frame, FrameCount, FrameRate, Line
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,3 +52,186 @@ class Motion:
     def sigma_m(self) -> Array:
         """(F, 13) square root of the trace of each point's covariance [m]."""
         return np.sqrt(np.trace(self.point_covariance, axis1=-2, axis2=-1))
+
+
+# --- `motion.json`
+
+
+LARGEST_BYTES = 2**29
+"""Two hours of motion: about 2 kB a frame."""
+LARGEST_NUMBER = 1e15
+"""Of coordinates, angles, times and covariances, in the file's units."""
+MOST_DIAGNOSTICS = 100
+SIGNIFICANT_DIGITS = 6
+UPPER = (np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2]))
+"""Rows and columns of xx, xy, xz, yy, yz, zz: the upper triangle of a covariance matrix."""
+
+
+class Diagnostic(Kind):
+    """A number or null, or nested lists of them; an array with NaN for null."""
+
+    valid = "numbers or null, or lists of them"
+
+    def read(self, value: Any, where: str, name: str) -> Array:
+        """See `Kind`."""
+        array = number_array(value, nulls=True)
+        if array is None:
+            refuse(where, name, value, self.valid)
+        return array
+
+
+def _lists(names: tuple[str, ...], *shape: int) -> ByName:
+    """Lists of every name, with one entry a frame."""
+    item = NumberArray((-1, *shape), LARGEST_NUMBER)
+    return ByName("lists by name", names=names, needs=names, strict=False, item=item)
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFile(Record):
+    """The fields of `motion.json`; lists run over the F frames of the clip."""
+
+    VERSION, TITLE = 1, "motion"
+
+    fps: FrameRate
+    """Frames per second."""
+    frame_start: Frame
+    """Scene frame of the first frame."""
+    frame_count: FrameCount
+    """Number of frames, F."""
+    method: Line
+    """map, ekf or interpolation."""
+    keyframes: Annotated[tuple[Annotated[int, Whole(-(10**8), 10**8)], ...], Items("frames", 0, MOST_FRAMES)]
+    """Scene frames of the keyframes."""
+    time_s: Annotated[Array, NumberArray((-1,), LARGEST_NUMBER)]
+    """Time of each frame [s]."""
+    points: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 3)]
+    """The thirteen joint centers: F times [x, y, z] [m] each."""
+    posture: Annotated[Mapping[str, Array], _lists(HUMAN.dof_names)]
+    """The posture by degree of freedom: F numbers [m, rad] each."""
+    actor: Actor
+    """The performer's size."""
+    diagnostics: Annotated[Mapping[str, Array], ByName("lists by name", MOST_DIAGNOSTICS, item=Diagnostic())]
+    """Diagnostics of the estimate by name; null where a number does not apply."""
+    sigma_m: Annotated[Mapping[str, Array], _lists(HUMAN.point_names)] = field(default_factory=dict)
+    """Square root of the trace of each point's covariance: F numbers [m] each; only for methods with
+    uncertainty."""
+    covariance_mm2: Annotated[Mapping[str, Array], _lists(HUMAN.point_names, 6)] = field(default_factory=dict)
+    """Covariance of each point: F times xx, xy, xz, yy, yz, zz [mm²]."""
+
+    ORDER = (
+        *("fps", "frame_start", "frame_count", "method", "keyframes", "time_s", "points", "sigma_m"),
+        *("covariance_mm2", "posture", "actor", "diagnostics"),
+    )
+
+    def mistake(self) -> str:
+        """See `Record`."""
+        rows = {"time_s": self.time_s}
+        for name in ("points", "posture", "sigma_m", "covariance_mm2"):
+            rows |= {f"{name}.{key}": array for key, array in getattr(self, name).items()}
+        for name, array in rows.items():
+            if len(array) != self.frame_count:
+                return (
+                    f"{name} is a list of {len(array)}; it must have one entry for each of {self.frame_count}"
+                )
+        first, last = self.frame_start, self.frame_start + self.frame_count - 1
+        if not all(first <= frame <= last for frame in self.keyframes):
+            return (
+                f"keyframes is {shown(list(self.keyframes))}; it must be a list of frames, {first} to {last}"
+            )
+        return ""
+
+
+def write_motion(motion: Motion, path: Path) -> None:
+    """Write a motion as `motion.json`, atomically; the same motion gives the same bytes.
+
+    Lengths are in meters and angles in radians, rounded to 1e-6; lists run over the frames of the clip.
+    A method that has no covariance (all NaN) leaves `sigma_m` and `covariance_mm2` out.
+
+    Args:
+        motion: The motion, F frames.
+        path: The file.
+
+    Raises:
+        ConversionError: A value of the motion is not finite, or the file cannot be written.
+    """
+    _check_finite(motion)
+    names = motion.body.skeleton.point_names
+    file = MotionFile(
+        fps=motion.fps,
+        frame_start=motion.frame_start,
+        frame_count=len(motion.time_s),
+        method=motion.method,
+        keyframes=tuple(index + motion.frame_start for index in motion.keyframe_indices),
+        time_s=rounded(motion.time_s),
+        points=dict(zip(names, rounded(np.swapaxes(motion.points, 0, 1)), strict=True)),
+        posture=posture_to_json(motion.posture),
+        actor=motion.body.actor,
+        diagnostics={name: _significant(rows) for name, rows in sorted(motion.diagnostics.items())},
+        **(_uncertainty(motion) if _has_covariance(motion) else {}),
+    )
+    write_json(path, file.to_json())
+
+
+def read_motion(path: Path) -> Motion:
+    """Read a motion that `write_motion` wrote.
+
+    Raises:
+        InputError: The file or a field is unusable; the sentence names it.
+    """
+    file = MotionFile.from_json(read_json(path, LARGEST_BYTES), str(path))
+    body = Body(file.actor)
+    return Motion(
+        body=body,
+        fps=file.fps,
+        frame_start=file.frame_start,
+        time_s=file.time_s,
+        posture=Posture.from_vector(body.skeleton, np.stack(list(file.posture.values()), axis=1)),
+        points=np.stack(list(file.points.values()), axis=1),
+        point_covariance=_covariance(file),
+        keyframe_indices=tuple(frame - file.frame_start for frame in file.keyframes),
+        method=file.method,
+        diagnostics=MappingProxyType(dict(file.diagnostics)),
+    )
+
+
+def _has_covariance(motion: Motion) -> bool:
+    return not np.isnan(motion.point_covariance).all()
+
+
+def _uncertainty(motion: Motion) -> dict[str, Any]:
+    names = motion.body.skeleton.point_names
+    covariance = 1e6 * motion.point_covariance[:, :, UPPER[0], UPPER[1]]  # (F, P, 6), meters² to millimeters²
+    return {
+        "sigma_m": dict(zip(names, rounded(motion.sigma_m.T), strict=True)),
+        "covariance_mm2": dict(zip(names, _significant(np.swapaxes(covariance, 0, 1)), strict=True)),
+    }
+
+
+def _covariance(file: MotionFile) -> Array:
+    covariance = np.full((file.frame_count, len(file.points), 3, 3), np.nan)
+    if file.covariance_mm2:
+        upper = 1e-6 * np.stack(list(file.covariance_mm2.values()), axis=1)
+        covariance[:, :, UPPER[0], UPPER[1]] = upper
+        covariance[:, :, UPPER[1], UPPER[0]] = upper
+    return covariance
+
+
+def _check_finite(motion: Motion) -> None:
+    arrays = {"points": motion.points, "posture": motion.posture.to_vector()}
+    if _has_covariance(motion):
+        arrays["covariance"] = motion.point_covariance
+    for name, values in arrays.items():
+        bad = ~np.isfinite(values.reshape(len(values), -1)).all(axis=1)
+        if bad.any():
+            frame = int(np.flatnonzero(bad)[0]) + motion.frame_start
+            raise ConversionError(
+                f"the {motion.method} estimate has no finite {name} at frame {frame} and "
+                f"{int(bad.sum()) - 1} more frames; nothing was written"
+            )
+
+
+def _significant(values: Array) -> Any:
+    """Nested lists of numbers rounded to six significant digits; null where a number is not finite."""
+    array = np.asarray(values, dtype=np.float64)
+    flat = [float(f"{x:.{SIGNIFICANT_DIGITS}g}") + 0.0 if np.isfinite(x) else None for x in array.ravel()]
+    return np.array(flat, dtype=object).reshape(array.shape).tolist()

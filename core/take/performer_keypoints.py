@@ -8,13 +8,11 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
-from ..footage.keypoints.body_points import FACE
-from ..footage.keypoints.keypoints import Keypoints
-from ..footage.keypoints.people import People
+from ..errors import pluralize
+from ..footage.keypoints.keypoints import FACE, Keypoints, People
 from ..footage.keypoints.performer import NOBODY, Expected, Sightings, choose_performer, person_size
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import SPEED_M_PER_S
-from ..text import pluralize
 from .take import Take
 
 MIDDLES = {"neck": ("shoulder.L", "shoulder.R"), "pelvis": ("hip.L", "hip.R")}

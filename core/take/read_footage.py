@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import chunks
-from ..footage.read_clip import read_clip
-from ..footage.reading import Reading
+from ..evidence.regions import MarkerPlacement, RegionModel
+from ..footage.reading import Reading, read_clip
 from ..footage.region_tracks import ExpectedRegions
-from ..observation.regions import MarkerPlacement, RegionModel
-from ..prior.interpolation import interpolate
+from ..prior.keyframes import interpolate
 from ..progress import Job, Progress, within
-from .clip_check import check_frame_count, check_in_front, open_clip
-from .clip_notes import clip_notes
+from .clip_check import check_frame_count, check_in_front, clip_notes, open_clip
 from .take import Take
 
 FOLLOWING, READING = "Following the markers", "Reading the clip"

@@ -6,8 +6,8 @@ from pathlib import Path
 from ..body.kinematics import Body
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredRegion
-from ..footage.keypoints.people import People
-from ..footage.marker_style import MarkerStyle
+from ..footage.keypoints.keypoints import People
+from ..footage.region_tracks import MarkerStyle
 from ..prior.keyframes import Keyframe
 from .description import TAKE_FILE
 

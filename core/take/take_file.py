@@ -14,14 +14,13 @@ from ..body.body_volume import TRUNK
 from ..body.human import HUMAN
 from ..body.kinematics import Body
 from ..errors import InputError
-from ..files.fields import Fields, listed
-from ..files.inherited_fields import InheritedFields, child_location
+from ..files.fields import Fields, InheritedFields, child_location, listed
 from ..files.json_file import shown, write_atomically, write_json
 from ..files.kinds import ByName, Choice, Items, Kind, Number, Text, Whole, refuse
 from ..files.records import Object, Record, read_record
 from ..footage.camera import Camera
 from ..footage.camera_fields import CameraFields
-from ..footage.ignored_region_fields import (
+from ..footage.ignored_regions import (
     IGNORED_REGIONS,
     MOST_REGIONS,
     RegionFields,
@@ -29,8 +28,8 @@ from ..footage.ignored_region_fields import (
     ignored_regions,
 )
 from ..footage.keypoints.keypoint_file import read_keypoints, write_keypoints
-from ..footage.keypoints.people import People
-from ..footage.marker_style import MarkerStyle
+from ..footage.keypoints.keypoints import People
+from ..footage.region_tracks import MarkerStyle
 from .clip_check import open_footage, picture_count
 from .conversion_settings import ConversionSettings
 from .description import KEYPOINT_FILE, Description, describe, keypoint_files

@@ -2,18 +2,16 @@
 
 import bpy
 
-from ..keypoints.evidence import scene_evidence
-from ..overlays.measuring import Clicks, show
-from ..shell.base_operator import BaseOperator
-from ..shell.cancel_on_esc import cancel_click
+from ..follow.evidence import scene_evidence
+from ..overlays.legend import Clicks, show
+from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
-from ..shell.messages import warn
+from ..shell.job_operator import cancel_click
 from ..shell.notices import give_notices
-from ..shell.redraw import redraw_footage
 from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, footage_of
+from ..shell.takes import active_take, footage_of, redraw_footage
 
 
 class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):

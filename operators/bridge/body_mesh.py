@@ -9,7 +9,7 @@ from mathutils import Matrix
 from ...core.arrays import Array, IndexArray
 from ...core.body.body_volume import body_pieces, marker_parts, ring_quads
 from ...core.body.kinematics import Body
-from ...core.footage.marker_style import MarkerStyle
+from ...core.footage.region_tracks import MarkerStyle
 from .actor_lengths import skeleton_bones
 
 SIDES_OF_RING = 20

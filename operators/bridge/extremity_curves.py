@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
-from ...core.body.extremities import extremity_names
+from ...core.body.kinematics import extremity_names
 from ...core.body.skeleton import Skeleton
 from .actions import existing_channelbag
 from .keys import copy_as_generated, ensure_fcurve, generated_frames

@@ -6,8 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array, BoolArray, IndexArray
-from ...core.body.extremities import Extremities
-from ...core.body.kinematics import Body
+from ...core.body.kinematics import Body, Extremities
 from ...core.body.posture import Posture
 from ...core.body.rotations import continuous_quaternions
 from ...core.body.skeleton import Skeleton
@@ -17,12 +16,10 @@ from ...core.finish.rig import Rig, RigPose, channel_count
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
 from .fcurves import moved_paths, posture_columns
-from .joint_frames import posture_from_frames
-from .keyframes import keyed_frames
+from .keyframes import keyed_frames, untouched_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
-from .matched_keyframes import untouched_frames
 from .review_curves import is_review_curve
-from .rotation_modes import ALL_PATHS, bone_path, rotation_path
+from .rotation_modes import ALL_PATHS, bone_path, posture_from_frames, rotation_path
 
 Channel = tuple[int, int, str, int]
 """Index of a bone in the rig, column of its values, data path and array index of the property."""

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...core.errors import InputError
-from ...core.footage.clips.frame_reader import FrameReader
+from ...core.footage.clips.clip import FrameReader
 from .footage import Footage
 
 REACH_PX = 2

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
+from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
 UNEVEN = 1e-4
@@ -66,3 +67,30 @@ def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     layer.update()
     return blender_object.evaluated_get(layer.depsgraph)
+
+
+# --- Where the joints of an actor are in the scene, read from its bones alone
+
+
+_ENDS = {
+    "shoulder": ("upper_arm", "head"),
+    "elbow": ("forearm", "head"),
+    "wrist": ("forearm", "tail"),
+    "hip": ("thigh", "head"),
+    "knee": ("shin", "head"),
+    "ankle": ("shin", "tail"),
+    "head": ("head", "tail"),
+}
+"""The bone, and its end, that lies at each principal point."""
+
+
+def joint_places(armature_object: bpy.types.Object) -> Array:
+    """(13, 3) the principal points of an actor as its scene shows it now [m]."""
+    shown = evaluated(armature_object)
+    bones, matrix = shown.pose.bones, shown.matrix_world
+    places = []
+    for name in HUMAN.point_names:
+        stem, dot, side = name.partition(".")
+        bone, end = _ENDS[stem]
+        places.append(matrix @ getattr(bones[f"{bone}{dot}{side}"], end))
+    return np.array(places, dtype=np.float64)

@@ -9,10 +9,9 @@ from ...core.arrays import Array
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from .actor_lengths import skeleton_bones
-from .bone_channels import bone_channels
-from .joint_frames import posture_from_frames
+from .fcurves import bone_channels
 from .object_space import evaluated, object_space
-from .rotation_modes import set_rotation
+from .rotation_modes import posture_from_frames, set_rotation
 
 
 @dataclass(frozen=True, eq=False)

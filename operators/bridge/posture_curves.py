@@ -16,13 +16,12 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind
 from ...core.finish.rig import channel_count
 from .actions import new_channelbag
-from .bone_channels import channels_at_rest
-from .bones import BoneModel, bone_models, rest_matrices, usual_mode
-from .joint_frames import posture_from_frames
+from .armature import BoneModel, bone_models, rest_matrices, usual_mode
+from .fcurves import channels_at_rest
+from .finish_motion import rig_at_rest
 from .keys import set_posed_keys
 from .object_space import AT_ORIGIN
-from .rig import rig_at_rest
-from .rotation_modes import bone_path, rotation_path, rotation_values
+from .rotation_modes import bone_path, posture_from_frames, rotation_path, rotation_values
 
 Values = dict[str, Array]
 """Channel values by bone: the rotation's, for the root then the location's."""

@@ -14,13 +14,12 @@ from ...core.take.motion import Motion
 from ...core.take.take import Take
 from .actions import curve_digest
 from .armature import build_armature
-from .blend_writer import write_blend
+from .blend_files import own_scene, write_blend
 from .body_mesh import build_body_mesh
 from .export_formats import write_bvh
 from .fcurves import write_motion
 from .footage import clip_rate
 from .footage_to_scene import load_footage, show_footage
-from .own_scene import own_scene
 from .scene_frames import scene_frames
 
 VIEW_TRANSFORM = "Standard"

@@ -13,35 +13,32 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
-from ...core.estimate.frame_residuals import frame_residuals
 from ...core.estimate.keyframe_evidence import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
-from ...core.estimate.single_frame import calibrated, expected_in_frame
+from ...core.estimate.single_frame import calibrated, expected_in_frame, frame_residuals
 from ...core.estimate.terms.keypoints import ObservedKeypoints
 from ...core.estimate.terms.regions import ObservedRegions
+from ...core.evidence.regions import MarkerPlacement, RegionModel
 from ...core.footage.keypoints.keypoints import Keypoints
-from ...core.footage.marker_style import MarkerStyle
-from ...core.footage.reading import Reading
-from ...core.footage.reading_key import of_same_footage, reading_key
-from ...core.footage.region_tracks import ExpectedRegions, RegionTracks
-from ...core.footage.single_frame_regions import regions_of_frame
-from ...core.library.library import Library
-from ...core.observation.regions import MarkerPlacement, RegionModel
+from ...core.footage.markers import regions_of_frame
+from ...core.footage.reading import Reading, of_same_footage, reading_key
+from ...core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
 from ...core.posing.candidates import Candidate
 from ...core.posing.frame_poses import find_frame_poses, near_pose
-from ...core.posing.frame_shown import FrameShown
+from ...core.posing.frame_search import FrameShown
 from ...core.posing.posing_input import PosedFrames
 from ...core.prior.frame_prior import prior_from_keyframes, prior_from_pose
 from ...core.prior.keyframes import Keyframe
+from ...core.prior.library import Library
 from .actor_lengths import read_body
-from .camera_from_scene import read_camera
+from .camera_placement import read_camera
 from .footage import Footage
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
-from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
-from .scene_performer import performers_keypoints
+from .take_from_scene import performers_keypoints
+from .track_keypoints import SceneEvidence
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,21 +1,91 @@
-"""Read a take from a scene: footage, camera, actor, what is followed, and the animator's keyframes."""
+"""The performer's keypoints in a scene, before there are keyframes or even an actor."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import bpy
 
 from ...core.arrays import Array
+from ...core.body.actor import Actor
 from ...core.body.human import HUMAN
-from ...core.footage.clip_times import clip_times
-from ...core.footage.reading import Reading
+from ...core.body.kinematics import Body
+from ...core.footage.keypoints.keypoints import Keypoints
+from ...core.footage.reading import Reading, clip_times
+from ...core.footage.region_tracks import RegionTracks
+from ...core.prior.keyframes import Keyframe, interpolate
 from ...core.progress import Job, within
+from ...core.take.performer_keypoints import performer_keypoints
 from ...core.take.take import Take
 from .actor_lengths import read_body
-from .camera_from_scene import read_camera
+from .camera_placement import read_camera, read_lens
 from .footage import Footage
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
-from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
+from .track_keypoints import SceneEvidence
+
+
+def keypoints_without_keyframes(
+    footage: Footage, evidence: SceneEvidence, tracks: RegionTracks, stature_m: float
+) -> Keypoints:
+    """The keypoints of the performer as clicks, markers or else size tell who that is.
+
+    Args:
+        footage: Clip and camera in their scene.
+        evidence: What is followed.
+        tracks: The markers' regions.
+        stature_m: Roughly the performer's height.
+
+    Raises:
+        InputError: A file of keypoints cannot be used, or there is no camera.
+    """
+    frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
+    return performers_keypoints(footage, evidence, frames, Body(Actor.from_stature(stature_m)), (), tracks)
+
+
+def performers_keypoints(
+    footage: Footage,
+    evidence: SceneEvidence,
+    frames: Array,
+    body: Body,
+    keyframes: Sequence[Keyframe],
+    tracks: RegionTracks,
+) -> Keypoints:
+    """The keypoints of the performer, whom keyframes tell from other people where there are some.
+
+    Args:
+        footage: Clip and camera in their scene.
+        evidence: What is followed.
+        frames: (F,) scene frame of each frame of the clip.
+        body: The performer's, about.
+        keyframes: Those known.
+        tracks: The markers' regions, or of none where the clip has not been read.
+
+    Raises:
+        InputError: A file of keypoints cannot be used, or there is no camera.
+    """
+    if not evidence.has_keypoints:
+        return Keypoints.none(len(frames))
+    people = evidence.people(footage, frames)
+    known = tuple(keyframes) if any(one.most_people > 1 for one in people) else ()
+    take = Take(
+        folder=footage.path.parent,
+        clip=footage.path,
+        fps=footage.rate,
+        frame_start=footage.first_frame,
+        frame_count=len(frames),
+        # A moving camera is evaluated in every frame, which takes a while.
+        camera=read_camera(footage, frames) if known else read_lens(footage),
+        body=body,
+        markers=evidence.markers if tracks.names else (),
+        keyframes=known,
+        keypoints=people,
+    )
+    prior = interpolate(known, len(frames)) if known else None
+    return performer_keypoints(take, prior, tracks)
+
+
+# --- Read a take from a scene
+
 
 READING = "Reading the footage's times"
 

@@ -1,20 +1,79 @@
-"""Blender's own motion tracks of a clip as keypoints: what a person has tracked is evidence, solved or not.
+"""Keypoint files of a clip, each parsed once a session as long as it stays the same on disk."""
 
-A track's markers stand at frames of the clip, counted from 1 at the clip's first frame on the timeline. Their
-places are those in the picture as it is, with the lens's distortion, as core's camera projects them.
-"""
-
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from operator import itemgetter
+from pathlib import Path
+from stat import S_ISDIR
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
 from ...core.arrays import Array, IndexArray
-from ...core.footage.keypoints.people import People
+from ...core.errors import InputError
+from ...core.files.digest import digest
+from ...core.footage.keypoints.keypoints import People
+from .clicked_keypoints import ClickedPoint, one_person, people_of_clicks
 from .footage import Footage
-from .one_person import one_person
 from .scene_frames import shown_index
+
+if TYPE_CHECKING:
+    from ...core.footage.ignored_regions import IgnoredRegion
+    from ...core.footage.region_tracks import MarkerStyle
+
+
+MOST_FILES = 12
+"""Files that are remembered: those of the takes at hand, for a job and for panels."""
+
+
+def read_keypoint_file(
+    path: Path, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
+) -> People:
+    """Everyone whom a file of keypoints, or a folder with a file a frame, says was seen.
+
+    Args:
+        path: The file or folder.
+        frame_count: Number of the clip's frames F; None where it is not known.
+        size: Width and height of the clip [px].
+        fps: Frames per second of the clip.
+        frame_start: Scene frame of its first one.
+
+    Raises:
+        InputError: The file is missing or unusable, or it cannot be one of this clip.
+    """
+    state = file_state(path)
+    if state is None:
+        raise InputError(f"{path}: the keypoints are not there; load them from where they are now")
+    return _read(path, state, frame_count, size, fps, frame_start)
+
+
+def file_state(path: Path) -> str | None:
+    """A digest that changes when a file, or any file of a folder, is written; None where it is missing."""
+    try:
+        found = os.stat(path)
+        if not S_ISDIR(found.st_mode):
+            return digest(found.st_size, found.st_mtime_ns)
+        with os.scandir(path) as entries:
+            states = sorted(((entry.name, entry.stat()) for entry in entries), key=itemgetter(0))
+    except (OSError, ValueError):
+        return None
+    return digest(tuple((name, state.st_size, state.st_mtime_ns) for name, state in states))
+
+
+@lru_cache(maxsize=MOST_FILES)
+def _read(
+    path: Path, state: str, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
+) -> People:
+    from ...core.footage.keypoints.keypoint_file import read_keypoints
+
+    return read_keypoints(path, frame_count, size, fps, frame_start)
+
+
+# --- Blender's own motion tracks of a clip as keypoints
+
 
 SOURCE = "tracks"
 FIRST_CLIP_FRAME = 1
@@ -113,3 +172,47 @@ def _places(
 def _start(footage: Footage) -> int:
     """Scene frame of a track's marker at frame 0."""
     return int(footage.clip.frame_start) - FIRST_CLIP_FRAME
+
+
+# --- What a scene's take is held against
+
+
+@dataclass(frozen=True)
+class SceneEvidence:
+    """Evidence beside the keyframes, as far as it is switched on."""
+
+    markers: "tuple[MarkerStyle, ...]" = ()
+    files: tuple[Path, ...] = ()
+    """Files of keypoints, or folders of them."""
+    tracks: tuple[AssignedTrack, ...] = ()
+    clicks: tuple[ClickedPoint, ...] = ()
+    depth_hints: bool = True
+    """Whether a detector's guess of depths is used."""
+    contours: bool = True
+    ignored_regions: "tuple[IgnoredRegion, ...]" = ()
+    """Regions of the picture that are never a marker."""
+
+    @property
+    def has_keypoints(self) -> bool:
+        """Whether there is any source of keypoints."""
+        return bool(self.files or self.tracks or self.clicks)
+
+    def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
+        """Everyone whom each source of keypoints saw, clicked points first.
+
+        Args:
+            footage: The clip in its scene.
+            frames: (F,) scene frame of each frame of the clip.
+
+        Raises:
+            InputError: A file is missing, or cannot be one of this clip.
+        """
+        width, height = footage.clip.size
+        files = tuple(
+            read_keypoint_file(path, len(frames), (width, height), footage.rate, footage.first_frame)
+            for path in self.files
+        )
+        if not self.depth_hints:
+            files = tuple(people.without_hints() for people in files)
+        clicks = people_of_clicks(footage, frames, self.clicks)
+        return (*clicks, *people_of_tracks(footage, frames, self.tracks), *files)

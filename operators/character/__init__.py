@@ -1,20 +1,14 @@
 """Step 8, the character: the motion given to any other armature."""
 
-PROPERTIES = ("map_properties", "properties")
+PROPERTIES = (
+    "map_properties",
+    "properties",
+)
 MODULES = (
     "add_character",
-    "add_rigify_human",
-    "remove_character",
-    "make_override",
-    "recognize_character",
+    "recognition",
     "pick_bone",
-    "chain_bones",
-    "mirror_roles",
-    "save_map",
-    "load_map",
+    "map_files",
     "retarget",
-    "show_result",
-    "remove_result",
-    "mark_result_asset",
     "panel",
 )

@@ -3,13 +3,15 @@
 import bpy
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator
-from ..shell.messages import warn
-from ..shell.requirements import idle
+from ..bridge.character.read_character import make_override, needs_override
+from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.requirements import bones_editable, idle
 from ..shell.takes import active_take
-from .characters import add_character, candidates, may_be_character
+from .characters import active_character, add_character, candidates, find_character, may_be_character
+from .map_conversion import map_of, show_map
 from .recognition import all_doubts
-from .requirements import take
+from .requirements import armature, character, take
 
 
 class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
@@ -76,4 +78,156 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         return named
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_add_character,))
+# --- Add a Rigify rig of the performer's size as the character
+
+
+def rigify(context: bpy.types.Context) -> str | None:
+    """Blender brings Rigify along."""
+    return None if has_rigify() else "This Blender comes without the add-on Rigify; install Rigify first"
+
+
+class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
+    """Add a Rigify rig of the performer's size as the character; asks first where Rigify is not enabled"""
+
+    bl_idname = "keymark.add_rigify_human"
+    bl_label = "Add Rigify Human"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (take, rigify, bones_editable, idle)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask before an add-on is enabled, which stays in the preferences."""
+        if is_rigify_enabled():
+            return self.execute(context)
+        return context.window_manager.invoke_confirm(
+            self,
+            event,
+            title="Enable the add-on Rigify?",
+            message="It comes with Blender and makes the rig; it stays enabled in the preferences",
+            confirm_text="Enable and Add",
+        )
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Generate the rig, and make it the chosen character where that has no armature yet."""
+        active = context.view_layer.objects.active
+        if active is not None and active.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            if not is_rigify_enabled():
+                enable_rigify()
+            rig = add_rigify_human(active_take(context.scene).stature)
+        except RuntimeError as error:  # an operator's own error report
+            reason = str(error).removeprefix("Error: ").strip()
+            raise InputError(
+                f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
+            ) from error
+        chosen = find_character(context.scene)
+        if chosen is None or chosen.armature is not None:
+            chosen = add_character(active_take(context.scene), rig)
+        else:
+            chosen.armature = rig
+        if chosen.problem:
+            warn(self, chosen.problem)
+        else:
+            self.report({"INFO"}, f"Recognized the bones of '{rig.name}'")
+
+
+# --- Remove a character from a take's list
+
+
+class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
+    """Remove the chosen character from the list; its armature and Actions stay"""
+
+    bl_idname = "keymark.remove_character"
+    bl_label = "Remove Character"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (character, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove it; the one before it is chosen."""
+        take = active_take(context.scene)
+        index = min(take.active_character, len(take.characters) - 1)
+        take.characters.remove(index)
+        take.active_character = max(0, index - 1)
+
+
+# --- Make a library override of a linked character, so that it can be animated here
+
+
+def linked(context: bpy.types.Context) -> str | None:
+    """The chosen character is linked, without an override."""
+    unmet = armature(context)
+    if unmet is not None:
+        return unmet
+    return None if needs_override(active_character(context.scene).armature) else "The character is not linked"
+
+
+class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
+    """Make a library override of the linked character, with its meshes, so that it can be animated here"""
+
+    bl_idname = "keymark.make_override"
+    bl_label = "Make Override"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (linked, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Override the character and all that belongs to it, and choose the override."""
+        character = active_character(context.scene)
+        original = character.armature
+        instance = _instance_of(context.scene, original)
+        if instance is not None:
+            overridden = _override_instance(context, original, instance)
+        else:
+            overridden = make_override(context, original)
+        known = map_of(character.character_map)
+        character.armature = overridden
+        if known.roles:
+            show_map(character.character_map, known)
+        self.report({"INFO"}, f"'{overridden.name}' can be animated now")
+
+
+def _override_instance(
+    context: bpy.types.Context, original: bpy.types.Object, instance: bpy.types.Object
+) -> bpy.types.Object:
+    """Override a linked collection in place of the empty that shows it; returns the armature's override.
+
+    Raises:
+        InputError: Blender refuses.
+    """
+    collection = instance.instance_collection
+    made = collection.override_hierarchy_create(
+        context.scene, context.view_layer, reference=instance, do_fully_editable=True
+    )
+    overrides = (each for each in context.scene.objects if each.override_library is not None)
+    found = next((each for each in overrides if each.override_library.reference == original), None)
+    if made is None or found is None:
+        raise InputError(
+            f"Blender makes no library override of collection '{collection.name}', which holds "
+            f"'{original.name}'; append it instead"
+        )
+    return found
+
+
+def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.types.Object | None:
+    """The empty of the scene that shows the linked collection an object is in; None where there is none."""
+    if original.name in scene.objects:
+        return None
+    return next(
+        (
+            each
+            for each in scene.objects
+            if each.instance_type == "COLLECTION"
+            and each.instance_collection is not None
+            and original in each.instance_collection.all_objects[:]
+        ),
+        None,
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_add_character,
+        KEYMARK_OT_add_rigify_human,
+        KEYMARK_OT_remove_character,
+        KEYMARK_OT_make_override,
+    )
+)

@@ -1,10 +1,14 @@
 """The characters of a take: which armatures may be one, which is chosen, and what it lacks."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+
 import bpy
 
 from ...core.errors import InputError
-from ...core.retarget.roles import REQUIRED
+from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
+from ..shell.base_operator import capitalized
 from ..shell.takes import find_take
 from .map_conversion import map_of
 from .map_properties import PART_TITLES, PARTS, role_title
@@ -127,3 +131,132 @@ def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup 
     if not len(character.results):
         return None
     return character.results[min(character.active_result, len(character.results) - 1)]
+
+
+# --- The motion that a character performs
+
+
+@dataclass(frozen=True)
+class SourceMotion:
+    """An Action and the actor it moves."""
+
+    kind: str
+    """`FINAL`, `MOTION` or `ACTION`."""
+    action: bpy.types.Action
+    actor: bpy.types.Object
+    title: str
+    """What a result is named after."""
+
+
+def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:
+    """The motion that a character is to perform.
+
+    Raises:
+        InputError: There is none; the sentence says what to do.
+    """
+    problem = missing_source(take, character)
+    if problem is not None:
+        raise InputError(problem)
+    kind = _kind(take, character)
+    if kind == "ACTION":
+        action = character.source_action
+        return SourceMotion(kind, action, _actor(take, character), action.name)
+    action = take.finish.action if kind == "FINAL" else take.motion_action
+    return SourceMotion(kind, action, take.armature, take.name)
+
+
+def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str | None:
+    """What is missing for a character to perform, as a sentence; None where nothing is."""
+    kind, actor = _kind(take, character), _actor(take, character)
+    if kind == "ACTION" and character.source_action is None:
+        return "Choose the Action that the character is to perform"
+    if kind == "FINAL" and take.finish.action is None:
+        return "Bake the final Action first, or choose another motion"
+    if kind == "MOTION" and take.motion_action is None:
+        return "Reconstruct the motion first"
+    if actor is None:
+        return "The motion's actor is gone; choose its armature in the step Actor"
+    if not is_actor(actor):
+        return f"'{actor.name}' is no actor of Keymark's; choose the motion's actor"
+    return None
+
+
+def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str:
+    """The kind of motion, where the newest is asked for the newest."""
+    if character.source != "NEWEST":
+        return str(character.source)
+    final = take.finish
+    newer = final.outdated and take.motion_action is not None
+    return "FINAL" if final.action is not None and not newer else "MOTION"
+
+
+def _actor(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> bpy.types.Object | None:
+    if character.source == "ACTION" and character.source_actor is not None:
+        return character.source_actor
+    return take.armature
+
+
+# --- Results of retargeting, in a character's list
+
+
+OF_THE_TAKE = ("FINAL", "MOTION")
+
+
+def result_to_replace(
+    character: bpy.types.PropertyGroup, kind: str, source_action: bpy.types.Action | None
+) -> bpy.types.PropertyGroup | None:
+    """The result that retargeting again replaces: the chosen one, or else the newest, of the same motion.
+
+    The take's final and its reconstructed motion are one motion; any other Action is one of its own.
+    """
+    same = [
+        result
+        for result in character.results
+        if result.action is not None
+        and (
+            (kind in OF_THE_TAKE and result.source in OF_THE_TAKE)
+            or (result.source == kind and result.source_action == source_action)
+        )
+    ]
+    chosen = shown_result(character)
+    return chosen if chosen in same else next(reversed(same), None)
+
+
+def add_result(
+    character: bpy.types.PropertyGroup, source: SourceMotion, action: bpy.types.Action
+) -> bpy.types.PropertyGroup:
+    """List an Action as a result, in place of what was listed of it, and choose it; deleted ones go."""
+    for empty in reversed([i for i, each in enumerate(character.results) if each.action is None]):
+        character.results.remove(empty)
+    index = next((i for i, each in enumerate(character.results) if each.action == action), None)
+    if index is None:
+        index = len(character.results)
+        character.results.add()
+    result = character.results[index]
+    result.action, result.outdated, result.armature = action, False, character.armature
+    result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
+    character.active_result = index
+    return result
+
+
+def drop_results_of_others(character: bpy.types.PropertyGroup) -> None:
+    """Take results that move another armature than the chosen one out of the list; their Actions stay."""
+    others = [i for i, each in enumerate(character.results) if each.armature != character.armature]
+    for index in reversed(others):
+        character.results.remove(index)
+    character.active_result = max(0, len(character.results) - 1)
+
+
+def show_lines(result: bpy.types.PropertyGroup, figures: Iterable[str], notes: Iterable[str]) -> None:
+    """Show what was measured of a result, and what a person should look at."""
+    result.lines.clear()
+    for level, sentences in (("INFO", figures), ("ERROR", notes)):
+        for sentence in sentences:
+            line = result.lines.add()
+            line.text, line.level = capitalized(sentence), level
+
+
+def is_shown(character: bpy.types.PropertyGroup, result: bpy.types.PropertyGroup) -> bool:
+    """Whether a result animates its character now."""
+    data = character.armature.animation_data if character.armature is not None else None
+    return data is not None and data.action is not None and data.action == result.action

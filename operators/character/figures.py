@@ -2,6 +2,11 @@
 
 from typing import TYPE_CHECKING
 
+import bpy
+
+from ...core.retarget.options import LimbKeys, Placement, RetargetOptions, RootMotion
+from .properties import MM
+
 if TYPE_CHECKING:
     from ...core.retarget.quality import Quality
 
@@ -20,3 +25,19 @@ def figures(quality: "Quality") -> list[str]:
     if quality.keys is not None and quality.dense_keys is not None:
         lines.append(f"{quality.keys} keys instead of {quality.dense_keys}")
     return lines
+
+
+# --- Core's options of retargeting from properties
+
+
+def options_of(group: bpy.types.PropertyGroup) -> RetargetOptions:
+    """The options that properties hold."""
+    return RetargetOptions(
+        root_motion=RootMotion[group.root_motion],
+        placement=Placement[group.placement],
+        arms=LimbKeys[group.arms],
+        legs=LimbKeys[group.legs],
+        plant_feet=group.plant_feet,
+        reach_hands=group.reach_hands,
+        tolerance_m=group.tolerance_mm / MM if group.keys == "TOLERANCE" else None,
+    )

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import bpy
 
+from ...core.retarget.character import LIMBS, ROLES
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
-from ...core.retarget.roles import LIMBS, ROLES
 from .map_properties import is_chain
 
 DIGITS = 7

@@ -5,7 +5,7 @@ Bones are kept by name, so that a bone that was renamed or removed is said and n
 
 import bpy
 
-from ...core.retarget.roles import CHAINS, LIMBS, MIDDLE, SOURCES
+from ...core.retarget.character import CHAINS, LIMBS, MIDDLE, SOURCES
 
 SOURCE_WORDS = {
     "preset": "Preset",

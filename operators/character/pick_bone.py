@@ -1,17 +1,104 @@
-"""Pick a role's bone by a click on it in the viewport."""
+"""The bone of a character under the mouse, in any 3D viewport of the window."""
 
 import bpy
+import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 
+from ...core.arrays import Array
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator
-from ..shell.cancel_on_esc import cancel_click
-from ..shell.error_reports import reported
+from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION
+from ..shell.job_operator import cancel_click
 from ..shell.requirements import idle
-from .bone_under_mouse import bone_under
-from .characters import active_character, find_character, full_title
+from .characters import active_character, few, find_character, full_title
+from .map_conversion import map_of, role_named, show_map
+from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone, told
 from .requirements import armature
-from .role_bone import RoleBoneOperator, active_bone_of, give_bone, told
+
+NEAR_PX = 25.0
+"""Farthest that a click may be from a bone, at a UI scale of 1."""
+SAME_PX = 3.0
+"""Bones that are hardly farther than the nearest lie over it; the one nearest to the viewer counts."""
+
+
+def bone_under(
+    context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
+) -> str | None:
+    """Return the name of the visible bone nearest to the mouse; None where none is near.
+
+    Args:
+        context: Its window is searched for a 3D viewport.
+        armature_object: The character.
+        mouse_x: Mouse position in the window, from its left edge [px].
+        mouse_y: The same from its bottom edge [px].
+    """
+    for area in context.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        for region in area.regions:
+            inside = 0 <= mouse_x - region.x < region.width and 0 <= mouse_y - region.y < region.height
+            if region.type == "WINDOW" and inside:
+                near = NEAR_PX * context.preferences.system.ui_scale
+                mouse = np.array([mouse_x - region.x, mouse_y - region.y], dtype=np.float64)
+                return _nearest(context, armature_object, region, mouse, near)
+    return None
+
+
+def _nearest(
+    context: bpy.types.Context,
+    armature_object: bpy.types.Object,
+    region: bpy.types.Region,
+    mouse: Array,
+    near: float,
+) -> str | None:
+    view = region.data
+    shown = armature_object.evaluated_get(context.evaluated_depsgraph_get())
+    names, ends, depths = [], [], []
+    for bone in shown.pose.bones:
+        if not is_visible(bone):
+            continue
+        places = [shown.matrix_world @ end for end in (bone.head, bone.tail)]
+        pixels = [location_3d_to_region_2d(region, view, place) for place in places]
+        if any(pixel is None for pixel in pixels):
+            continue
+        names.append(bone.name)
+        ends.append([tuple(pixel) for pixel in pixels])
+        depths.append(-(view.view_matrix @ ((places[0] + places[1]) / 2.0)).z)
+    if not names:
+        return None
+    index = nearest_segment(mouse, np.array(ends, dtype=np.float64), np.array(depths), near)
+    return None if index is None else names[index]
+
+
+def nearest_segment(point: Array, ends: Array, depths: Array, near: float) -> int | None:
+    """Index of the segment nearest to a point; None where all are farther than `near`.
+
+    Args:
+        point: (2,) [px].
+        ends: (N, 2, 2) first and second end of each segment [px].
+        depths: (N,) distance of each from the viewer; of segments over each other the nearest counts.
+        near: Largest distance [px].
+    """
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    squared = np.maximum(np.sum(along**2, axis=1), 1e-12)
+    share = np.clip(np.sum((point - start) * along, axis=1) / squared, 0.0, 1.0)
+    distance = np.linalg.norm(start + share[:, None] * along - point, axis=1)
+    if distance.min() > near:
+        return None
+    level = np.flatnonzero(distance <= distance.min() + SAME_PX)
+    return int(level[np.argmin(depths[level])])
+
+
+def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
+    """Whether the viewport shows a bone: not hidden, and in a visible collection or in none."""
+    bone = pose_bone.bone
+    if bone.hide or getattr(pose_bone, "hide", False):  # Blender 5 hides pose bones, 4.5 bones
+        return False
+    return not len(bone.collections) or any(each.is_visible_effectively for each in bone.collections)
+
+
+# --- Pick a role's bone by a click on it in the viewport
+
 
 TAKES_ACTIVE = {"RET", "NUMPAD_ENTER"}
 
@@ -101,4 +188,102 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         give_bone(active_character(context.scene), self.role, self.index, self.bone)
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_bone,))
+# --- Add a bone to a chain, or take one away
+
+
+class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
+    """Add the next bone upward to the chain"""
+
+    bl_idname = "keymark.add_chain_bone"
+    bl_label = "Add Bone"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (armature,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Add the bone that continues the last one; an empty field where none does."""
+        character = active_character(context.scene)
+        shown = role_named(character.character_map, chain_role(self.role))
+        taken = {entry.bone for role in character.character_map.roles for entry in role.bones}
+        last = shown.bones[-1].bone if len(shown.bones) else ""
+        shown.bones.add().bone = _next_upward(character.armature.data.bones, last, taken)
+
+
+class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
+    """Take this bone out of the chain; its turn goes to the others"""
+
+    bl_idname = "keymark.remove_chain_bone"
+    bl_label = "Remove Bone"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (armature,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove it; a chain without bones keeps an empty field."""
+        shown = role_named(active_character(context.scene).character_map, chain_role(self.role))
+        if self.index >= len(shown.bones):
+            raise InputError(
+                f"the role {self.role} has {len(shown.bones)} bones; there is no number {self.index}"
+            )
+        if len(shown.bones) == 1:
+            shown.bones[0].bone = ""
+            return
+        shown.bones.remove(self.index)
+        shown.source, shown.confidence, shown.doubt, shown.uneven = "you", 1.0, "", False
+
+
+def _next_upward(bones: "bpy.types.bpy_prop_collection[bpy.types.Bone]", last: str, taken: set[str]) -> str:
+    """The child that goes on from a bone's tail and plays no role yet; empty where there is none."""
+    below = bones.get(last)
+    free = [child for child in below.children if child.name not in taken] if below is not None else []
+    nearest = min(free, key=lambda child: (child.head_local - below.tail_local).length, default=None)
+    return nearest.name if nearest is not None else ""
+
+
+# --- Copy the roles of one side to the other
+
+
+SIDES = (
+    ("L", "Left to Right", "Copy the bones of the left arm and leg to the right"),
+    ("R", "Right to Left", "Copy the bones of the right arm and leg to the left"),
+)
+
+
+class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
+    """Copy the bones and controls of one side's arm and leg to the other, by mirrored names and places"""
+
+    bl_idname = "keymark.mirror_roles"
+    bl_label = "Mirror"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (armature, idle)
+
+    side: bpy.props.EnumProperty(name="Direction", description="Which side is copied", items=SIDES)
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Find the partner of every bone of the side."""
+        from ...core.retarget.maps.mirroring import mirrored_map
+        from ..bridge.character.read_character import read_character
+
+        character = active_character(context.scene)
+        before = map_of(character.character_map)
+        after, missing = mirrored_map(read_character(character.armature), before, self.side)
+        if missing:
+            names = few([full_title(role) for role in missing])
+            self.report({"WARNING"}, f"No bones were found that mirror those for {names}")
+        if after == before:
+            return {"CANCELLED"}
+        doubts = {
+            role.name: role.doubt
+            for role in character.character_map.roles
+            if role.doubt and after.roles.get(role.name) == before.roles.get(role.name)
+        }
+        show_map(character.character_map, after, doubts)
+        return None
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_pick_bone,
+        KEYMARK_OT_add_chain_bone,
+        KEYMARK_OT_remove_chain_bone,
+        KEYMARK_OT_mirror_roles,
+    )
+)

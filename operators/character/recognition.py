@@ -1,4 +1,4 @@
-"""A character's bones recognized, and shown in its properties."""
+"""Giving a bone to a role, as operators and their tooltips share it."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -6,12 +6,90 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError, KeymarkError
-from ...core.retarget.roles import ROLES
-from ..library import user_folder
-from ..shell.messages import capitalized
-from .characters import may_be_character, other_with
-from .map_conversion import clear_map, map_of, show_map
-from .results import drop_results_of_others
+from ...core.retarget.character import ROLES
+from ..library import library_files as user_folder
+from ..shell.base_operator import BaseOperator, capitalized, warn
+from ..shell.requirements import idle
+from .characters import (
+    active_character,
+    drop_results_of_others,
+    find_character,
+    full_title,
+    may_be_character,
+    other_with,
+)
+from .map_conversion import clear_map, map_of, role_named, show_map
+from .map_properties import SOURCE_WORDS, is_chain
+from .requirements import armature
+
+
+class RoleBoneOperator:
+    """Mixin of an operator that gives a role a bone."""
+
+    role: bpy.props.StringProperty(
+        name="Role", description="The role, as in upper_arm.L", options={"SKIP_SAVE"}
+    )
+    index: bpy.props.IntProperty(
+        name="Index", description="Number of the bone in a chain, from 0", min=0, options={"SKIP_SAVE"}
+    )
+
+
+def give_bone(character: bpy.types.PropertyGroup, role: str, index: int, bone: str) -> None:
+    """Give a role a bone, which makes the role the person's.
+
+    Raises:
+        InputError: There is no such role or place in it, or no such bone.
+    """
+    if role not in ROLES:
+        raise InputError(f"there is no role '{role}'; roles are {', '.join(ROLES)}")
+    if bone not in character.armature.data.bones:
+        raise InputError(
+            f"'{character.armature.name}' has no bone '{bone}'; give the name of one of its bones"
+        )
+    shown = role_named(character.character_map, role)
+    if index >= len(shown.bones):
+        raise InputError(
+            f"the role {role} has {len(shown.bones)} bones, so there is no number {index}; add a bone first"
+        )
+    shown.bones[index].bone = bone
+
+
+def active_bone_of(character: bpy.types.PropertyGroup) -> str | None:
+    """Name of the active bone of a character's armature; None where there is none."""
+    active = character.armature.data.bones.active if character.armature is not None else None
+    return active.name if active is not None else None
+
+
+def told(context: bpy.types.Context, role: str) -> str:
+    """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
+    character = find_character(context.scene)
+    if character is None or role not in character.character_map.roles:
+        return ""
+    shown = character.character_map.roles[role]
+    if shown.doubt:
+        return shown.doubt[:1].upper() + shown.doubt[1:]
+    if not any(entry.bone for entry in shown.bones):
+        return f"{full_title(role).capitalize()}: no bone"
+    if shown.source == "you":
+        return f"{full_title(role).capitalize()}: chosen by you"
+    return (
+        f"{full_title(role).capitalize()}: found by {SOURCE_WORDS[shown.source].lower()}, "
+        f"{100.0 * shown.confidence:.0f} % sure"
+    )
+
+
+def chain_role(role: str) -> str:
+    """The role, if several bones may share it.
+
+    Raises:
+        InputError: It is one bone's.
+    """
+    if role not in ROLES or not is_chain(role):
+        raise InputError(f"'{role}' is no chain of bones; spine and neck are")
+    return role
+
+
+# --- A character's bones recognized, and shown in its properties
 
 
 def recognize_bones(character: bpy.types.PropertyGroup) -> None:
@@ -100,3 +178,29 @@ def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
         f"'{name}' is an actor of Keymark's, which shows the motion already; choose the armature of "
         "another character"
     )
+
+
+# --- Recognize a character's bones
+
+
+class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
+    """Find out which bones play which role, by their names and places; replaces what you chose before"""
+
+    bl_idname = "keymark.recognize_character"
+    bl_label = "Recognize"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (armature, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Recognize the bones, and show them."""
+        character = active_character(context.scene)
+        recognize_bones(character)
+        doubts = all_doubts(character)
+        for doubt in doubts:
+            warn(self, doubt)
+        if doubts:
+            return
+        self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_recognize_character,))

@@ -4,8 +4,15 @@ import bpy
 
 from ..bridge.character.read_character import needs_override
 from ..shell.takes import active_take, find_take
-from .characters import active_character, few, find_character, full_title, lost_bones, missing_roles
-from .source_motion import missing_source
+from .characters import (
+    active_character,
+    few,
+    find_character,
+    full_title,
+    lost_bones,
+    missing_roles,
+    missing_source,
+)
 
 
 def take(context: bpy.types.Context) -> str | None:

@@ -7,21 +7,29 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
+from ..bridge.actions import assign_action
+from ..finish.bake_motion import mark_motion_asset
+from ..shell.base_operator import BaseOperator, warn
 from ..shell.job_operator import JobOperator
-from ..shell.messages import warn
 from ..shell.requirements import idle
 from ..shell.takes import active_take, take_by_identifier
-from .characters import active_character
-from .figures import figures
+from .characters import (
+    SourceMotion,
+    active_character,
+    add_result,
+    result_to_replace,
+    show_lines,
+    shown_result,
+    source_of,
+)
+from .figures import figures, options_of
 from .map_conversion import map_of
-from .options import options_of
-from .requirements import editable, recognized, source
-from .results import add_result, result_to_replace, show_lines
-from .source_motion import SourceMotion, source_of
+from .requirements import character, editable, recognized, result, source
 
 if TYPE_CHECKING:
     from ...core.progress import Job
     from ..bridge.character.retarget import Retargeted
+
 
 READ = 0.1
 """Share of the job at which the motion is read."""
@@ -94,4 +102,81 @@ def _uid(block: bpy.types.ID | None) -> int:
     return -1 if block is None else int(block.session_uid)
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_retarget,))
+# --- Show one of a character's results on it
+
+
+class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
+    """Animate the character by this result"""
+
+    bl_idname = "keymark.show_result"
+    bl_label = "Show Result"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (result, editable, idle)
+
+    index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Assign the Action, and choose the result."""
+        character = active_character(context.scene)
+        if self.index >= len(character.results) or character.results[self.index].action is None:
+            raise InputError(f"there is no result number {self.index}; retarget the motion again")
+        assign_action(character.armature, character.results[self.index].action)
+        character.active_result = self.index
+
+
+# --- Remove a result from a character's list
+
+
+class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
+    """Remove this result from the list; its Action stays in the file, for you to delete"""
+
+    bl_idname = "keymark.remove_result"
+    bl_label = "Remove Result"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (character, idle)
+
+    index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove it."""
+        chosen = active_character(context.scene)
+        if self.index >= len(chosen.results):
+            raise InputError(
+                f"there is no result number {self.index}; the character has {len(chosen.results)}"
+            )
+        chosen.results.remove(self.index)
+        chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))
+
+
+# --- Mark a character's result as an asset, with the details that the actor's has
+
+
+class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
+    """Mark the character's motion as an asset, with the catalog, tags and details in the step Finish"""
+
+    bl_idname = "keymark.mark_result_asset"
+    bl_label = "Mark Asset"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (result, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Mark the Action; its picture is the performer's, who moves alike."""
+        take, made = active_take(context.scene), shown_result(active_character(context.scene))
+        if made is None or made.action is None:
+            raise InputError("the result's Action has been deleted; retarget the motion again")
+        mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
+        if made.outdated:
+            self.report(
+                {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
+            )
+        self.report({"INFO"}, f"'{made.action.name}' is an asset now; save the .blend to keep it")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_retarget,
+        KEYMARK_OT_show_result,
+        KEYMARK_OT_remove_result,
+        KEYMARK_OT_mark_result_asset,
+    )
+)

@@ -13,7 +13,7 @@ from typing import Any
 
 from ...core.errors import ConversionError
 from ...core.progress import Progress
-from .usage import print_error
+from .parser import print_error
 
 FEWEST_COLUMNS = 60
 """Narrower terminals are wrapped as if they had this many."""

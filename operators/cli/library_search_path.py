@@ -4,8 +4,8 @@ import os
 import sys
 from pathlib import Path
 
-from ...core.library.library import Library
-from ...core.library.registry import SHIPPED, find_libraries
+from ...core.prior.library import Library
+from ...core.prior.registry import SHIPPED, find_libraries
 
 VARIABLE = "KEYMARK_LIBRARIES"
 """Environment variable with further folders of libraries and character maps, separated as in PATH."""
@@ -16,7 +16,7 @@ def library_folders() -> list[Path]:
     folders = [Path(folder) for folder in os.environ.get(VARIABLE, "").split(os.pathsep) if folder]
     blender = sys.modules.get("bpy")
     if blender is not None and blender.app.binary_path:  # where users keep libraries of their own
-        from ..library.user_folder import own_folder
+        from ..library.library_files import own_folder
 
         folders.append(own_folder())
     return [*folders, SHIPPED]

@@ -17,8 +17,7 @@ from types import FrameType
 
 from ...core.errors import InputError, KeymarkError, describe_unexpected
 from .blender_silence import codec_silence
-from .parser import build_parser
-from .usage import UsageError, print_error
+from .parser import UsageError, build_parser, print_error
 
 BLENDER_PREFIX = ["--command", "keymark"]
 """What Blender needs before a command; accepted here too, so that farms call both programs alike."""

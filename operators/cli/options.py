@@ -3,12 +3,17 @@
 import argparse
 from pathlib import Path, PureWindowsPath
 
-from ...core.library.several_libraries import EVERY_LIBRARY
-from ...core.take.character_words import LIMB_KEYS, PLACEMENTS, ROOT_MOTIONS
-from ...core.take.conversion_settings import HIGHEST_FLOOR_M, ConversionSettings
+from ...core.prior.texts import EVERY_LIBRARY
+from ...core.take.conversion_settings import (
+    HIGHEST_FLOOR_M,
+    LIMB_KEYS,
+    METHODS,
+    PLACEMENTS,
+    ROOT_MOTIONS,
+    ConversionSettings,
+)
 from ...core.take.evidence_kinds import EVIDENCE, evidence_mistake, in_order
-from ...core.take.methods import METHODS
-from .usage import UsageError
+from .parser import UsageError
 
 KINDS = ",".join(EVIDENCE)
 SHOOT_HELP = "folder of takes, or a list of them (JSON Lines, .jsonl)"

@@ -1,14 +1,111 @@
-"""The parser of the command line, made of the commands in `commands/`."""
+"""Keymark's version and root folder."""
 
 import argparse
+import importlib.util
+import sys
+import tomllib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import Any, NoReturn
 
-from .command import Command, CommandGroup
+from ...core.errors import ConversionError
+from ...core.files.control_characters import escape_control_characters
 from .commands import SUMMARIES
-from .usage import UsageError, program_name
-from .version import version
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+
+def version() -> str:
+    """The version; the extension's manifest is its only source."""
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    return str(manifest["version"])
+
+
+# --- What a command of the command line declares
+
+
+def no_arguments(_parser: argparse.ArgumentParser) -> None:
+    """The arguments of a command that has none of its own."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command."""
+
+    name: str
+    """What the user types."""
+    description: str
+    """What the command's own help begins with."""
+    run: Callable[[argparse.Namespace], None]
+    add_arguments: Callable[[argparse.ArgumentParser], None] = no_arguments
+    """Adds the command's own arguments to those that every command has."""
+    summary: str = ""
+    """Half a line for the list of a group; those of the other commands are in `commands/__init__.py`."""
+
+
+@dataclass(frozen=True)
+class CommandGroup:
+    """A command that consists of commands, as `keymark library` does."""
+
+    name: str
+    description: str
+    epilog: str
+    """Below the list of commands; `{program}` stands for what the user types in front of them."""
+    commands: Sequence[Command]
+
+
+# --- Mistakes on the command line and what a command lacks, each told in one line on standard error
+
+
+class UsageError(Exception):
+    """The command line is unusable; the text is one sentence."""
+
+
+def program_name() -> str:
+    """What the user types to call this program: its own name, or that of a command of Blender."""
+    blender = sys.modules.get("bpy")
+    return "blender --command keymark" if blender is not None and blender.app.binary_path else "keymark"
+
+
+def print_error(sentence: str) -> None:
+    """Write one line on standard error, with every character in a form that it can encode."""
+    line = f"{program_name()}: {escape_control_characters(' '.join(sentence.split()))}"
+    encoding = sys.stderr.encoding or "utf-8"
+    with suppress(OSError):  # the exit status tells, too
+        print(line.encode(encoding, "backslashreplace").decode(encoding), file=sys.stderr, flush=True)
+
+
+def refuse_existing(output: Path, replace: bool) -> None:
+    """Refuse to replace a file unless `--replace` is given.
+
+    Raises:
+        UsageError: Something is there.
+    """
+    if output.exists() and not replace:
+        raise UsageError(f"{output} is there already; name another file, or add --replace to replace it")
+
+
+def require_blender(needing: str) -> None:
+    """Refuse work that needs Blender where there is none, at once rather than after minutes.
+
+    Args:
+        needing: What the sentence begins with, as in `writing motion.blend needs`.
+
+    Raises:
+        ConversionError: The Python module `bpy` is missing.
+    """
+    if importlib.util.find_spec("bpy") is None:
+        raise ConversionError(
+            f"{needing} Blender: install its Python module (pip install 'keymark[blender]') "
+            "or run blender --command keymark in a Blender that has Keymark"
+        )
+
+
+# --- The parser of the command line, made of the commands in `commands/`
+
 
 DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."
 EXAMPLES = """\

@@ -1,22 +1,62 @@
-"""Finish a reconstructed motion: feet planted, as few keys as the animator's tolerance allows."""
+"""A motion marked as an asset with the details that the animator entered."""
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
+from ..bridge.assets.catalogs import catalog_file, ensure_catalog
+from ..bridge.export_formats import FORMATS, export_motion
+from ..shell.base_operator import BaseOperator, warn, warn_if_outdated
 from ..shell.job_operator import JobOperator
-from ..shell.messages import warn
 from ..shell.notices import give_notices
-from ..shell.outdated import finished_again
 from ..shell.requirements import actor, idle, motion
-from ..shell.takes import active_take, actor_of, take_by_identifier
+from ..shell.results import finished_again
+from ..shell.takes import active_take, actor_of, refresh_asset_browsers, take_by_identifier
 
 if TYPE_CHECKING:
     from ...core.progress import Job
     from ..bridge.finish_motion import Finished
+
+
+def mark_motion_asset(
+    context: bpy.types.Context,
+    take: bpy.types.PropertyGroup,
+    action: bpy.types.Action,
+    pictured: bpy.types.Action | None,
+    actor: bpy.types.Object | None = None,
+) -> None:
+    """Add the catalog to its file, then mark an Action.
+
+    Args:
+        context: Its asset browsers are refreshed.
+        take: The take, whose details of the finish are the asset's.
+        action: The Action to mark.
+        pictured: The actor's Action that the picture is drawn from; None keeps the present picture.
+        actor: The actor that it moves; the take's by default.
+
+    Raises:
+        InputError: The catalog is unusable, or the pictured Action is not the actor's.
+        ConversionError: The catalog cannot be written.
+    """
+    from ..bridge.assets.marking import AssetDetails, action_picture, mark_asset
+
+    settings, performer = take.finish, actor or take.armature
+    picture = None
+    if pictured is not None and performer is not None:
+        picture = action_picture(context.scene, performer, pictured)
+    catalog = ensure_catalog(catalog_file(), settings.catalog) if settings.catalog.strip() else ""
+    tags = [tag.strip() for tag in settings.tags.split(",") if tag.strip()]
+    details = AssetDetails(catalog, tags, settings.author, settings.license, settings.description)
+    mark_asset(action, details, picture)
+    refresh_asset_browsers(context)
+
+
+# --- Finish a reconstructed motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,4 +115,93 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         )
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_bake_motion,))
+# --- Mark a take's motion as an asset
+
+
+class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
+    """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
+
+    bl_idname = "keymark.mark_asset"
+    bl_label = "Mark Asset"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Mark the Action, with the details in the panel."""
+        take = active_take(context.scene)
+        action = take.finish.action or take.motion_action
+        mark_motion_asset(context, take, action, action)
+        warn_if_outdated(self, take)
+        self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
+
+
+# --- Write a take's motion for another program
+
+
+class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
+    """Write the actor's armature with its motion, the final Action if there is one, for another program"""
+
+    bl_idname = "keymark.export_motion"
+    bl_label = "Export Motion"
+    bl_options = {"REGISTER"}
+
+    format: bpy.props.EnumProperty(
+        name="Format",
+        description="Format of the file",
+        items=[(kind, listed.name, listed.description) for kind, listed in FORMATS.items()],
+    )
+    filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
+    filter_glob: bpy.props.StringProperty(
+        default=";".join(f"*{listed.suffix}" for listed in FORMATS.values()), options={"HIDDEN"}
+    )
+
+    requirements = (actor, motion, idle)
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """The chosen format's own tooltip."""
+        return FORMATS[properties.format].description
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file."""
+        folder = "//" if bpy.data.filepath else ""
+        name = bpy.path.clean_name(active_take(context.scene).name)
+        self.filepath = bpy.path.abspath(folder + name + FORMATS[self.format].suffix)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def check(self, context: bpy.types.Context) -> bool:
+        """Give the file's name the suffix of the format."""
+        path = bpy.path.ensure_ext(self.filepath, FORMATS[self.format].suffix)
+        changed = path != self.filepath
+        self.filepath = path
+        return changed
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Write the file."""
+        from ..bridge.actor_lengths import read_body
+        from ..bridge.final_motion import motion_frames
+
+        if not self.filepath:
+            raise InputError("no file is named to export to; give filepath")
+        chosen = FORMATS[self.format]
+        missing = chosen.missing()
+        if missing:
+            raise InputError(f"{chosen.name} cannot be written: {missing}")
+        take = active_take(context.scene)
+        action = take.finish.action or take.motion_action
+        frames = motion_frames(take.armature, action, read_body(take.armature, HUMAN))
+        path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), chosen.suffix))
+        span = int(frames[0]), int(frames[-1])
+        export_motion(context.scene, take.armature, action, span, chosen, path)
+        warn_if_outdated(self, take)
+        self.report({"INFO"}, f"Wrote {path}")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_bake_motion,
+        KEYMARK_OT_mark_asset,
+        KEYMARK_OT_export_motion,
+    )
+)

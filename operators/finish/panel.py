@@ -3,7 +3,7 @@
 import bpy
 
 from ..bridge.export_formats import FORMATS
-from ..shell.messages import capitalized
+from ..shell.base_operator import capitalized
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take

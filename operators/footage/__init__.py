@@ -3,9 +3,5 @@
 PROPERTIES = ("properties",)
 MODULES = (
     "load_footage",
-    "use_clip",
-    "relocate_clip",
-    "confirm_lens",
-    "confirm_camera",
     "panel",
 )

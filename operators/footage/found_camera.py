@@ -8,7 +8,7 @@ import numpy as np
 from ...core.errors import InputError
 from ..bridge.camera_placement import still_camera, write_found_camera
 from ..shell.takes import footage_of
-from .camera_fields import confirm_placement
+from .properties import confirm_placement
 from .take_footage import lens_is_guess
 
 if TYPE_CHECKING:

@@ -1,12 +1,16 @@
-"""Load a clip as a take's footage, behind its camera."""
+"""Use a clip that is in the .blend file already."""
+
+from pathlib import Path
 
 import bpy
 
-from ..shell.base_operator import BaseOperator
+from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator, warn
 from ..shell.file_browser import browse, chosen_file
-from ..shell.requirements import idle
-from ..shell.takes import add_take, find_take
-from .startup_cube import hide_startup_cube
+from ..shell.notices import give_notices
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take, add_take, find_take, placement_is_guess
+from .properties import confirm_placement
 from .take_footage import (
     IMAGES,
     VIDEOS,
@@ -15,7 +19,122 @@ from .take_footage import (
     look_through_camera,
     show_range,
     take_name,
+    update_clip_state,
 )
+
+
+def any_clip(_context: bpy.types.Context) -> str | None:
+    """The file has a clip."""
+    return None if bpy.data.movieclips else "This file has no clip; load the footage"
+
+
+class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
+    """Use a clip that is in this file already, with the lens and the camera solution of its tracking"""
+
+    bl_idname = "keymark.use_clip"
+    bl_label = "Use Clip"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (any_clip, idle)
+
+    clip: bpy.props.StringProperty(
+        name="Clip",
+        description="Name of the clip in this file; without one, the scene's own",
+        options={"SKIP_SAVE"},
+    )
+    as_new_take: bpy.props.BoolProperty(
+        name="As New Take",
+        description="Add a take for this clip, instead of giving the active take another clip",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Put the clip behind the take's camera."""
+        scene, clips = context.scene, bpy.data.movieclips
+        clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
+        if clip is None:
+            self.report(
+                {"ERROR"},
+                f"This file has no clip '{self.clip}'; it has {', '.join(each.name for each in clips)}",
+            )
+            return {"CANCELLED"}
+        take = None if self.as_new_take else find_take(scene)
+        take = take or add_take(scene, take_name(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
+        give_footage(take, clip)
+        look_through_camera(context, take)
+        show_range(context)
+        return None
+
+
+# --- Confirm the guessed lens
+
+
+def guessed_lens(context: bpy.types.Context) -> str | None:
+    """The take's lens is a guess."""
+    take = find_take(context.scene)
+    return None if take is not None and take.guessed_lens_mm > 0.0 else "The lens is not a guess"
+
+
+class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
+    """Confirm that the camera's focal length is right, so that it no longer counts as a guess"""
+
+    bl_idname = "keymark.keep_lens"
+    bl_label = "Confirm Lens"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (guessed_lens,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Clear the guess in every take with this camera."""
+        camera = active_take(context.scene).camera
+        for take in context.scene.keymark.takes:
+            if take.camera == camera:
+                take.guessed_lens_mm = 0.0
+
+
+# --- Confirm the place of the camera that was guessed
+
+
+def guessed_placement(context: bpy.types.Context) -> str | None:
+    """The camera's placement is a guess."""
+    take = find_take(context.scene)
+    return None if take is not None and placement_is_guess(take) else "The camera's place is not a guess"
+
+
+class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
+    """Confirm the height and the tilt of the camera, so that they no longer count as a guess"""
+
+    bl_idname = "keymark.keep_camera"
+    bl_label = "Confirm Camera"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (guessed_placement,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Clear the guess in every take with this camera."""
+        confirm_placement(active_take(context.scene))
+
+
+# --- The cube of Blender's startup file, which stands where the performer does
+
+
+NAME, CORNERS = "Cube", 8
+SIZE_M = 2.0
+
+
+def hide_startup_cube(context: bpy.types.Context) -> None:
+    """Hide the cube of Blender's startup file, where nobody has touched it; Alt H brings it back."""
+    cube = context.view_layer.objects.get(NAME)
+    if cube is not None and _is_untouched(cube):
+        cube.hide_set(True)
+
+
+def _is_untouched(cube: bpy.types.Object) -> bool:
+    plain = cube.type == "MESH" and len(cube.data.vertices) == CORNERS and not len(cube.modifiers)
+    same_size = all(abs(length - SIZE_M) < 1e-4 for length in cube.dimensions)
+    return bool(plain and same_size and cube.location.length < 1e-4 and cube.animation_data is None)
+
+
+# --- Load a clip as a take's footage, behind its camera
+
 
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
 
@@ -80,4 +199,70 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
             )
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_footage,))
+# --- Relocate a clip whose file was moved
+
+
+class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
+    """Choose where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
+
+    bl_idname = "keymark.relocate_clip"
+    bl_label = "Find Clip"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="Where the clip is now: the video, or one image of the sequence",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default=PATTERNS, options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the file browser, beginning at the clip's old path."""
+        self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Check the file, and only then set the clip's path."""
+        from ...core.footage.clips.clip import Clip
+        from ..bridge.footage_to_scene import clip_file, stored_path
+
+        take = active_take(context.scene)
+        clip, path = take.clip, chosen_file(self, "the video, or one image of the sequence")
+        if clip.library is not None:
+            raise InputError(
+                f"clip '{clip.name}' is linked from {clip.library.filepath}; find it in that file, or "
+                "load it here"
+            )
+        found = Clip.open(path)
+        size, count = (clip.size[0], clip.size[1]), clip.frame_duration
+        clip.filepath = stored_path(clip_file(path))
+        context.view_layer.update()  # makes Blender read the clip again
+        for scene in bpy.data.scenes:
+            for other in scene.keymark.takes:
+                if other.clip == clip and scene.library is None:
+                    update_clip_state(other)
+        differs = all(size) and (found.size != size or clip.frame_duration != count)
+        if not differs:
+            give_notices(take, "footage", "clip")
+            self.report({"INFO"}, f"Found {clip.name}")
+            return
+        sentence = (
+            f"{path.name} has {clip.frame_duration} frames of {found.size[0]} x {found.size[1]} pixels, "
+            f"the clip had {count} of {size[0]} x {size[1]}; check that it is the right one"
+        )
+        give_notices(take, "footage", "clip", (warn(self, sentence),))
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_use_clip,
+        KEYMARK_OT_keep_lens,
+        KEYMARK_OT_keep_camera,
+        KEYMARK_OT_load_footage,
+        KEYMARK_OT_relocate_clip,
+    )
+)

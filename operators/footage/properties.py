@@ -1,6 +1,70 @@
-"""Properties of a take's footage: the state of its clip for panels, and lines drawn to find its camera."""
+"""Height, tilt and roll of a take's camera as fields: they read and write the camera object."""
+
+from dataclasses import replace
 
 import bpy
+
+from ..bridge.camera_placement import fixed_reason, read_placement, write_placement
+from ..shell.base_operator import capitalized
+from ..shell.takes import NO_GUESS, find_take
+
+DECIMALS = 5
+"""Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0."""
+
+
+def still_camera(context: bpy.types.Context) -> str | None:
+    """The take's camera stands still, and can be set."""
+    take = find_take(context.scene)
+    reason = fixed_reason(take.camera if take else None)
+    return None if reason is None else capitalized(reason)
+
+
+def confirm_placement(take: bpy.types.PropertyGroup) -> None:
+    """Let the camera's placement count as known in every take with this camera."""
+    for other in take.id_data.keymark.takes:
+        if other.camera == take.camera:
+            other.guessed_placement = NO_GUESS
+
+
+def get_height(take: bpy.types.PropertyGroup) -> float:
+    """Height of the take's camera above the floor [m]."""
+    return 0.0 if take.camera is None else round(read_placement(take.camera).height_m, DECIMALS)
+
+
+def set_height(take: bpy.types.PropertyGroup, value: float) -> None:
+    """Raise or lower the take's camera."""
+    _change(take, height_m=value)
+
+
+def get_tilt(take: bpy.types.PropertyGroup) -> float:
+    """Angle of the camera's view above the horizon [rad]."""
+    return 0.0 if take.camera is None else round(read_placement(take.camera).tilt_rad, DECIMALS)
+
+
+def set_tilt(take: bpy.types.PropertyGroup, value: float) -> None:
+    """Tilt the take's camera."""
+    _change(take, tilt_rad=value)
+
+
+def get_roll(take: bpy.types.PropertyGroup) -> float:
+    """Turn of the camera about its view [rad]."""
+    return 0.0 if take.camera is None else round(read_placement(take.camera).roll_rad, DECIMALS)
+
+
+def set_roll(take: bpy.types.PropertyGroup, value: float) -> None:
+    """Turn the take's camera about its view."""
+    _change(take, roll_rad=value)
+
+
+def _change(take: bpy.types.PropertyGroup, **change: float) -> None:
+    """Change the camera's placement: one that was entered is no guess, whatever the number."""
+    if fixed_reason(take.camera) is None:
+        write_placement(take.camera, replace(read_placement(take.camera), **change))
+        confirm_placement(take)
+        take.camera_findings = ""
+
+
+# --- Properties of a take's footage
 
 
 class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):

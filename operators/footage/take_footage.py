@@ -7,12 +7,10 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.footage.clips.clip_timing import is_variable_frame_rate
-from ..bridge.attach_footage import attach_footage, is_guess
-from ..bridge.footage import clip_path
+from ..bridge.footage import attach_footage, clip_path, is_guess
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
-from ..shell.placement_guess import NO_GUESS, as_numbers
 from ..shell.results import clear_review
-from ..shell.takes import find_take, footage_of
+from ..shell.takes import NO_GUESS, as_numbers, find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
 
 GENERIC_STEM = "clip"
@@ -82,7 +80,7 @@ def update_clip_state(take: bpy.types.PropertyGroup) -> None:
 def update_clip_digest(take: bpy.types.PropertyGroup) -> None:
     """Store the digest of a take's clip as it is on disk now; if it is missing, the stored one stays."""
     try:
-        from ...core.footage.reading_key import footage_digest
+        from ...core.footage.reading import footage_digest
 
         take.clip_state.contents = footage_digest(footage_of(take.id_data, take).path)
     except (InputError, ModuleNotFoundError):  # reported when the clip is read

@@ -1,16 +1,14 @@
-"""Step 4, the keyframes: frames proposed for posing, and posing the actor in them and correcting it."""
+"""Step 4, the keyframes: poses found in the footage or posed by hand, proposed frames, corrections."""
 
+PROPERTIES = ("found_properties",)
 MODULES = (
-    "propose_keyframes",
-    "jump_to_proposal",
+    "proposals",
     "fit_pose",
-    "show_offered",
     "store_keyframe",
-    "flip_depth",
-    "turn_performer",
-    "copy_neighbor",
-    "move_joint",
+    "corrections",
     "drag_joints",
     "panel",
-    "correct_panel",
+    "pose_all",
+    "change_match",
+    "found_panel",
 )

@@ -5,16 +5,24 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.body.human import HUMAN
-from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, keyframes_of
-from ..shell.keyframe_action import show_keyframes
-from ..shell.redraw import redraw_footage
-from ..shell.takes import footage_of
-from .key_pose import key_pose
+from ...core.errors import InputError
+from ..follow.evidence import points_to_follow, scene_evidence
+from ..shell.base_operator import BaseOperator
+from ..shell.job_progress import job_is_running
+from ..shell.keyed_frames import SAME_FRAME, has_frame, invalidate_keyed_frames, keyframes_of, show_keyframes
+from ..shell.requirements import actor, camera, footage, idle, keyframes
+from ..shell.results import reading_of
+from ..shell.takes import active_take, footage_of, redraw_footage
+from .flip_ways import TITLES, limb_selected, selected_limbs
+from .found_keyframes import known_matches
+from .store_keyframe import key_pose
 
 if TYPE_CHECKING:
     from ...core.body.kinematics import Body
     from ...core.body.posture import Posture
     from ...core.footage.camera import Camera
+    from ...core.posing.turned import Turned
+
 
 DRAGGING = "keymark.drag_joints"
 
@@ -36,7 +44,7 @@ def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera
     """
     import numpy as np
 
-    from ..bridge.camera_from_scene import read_camera
+    from ..bridge.camera_placement import read_camera
 
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
 
@@ -62,3 +70,222 @@ def set_corrected(
     improved = key_pose(context, take)
     if improved:
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
+
+
+# --- Copy the pose of the keyframe before or after this frame
+
+
+DIRECTIONS = (
+    ("PREVIOUS", "Previous", "Copy the pose of the keyframe before this frame; the performer stays in place"),
+    ("NEXT", "Next", "Copy the pose of the keyframe after this frame; the performer stays in place"),
+)
+
+
+class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
+    """Copy the pose of the keyframe before or after this frame; the performer stays in place"""
+
+    bl_idname = "keymark.copy_neighbor"
+    bl_label = "Copy from Neighbor"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, keyframes, idle)
+
+    direction: bpy.props.EnumProperty(
+        name="Neighbor", description="The keyframe whose pose is copied", items=DIRECTIONS
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Return the tooltip for the direction."""
+        return next(text for name, _, text in DIRECTIONS if name == properties.direction)
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Copy everything but the place."""
+        from ...core.body.posture import Posture
+        from ..bridge.pose import read_posture
+        from ..bridge.scene_frames import at_scene_frame, showing_action
+
+        take, scene = active_take(context.scene), context.scene
+        invalidate_keyed_frames()
+        neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
+        if neighbor is None:
+            if self.direction == "NEXT":
+                self.report({"INFO"}, "There is no keyframe after this frame")
+            else:
+                self.report({"INFO"}, "There is no keyframe before this frame")
+            return {"CANCELLED"}
+        body, here = shown_pose(take)
+        with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
+            go_to(neighbor)
+            there = read_posture(take.armature, body).posture
+        set_corrected(self, context, take, Posture(HUMAN, here.translation, there.rotations, there.angles))
+        self.report({"INFO"}, f"Pose of frame {neighbor:g}, at the place of this one")
+        return None
+
+
+def _neighbor(frames: tuple[float, ...], here: float, direction: str) -> float | None:
+    """The nearest keyed frame on one side of a frame."""
+    if direction == "NEXT":
+        return min((frame for frame in frames if frame > here + SAME_FRAME), default=None)
+    return max((frame for frame in frames if frame < here - SAME_FRAME), default=None)
+
+
+# --- Turn the performer to face the camera, left, right or away
+
+
+AUTOMATIC = "AUTO"
+FACINGS = (
+    ("CAMERA", "Camera", "The performer faces the camera"),
+    ("LEFT", "Left", "The performer faces the left of the picture"),
+    ("RIGHT", "Right", "The performer faces the right of the picture"),
+    ("AWAY", "Away", "The performer faces away from the camera"),
+)
+SIDES = (
+    (AUTOMATIC, "Automatic", "Whatever explains the footage best, or else the most natural posture"),
+    ("STAY", "Stay in the Picture", "Each arm and leg stays where it is seen; the trunk turns between them"),
+    ("EXCHANGE", "Change Places", "Left and right arms and legs change places, so that the outline stays"),
+    ("TURN", "Turn with the Trunk", "The pose stays and turns as a whole, as on a turntable"),
+)
+
+
+class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
+    """Turn the performer to face this way, at the same place, and fit the pose to the footage again"""
+
+    bl_idname = "keymark.turn_performer"
+    bl_label = "Turn"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, actor, idle)
+
+    facing: bpy.props.EnumProperty(name="Facing", description="Where the performer faces", items=FACINGS)
+    sides: bpy.props.EnumProperty(
+        name="Left and Right", description="What becomes of arms and legs in the picture", items=SIDES
+    )
+    fit: bpy.props.BoolProperty(
+        name="Fit to Footage",
+        description="Fit the turned pose to the markers and keypoints that this frame shows, if it shows any",
+        default=True,
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Return the tooltip for the direction."""
+        said = next(text for name, _, text in FACINGS if name == properties.facing)
+        return f"{said}, at the same place; the pose is fitted to the footage again"
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Turn the pose, fit it, and set the likeliest."""
+        from ...core.posing.turned import Facing, Sides, facing_of, turned
+
+        take, scene = active_take(context.scene), context.scene
+        seen = camera_now(scene, take)
+        body, posture = shown_pose(take)
+        wanted = list(Sides) if self.sides == AUTOMATIC else [Sides[self.sides]]
+        facing = Facing[self.facing]
+        ways = [turned(body, posture, seen, facing, sides) for sides in wanted]
+        found = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else []
+        # A fit may turn the performer on: what faces elsewhere is not what was asked for.
+        fitted = next((each for each in found if facing_of(each, seen) is facing), None)
+        chosen = fitted or min(ways, key=lambda way: way.strain).posture
+        set_corrected(self, context, take, chosen)
+        said = next(name for value, name, _ in FACINGS if value == self.facing)
+        if fitted is None:
+            self.report({"INFO"}, f"Turned: {said}; not fitted to the footage")
+        else:
+            self.report({"INFO"}, f"Turned and fitted: {said}")
+
+
+def _fitted(
+    context: bpy.types.Context, take: bpy.types.PropertyGroup, ways: "list[Turned]"
+) -> "list[Posture]":
+    """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to.
+
+    The actor's pose is as before.
+    """
+    from ..bridge.pose import write_posture
+    from ..bridge.scene_frames import pose_of, restore_pose
+    from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
+
+    found: list[tuple[float, Posture]] = []
+    matches, before = known_matches(take), pose_of(take.armature)
+    try:
+        frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
+        for way in ways:
+            write_posture(take.armature, way.posture)
+            fit = fit_to_frame(frame, take.armature, take.keyframe_action, "POSE", matches)
+            found.append((fit.cost + way.strain, fit.candidates[0].posture))
+    except InputError:  # the frame lies outside the footage, or shows nothing of what is followed
+        return []
+    finally:
+        restore_pose(take.armature, before)
+    return [posture for _, posture in sorted(found, key=lambda each: each[0])]
+
+
+# --- Flip a limb's depth
+
+
+SELECTED = "SELECTED"
+
+
+def limb_chosen(context: bpy.types.Context) -> str | None:
+    """A limb is selected, or joints are being dragged, where the one under the mouse counts."""
+    return None if job_is_running(context, DRAGGING) else limb_selected(context)
+
+
+class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
+    """Lean the selected limb away from the camera, not toward it, or back; press again for other ways"""
+
+    bl_idname = "keymark.flip_depth"
+    bl_label = "Flip Depth"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, actor, limb_chosen, idle)
+
+    limb: bpy.props.EnumProperty(
+        name="Part",
+        description="The part of the body that is flipped",
+        items=[
+            (SELECTED, "Selected", "The part of which a bone is selected"),
+            *((name, title, "This part of the body") for name, title in TITLES.items()),
+        ],
+        options={"SKIP_SAVE"},
+    )
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Flip the parts, and say which of several ways they are shown in."""
+        take, scene = active_take(context.scene), context.scene
+        limbs = selected_limbs(take) if self.limb == SELECTED else [self.limb]
+        if not limbs:
+            self.report({"WARNING"}, "Select a bone of an arm, a leg or the trunk first")
+            return {"CANCELLED"}
+        from .flip_ways import next_way
+
+        seen = camera_now(scene, take)
+        body, posture = shown_pose(take)
+        said = []
+        for limb in limbs:
+            found = next_way(take.armature, scene.frame_current_final, limb, body, posture, seen)
+            if found is not None:
+                posture, number, count = found
+                said.append(_said(limb, number, count))
+        if not said:
+            self.report(
+                {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
+            )
+            return {"CANCELLED"}
+        set_corrected(self, context, take, posture)
+        self.report({"INFO"}, "; ".join(said))
+        return None
+
+
+def _said(limb: str, number: int, count: int) -> str:
+    title = TITLES[limb]
+    if number == 0:
+        return f"{title} as it was"
+    return f"{title}: way {number} of {count}"
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_copy_neighbor,
+        KEYMARK_OT_turn_performer,
+        KEYMARK_OT_flip_depth,
+    )
+)

@@ -1,24 +1,132 @@
-"""Drag the actor's joints in a 3D view: over the footage, or from the side to correct their depth."""
+"""One drag of a joint in a 3D view: from movements of the mouse to the posture that follows."""
 
-from typing import Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import bpy
 import numpy as np
 
-from ...core.body.human import HUMAN
-from ...core.body.limbs import limb_of
-from ..bridge.joint_places import joint_places
-from ..keypoints.body_point_items import point_title
+from ...core.arrays import Array
+from ...core.body.human import HUMAN, limb_of
+from ..bridge.object_space import joint_places
+from ..follow.tracks import point_title
 from ..overlays import handles
-from ..shell.error_reports import reported
-from ..shell.footage_clicks import NAVIGATION
+from ..shell.base_operator import BaseOperator, reported
+from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
-from ..shell.redraw import redraw_editors, redraw_sidebars_soon
 from ..shell.requirements import actor, all_met, idle
-from ..shell.takes import find_take
-from ..shell.view_under_mouse import WorldInRegion, view_under
-from .corrections import DRAGGING, shown_pose
-from .joint_drag import JointDrag
+from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
+from .corrections import DRAGGING, set_corrected, shown_pose
+
+if TYPE_CHECKING:
+    from ...core.body.kinematics import Body
+    from ...core.body.posture import Posture
+    from ..bridge.scene_frames import Pose
+
+
+PRECISE = 0.1
+"""Share of the mouse's way that counts with Shift held, as in Blender's own transforms."""
+
+
+@dataclass
+class JointDrag:
+    """A joint that is being dragged."""
+
+    joint: str
+    view: WorldInRegion
+    start: Array
+    """(3,) where the joint was [m]."""
+    position: Array
+    """(2,) where the view showed it [px]."""
+    body: "Body"
+    posture: "Posture"
+    """The posture at the beginning."""
+    pose: "Pose"
+    """The channels of the actor's bones at the beginning, to restore them."""
+    mouse: tuple[int, int]
+    """Where the mouse was last, in the window [px]."""
+    moved: Array = field(default_factory=lambda: np.zeros(2))
+    """How far it has been dragged across the view [px]."""
+    depth_m: float = 0.0
+    """How far it has been pushed away from the viewer [m]."""
+
+    def follow(self, event: bpy.types.Event) -> None:
+        """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
+        step = np.array([event.mouse_x - self.mouse[0], event.mouse_y - self.mouse[1]], dtype=np.float64)
+        self.mouse = event.mouse_x, event.mouse_y
+        step *= PRECISE if event.shift else 1.0
+        if event.ctrl:
+            aside = self.view.place(self.position + [1.0, 0.0], self.start)
+            self.depth_m += float(step[1]) * float(np.linalg.norm(aside - self.start))
+        else:
+            self.moved = self.moved + step
+
+    @property
+    def has_moved(self) -> bool:
+        """Whether the joint was dragged anywhere."""
+        return bool(self.moved.any()) or self.depth_m != 0.0
+
+    @property
+    def pushed(self) -> bool:
+        """Whether it was dragged in depth."""
+        return self.depth_m != 0.0
+
+    @property
+    def sight(self) -> Array:
+        """(3,) direction in which the view looks at the place."""
+        return self.view.sight(self.position + self.moved)
+
+    @property
+    def place(self) -> Array:
+        """(3,) where the joint is dragged to [m]."""
+        across = self.view.place(self.position + self.moved, self.start)
+        return np.asarray(across + self.depth_m * self.sight)
+
+
+# --- Move a joint of the actor to a place, as dragging does
+
+
+class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
+    """Move a joint of the actor to a place; the limb follows, with its lengths and within its joint limits"""
+
+    bl_idname = "keymark.move_joint"
+    bl_label = "Move Joint"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
+
+    joint: bpy.props.EnumProperty(
+        name="Joint",
+        description="The joint; left and right are the performer's own",
+        items=[(name, point_title(name), "Move this joint") for name in HUMAN.point_names],
+    )
+    place: bpy.props.FloatVectorProperty(
+        name="Place", description="Where to, in the world", subtype="TRANSLATION", size=3
+    )
+    sight: bpy.props.FloatVectorProperty(
+        name="Line of Sight",
+        description="Direction in which the view looks: along it the joint may end up elsewhere",
+        subtype="DIRECTION",
+        size=3,
+        default=(0.0, 1.0, 0.0),
+    )
+    pushed: bpy.props.BoolProperty(
+        name="In Depth", description="Whether the place along the line of sight counts as much as across it"
+    )
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Set the pose, and the keyframe of this frame if there is one."""
+        from ...core.posing.dragged import dragged
+
+        take = active_take(context.scene)
+        body, posture = shown_pose(take)
+        sight = np.array(self.sight, dtype=np.float64)
+        sight /= max(float(np.linalg.norm(sight)), 1e-9)
+        moved = dragged(body, posture, self.joint, np.array(self.place), sight, self.pushed)
+        set_corrected(self, context, take, moved)
+
+
+# --- Drag the actor's joints in a 3D view
+
 
 GRAB_PX = 18.0
 """Distance of the mouse from a joint below which a press takes hold of it."""
@@ -209,4 +317,9 @@ def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = Fals
     context.workspace.status_text_set(words)
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_drag_joints,))
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_move_joint,
+        KEYMARK_OT_drag_joints,
+    )
+)

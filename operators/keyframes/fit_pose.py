@@ -1,18 +1,88 @@
-"""Fit the actor's pose to the markers and keypoints of the current frame."""
+"""Poses offered for a frame that is not keyed: what fitting it has found, the shown one first."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ..keypoints.evidence import scene_evidence
-from ..keypoints.requirements import points_to_follow
-from ..matching.matches import known_matches
+from ..follow.evidence import points_to_follow, scene_evidence
 from ..shell.base_operator import BaseOperator
 from ..shell.contradictions import note_contradictions
-from ..shell.keyframe_action import show_keyframes
+from ..shell.keyed_frames import offered_at, show_keyframes
 from ..shell.requirements import actor, camera, footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, footage_of
-from .offered_poses import offer_poses
+from ..shell.takes import active_take, find_take, footage_of
+from .candidate_buttons import candidate_title
+from .found_keyframes import known_matches
+
+if TYPE_CHECKING:
+    from ...core.posing.candidates import Candidate
+
+
+def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequence["Candidate"]) -> None:
+    """Offer candidates at a scene frame, the one that the actor shows first, in place of all others."""
+    from ...core.prior.texts import COMPOSED
+    from .match_edits import add_candidate
+
+    offered = take.offered
+    offered.candidates.clear()
+    offered.frame, offered.library, offered.chosen = frame, COMPOSED, 0
+    for each in candidates if len(candidates) > 1 else ():
+        add_candidate(offered, each.posture, each.name, each.mirrored, each.confidence)
+
+
+# --- Pose the actor as another of the poses that the current frame may show
+
+
+class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
+    """Pose the actor like this; nothing is keyed until you store it"""
+
+    bl_idname = "keymark.show_offered"
+    bl_label = "Show Candidate"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
+
+    candidate: bpy.props.IntProperty(
+        name="Candidate", description="Index of the pose; 0 is the likeliest", default=0, min=0
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Tooltip with the pose's whole name, which a narrow sidebar cuts off."""
+        take = find_take(context.scene)
+        offered = None if take is None else offered_at(take, context.scene.frame_current_final)
+        if offered is None or properties.candidate >= len(offered.candidates):
+            return str(cls.__doc__)
+        said = candidate_title(offered, offered.candidates[properties.candidate])
+        return f"{said}. Pose the actor like this; nothing is keyed until you store it"
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Set the pose."""
+        from ..bridge.keyframes import candidate_posture
+        from ..bridge.pose import write_posture
+
+        take, frame = active_take(context.scene), context.scene.frame_current_final
+        offered = offered_at(take, frame)
+        if offered is None:
+            self.report({"ERROR"}, f"Frame {frame:g} offers no poses; fit it to the footage first")
+            return {"CANCELLED"}
+        if self.candidate >= len(offered.candidates):
+            self.report(
+                {"ERROR"},
+                f"Frame {frame:g} offers {len(offered.candidates)} poses; candidate must be 0 to "
+                f"{len(offered.candidates) - 1}",
+            )
+            return {"CANCELLED"}
+        show_keyframes(take)
+        write_posture(take.armature, candidate_posture(offered.candidates[self.candidate]))
+        if offered.chosen != self.candidate:
+            note_contradictions(take, frame, ())
+        offered.chosen = self.candidate
+        return None
+
+
+# --- Fit the actor's pose to the markers and keypoints of the current frame
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
@@ -116,4 +186,9 @@ def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object)
         bpy.ops.object.mode_set(mode="POSE")
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_fit_pose,))
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_show_offered,
+        KEYMARK_OT_fit_pose,
+    )
+)

@@ -1,22 +1,57 @@
-"""The panels of step 4: posing all frames at once, the frames to pose, and the operators that pose one."""
+"""The panel that corrects a pose by choosing and dragging."""
 
 import bpy
 
-from ..matching.candidate_buttons import draw_candidates, draw_candidates_head
 from ..shell.contradictions import draw_contradictions
-from ..shell.found_frames import offered_at
-from ..shell.job_progress import steady_frame
+from ..shell.job_progress import job_is_running, steady_frame
 from ..shell.keyed_frames import (
     has_frame,
     keyframes_of,
     matched_frames,
+    offered_at,
     posed_frames,
     proposed_frames,
     unposed_proposals,
 )
-from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy
+from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy, side_by_side
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
+from .candidate_buttons import draw_candidates, draw_candidates_head
+from .corrections import DRAGGING
+from .flip_ways import TITLES, selected_limbs
+
+
+class KEYMARK_PT_keyframes_correct(TakePanel, bpy.types.Panel):
+    """Dragging joints, flipping depth, turning the performer, and copying a neighbor."""
+
+    bl_label = "Correct"
+    bl_parent_id = "KEYMARK_PT_keyframes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the operators; the button that flips names what is selected."""
+        take, column = active_take(context.scene), self.column()
+        running = job_is_running(context, DRAGGING)
+        column.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
+        row = side_by_side(column)
+        row.operator("keymark.flip_depth", text=_flipped(take), translate=False, icon="MOD_MIRROR")
+        row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")
+        row = column.row(align=True)
+        row.label(text="Copy from Neighbor")
+        for direction, icon in (("PREVIOUS", "PREV_KEYFRAME"), ("NEXT", "NEXT_KEYFRAME")):
+            row.operator("keymark.copy_neighbor", text="", icon=icon).direction = direction
+
+
+def _flipped(take: bpy.types.PropertyGroup) -> str:
+    """What the button says that flips depth: the part of the body, where one alone is selected."""
+    if take.armature is not None and take.armature.mode == "POSE":
+        limbs = selected_limbs(take)
+        if len(limbs) == 1:
+            return f"Flip {TITLES[limbs[0]]}"
+    return "Flip Depth"
+
+
+# --- The panels of step 4
+
 
 PROMINENT = 1.6
 """Height of the button that does the step's whole work."""
@@ -137,5 +172,9 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_proposals)
+    (
+        KEYMARK_PT_keyframes,
+        KEYMARK_PT_keyframes_proposals,
+        KEYMARK_PT_keyframes_correct,
+    )
 )

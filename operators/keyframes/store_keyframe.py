@@ -1,16 +1,49 @@
-"""Store the actor's pose as a keyframe."""
+"""Keying the actor's pose: the keyframe is posed from then on, and found ones around it are improved."""
 
 import bpy
 
 from ...core.body.human import HUMAN
-from ..matching.matches import known_matches
-from ..shell.base_operator import BaseOperator
-from ..shell.keyframe_action import new_keyframe_action, shows_keyframes, straighten_unposed
-from ..shell.messages import warn
+from ..bridge.actions import assign_action
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.contradictions import note_contradictions
+from ..shell.keyed_frames import (
+    invalidate_keyed_frames,
+    new_keyframe_action,
+    shows_keyframes,
+    straighten_unposed,
+)
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, idle
 from ..shell.takes import active_take
-from .key_pose import key_pose
+from .found_keyframes import known_matches
+from .improve_neighbors import improve_neighbors
+
+
+def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> int:
+    """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
+
+    Args:
+        context: Its scene holds the take.
+        take: The take, with an actor and a keyframe Action.
+
+    Returns:
+        How many found keyframes around it were posed anew.
+
+    Raises:
+        InputError: A bone is missing.
+    """
+    from ..bridge.keyframes import store_pose
+
+    frame = context.scene.frame_current_final
+    store_pose(take.armature, take.keyframe_action, HUMAN, frame)
+    assign_action(take.armature, take.keyframe_action)
+    note_contradictions(take, frame, ())
+    take.offered.candidates.clear()
+    invalidate_keyed_frames()
+    return improve_neighbors(context, take, frame)
+
+
+# --- Store the actor's pose as a keyframe
 
 
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):

@@ -2,10 +2,7 @@
 
 PROPERTIES = ("registry_properties",)
 MODULES = (
-    "import_library",
-    "export_library",
-    "edit_library",
-    "learn_library",
-    "refresh_registry",
+    "load_library",
+    "save_library",
     "panel",
 )

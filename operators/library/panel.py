@@ -3,8 +3,8 @@
 import bpy
 
 from ..shell.panel import RowList, SubPanel, draw_sentence
+from .library_files import own_folder
 from .registry import chosen_entry
-from .user_folder import own_folder
 
 MOST_LINES = 4
 """Lines of a library's description, or of its problem."""

@@ -10,8 +10,8 @@ from zlib import crc32
 import bpy
 from bpy.app import timers
 
-from ..shell.redraw import redraw_sidebars
-from . import user_folder
+from ..shell.takes import redraw_sidebars
+from . import library_files as user_folder
 
 SOON_S = 0.1
 """Delay before the folders are read, so that the panel is drawn first."""
@@ -58,7 +58,7 @@ def refresh(choose: str = "") -> None:
     Args:
         choose: Identifier of the library to choose in the list; by default the same as before.
     """
-    from ...core.library.registry import registered_libraries
+    from ...core.prior.registry import registered_libraries
     from .registry_files import folders
 
     listed, own = bpy.context.window_manager.keymark_shelf, user_folder.own_folder()

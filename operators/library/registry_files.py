@@ -5,11 +5,10 @@ from functools import lru_cache
 from pathlib import Path
 
 from ...core.errors import InputError
-from ...core.library.library import Library
-from ...core.library.library_file import write_library
-from ...core.library.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
-from ...core.library.several_libraries import EVERY_LIBRARY
-from . import user_folder
+from ...core.prior.library import Library, write_library
+from ...core.prior.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
+from ...core.prior.texts import EVERY_LIBRARY
+from . import library_files as user_folder
 
 
 def folders() -> list[Path]:

@@ -4,4 +4,9 @@ Draw functions use only what is in memory and read no file.
 """
 
 PROPERTIES = ("properties",)
-MODULES = ("panel", "mask", "ignored", "registry")
+MODULES = (
+    "panel",
+    "mask",
+    "outlines",
+    "registry",
+)

@@ -9,18 +9,17 @@ import numpy as np
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
-from ..bridge.camera_from_scene import read_lens
-from ..bridge.candidate_posture import candidate_posture
+from ..bridge.camera_placement import read_lens
+from ..bridge.keyframes import candidate_posture
 from ..shell.footage_view import FootageView, footage_view
-from ..shell.found_frames import match_at, offered_at, state_of
-from ..shell.lru_cache import LruCache
+from ..shell.keyed_frames import match_at, offered_at, state_of
+from ..shell.results import LruCache
 from ..shell.takes import find_take, footage_of
 from . import drawing
-from .drawing import Color
-from .picture import Item, Label, Stroke, paint
-from .skeleton import limb_lines
-from .style import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Style, body_scale
-from .viewport import world_view
+from .drawing import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Color, Style, body_scale
+from .mask import Item, Label, Stroke, paint
+from .motion import limb_lines
+from .registry import world_view
 
 TALL_M = 1.7
 """Height of a figure by which lines get thinner where it is small [m]."""

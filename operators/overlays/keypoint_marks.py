@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...core.arrays import Array, BoolArray
-from ...core.footage.keypoints.body_points import mirrored_point
-from ..keypoints.frame_keypoints import FrameKeypoints
+from ...core.footage.keypoints.keypoints import mirrored_point
+from ..follow.frame_keypoints import FrameKeypoints
+from .drawing import SOURCES, THROWN_OUT, Style
 from .figures import circles, segments
-from .picture import Item, Stroke
-from .style import SOURCES, THROWN_OUT, Style
-from .timeline_figures import squares
+from .mask import Item, Stroke
+from .timeline import squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints

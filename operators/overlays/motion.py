@@ -1,4 +1,4 @@
-"""The reconstructed motion as items to draw, whichever editor they are drawn in."""
+"""The reconstructed body as lines between its 13 points, with each point's uncertainty."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -6,23 +6,151 @@ from typing import TYPE_CHECKING, Protocol
 import bpy
 import numpy as np
 
-from ...core.arrays import Array, IndexArray
-from ..keypoints.frame_keypoints import FrameKeypoints, keypoints_at
-from ..shell.footage_view import FootageView
+from ...core.arrays import Array, BoolArray, IndexArray
+from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
+from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
 from ..shell.takes import find_take
 from . import drawing
+from .drawing import (
+    CORE,
+    CORE_SHARE,
+    JOINT,
+    LIMB,
+    PATH_POINTS,
+    SIDES,
+    UNCERTAIN_M,
+    Style,
+    body_scale,
+    side_color,
+)
+from .figures import circles, segments
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
-from .keypoint_rows import keypoint_rows
-from .legend import Row, Sample, corner, legend
-from .outlines import MarkerColor, hidden_markers, observed_outlines, predicted_contours, predicted_outlines
-from .paths import paths, window
-from .picture import Item
-from .skeleton import skeleton
-from .style import PATH_POINTS, UNCERTAIN_M, Style, body_scale
+from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
+from .mask import Fill, Item, Stroke, paint
+from .outlines import (
+    MarkerColor,
+    hidden_markers,
+    observed_outlines,
+    paths,
+    predicted_contours,
+    predicted_outlines,
+    window,
+)
 
 if TYPE_CHECKING:
+    from ...core.review.compared_keypoints import ComparedKeypoints
     from ...core.review.review import Review
+
+
+NECK, PELVIS = "neck", "pelvis"
+"""The middle between the shoulders, and between the hips."""
+LIMBS = (
+    ("", "head", NECK),
+    ("", NECK, PELVIS),
+    ("", "shoulder.L", "shoulder.R"),
+    ("", "hip.L", "hip.R"),
+    *(
+        (side, f"{start}.{side}", f"{end}.{side}")
+        for side in ("L", "R")
+        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+    ),
+)
+"""Side and ends of each line."""
+
+
+def skeleton(
+    review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
+) -> list[Item]:
+    """The body of one frame.
+
+    Args:
+        review: The review of the motion.
+        index: Index of the frame.
+        positions: (13, 2) region pixels of the points.
+        pixels_per_meter: (13,) size of a meter at each point in the region.
+        style: Colors and sizes.
+    """
+    sigma = review.sigma_m[index]
+    uncertain = sigma > UNCERTAIN_M
+    colors = np.array([style.color(side_color(name)) for name in review.point_names])
+    return [
+        *_limbs(review.point_names, positions, style),
+        *_joints(positions, uncertain, colors, style),
+        _deviations(positions[uncertain], (sigma * pixels_per_meter)[uncertain], colors[uncertain], style),
+    ]
+
+
+def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, BoolArray]:
+    """Lines (N, 2, 2) of a body from its points (13, 2), and which of them (N,) are of the right side.
+
+    A line with an end that is not finite is left out.
+    """
+    lines, sides = _lines(names, positions)
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    return lines[seen], np.array([side == "R" for side in sides])[seen]
+
+
+def _lines(names: tuple[str, ...], positions: Array) -> tuple[Array, list[str]]:
+    at = dict(zip(names, positions, strict=True))
+    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
+    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
+    return np.array([[at[start], at[end]] for _, start, end in LIMBS]), [side for side, _, _ in LIMBS]
+
+
+def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
+    """Lines in the colors of their sides; those of the right have a dark core."""
+    lines, sides = _lines(names, positions)
+    colors = np.array([style.color(SIDES[side]) for side in sides])
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    hollow = seen & np.array([side == "R" for side in sides])
+    width = LIMB * style.width * style.body_scale
+    return [
+        Stroke(lines[seen], colors[seen], width, style.halo),
+        Stroke(lines[hollow], style.color(CORE), CORE_SHARE * width),
+    ]
+
+
+def _joints(positions: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
+    """Discs, and rings for uncertain points."""
+    rims = circles(positions, style.size(JOINT), 16)
+    seen = np.isfinite(positions).all(axis=-1)
+    edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
+    return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
+
+
+def _deviations(positions: Array, radii: Array, colors: Array, style: Style) -> Stroke:
+    """Dashed circles as large as the points' standard deviations."""
+    seen = np.isfinite(positions).all(axis=-1) & np.isfinite(radii)
+    parts = segments(circles(positions[seen], radii[seen], 48), closed=True)[::2]
+    return Stroke(parts, np.repeat(colors[seen], 24, axis=0), 1.0, style.halo)
+
+
+# --- Rows of the legend that explain keypoints
+
+
+def keypoint_rows(
+    keypoints: "ComparedKeypoints", index: int, seen: tuple[FrameKeypoints, ...]
+) -> tuple[Row, ...]:
+    """Rows for what a frame shows of keypoints: those of a motion, and others that a take's sources see."""
+    rows = list(source_rows(all_sources(keypoints, seen)))
+    if keypoints.names:
+        rows.append((Sample.EXPECTED, "Where the motion puts it"))
+    if keypoints.thrown_out[index].any():
+        rows.append((Sample.THROWN_OUT, "Keypoint not believed"))
+    if keypoints.swapped[index].any():
+        rows.append((Sample.SWAPPED, "Left and right exchanged"))
+    return tuple(rows)
+
+
+def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
+    """A row for each source of keypoints, as far as their colors differ."""
+    return tuple(
+        (sample, f"Keypoint of {source}") for sample, source in zip(SOURCE_SAMPLES, sources, strict=False)
+    )
+
+
+# --- The reconstructed motion as items to draw, whichever editor they are drawn in
 
 
 UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
@@ -149,3 +277,42 @@ def _rows(
         rows.append((Sample.FUTURE, "Path to come"))
         rows.append((Sample.DIAMOND, "Keyframe"))
     return tuple(rows)
+
+
+# --- Overlay of keypoints where there is no motion yet
+
+
+TALL_M = 1.7
+"""Height of a figure by which marks get smaller where it is small [m]."""
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    scene = context.scene
+    settings, take = scene.keymark.overlays, find_take(scene)
+    hidden = context.space_data.type == "VIEW_3D" and not context.space_data.overlay.show_overlays
+    if take is None or hidden or not settings.show_keypoints or shown(scene) is not None:
+        return
+    view = footage_view(scene, take, context.area, context.region)
+    seen = () if view is None else keypoints_at(take, scene.frame_current)
+    if view is not None and seen:
+        paint(picture_keypoints(context, seen, view, settings))
+
+
+def picture_keypoints(
+    context: bpy.types.Context,
+    seen: tuple[FrameKeypoints, ...],
+    view: FootageView,
+    settings: bpy.types.PropertyGroup,
+) -> list[Item]:
+    """The keypoints of a frame, and their legend."""
+    scale = drawing.ui_scale()
+    rows = np.concatenate([view.to_region(each.pixel)[..., 1].ravel() for each in seen])
+    height = np.ptp(rows[np.isfinite(rows)]) if np.isfinite(rows).any() else np.nan
+    style = Style(settings.opacity, scale, body_scale(np.array([height / TALL_M]), scale))
+    sources = all_sources(None, seen)
+    items = seen_marks(seen, view.to_region, sources, style)
+    if settings.show_legend:
+        at = corner(context.area, context.region, scale)
+        items += legend(source_rows(sources), *at, style)
+    return items

@@ -1,18 +1,25 @@
 """Outlines of marker regions: observed ones solid, predicted ones dashed, as are contours of the body."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
+import bpy
+import gpu
 import numpy as np
 
-from ...core.arrays import Array
-from .drawing import INK
-from .figures import dashes, segments
-from .picture import Item, Label, Stroke
-from .style import DASH, GAP, MIDDLE, Style, paler
+from ...core.arrays import Array, Image, IndexArray, SingleArray
+from ..follow.ignore_region import brush_at_work
+from ..follow.mask_previews import ignored_mask
+from ..shell.footage_view import footage_view
+from ..shell.takes import find_take
+from . import drawing
+from .drawing import DASH, DIAMOND, DOT, GAP, INK, MIDDLE, PATH_FRAMES, Style, paler, side_color
+from .figures import circles, dashes, diamonds, segments
+from .mask import Fill, Item, Label, Stroke, draw_picture
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
+
 
 MarkerColor = tuple[float, float, float]
 
@@ -76,3 +83,93 @@ def predicted_contours(
     lines = to_region(review.contours[index])
     parts = [dashes(line, DASH * style.scale, GAP * style.scale) for line in lines]
     return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []
+
+
+# --- Overlay of the regions that are never a marker
+
+
+STRIPE = 6
+"""Pixels of the measuring grid from one stripe to the next."""
+DARK, LIGHT = (0.0, 0.0, 0.0, 0.65), (1.0, 1.0, 1.0, 0.55)
+"""Of any color's look, so that no marker can be taken for it."""
+
+_drawn: dict[int, tuple[Image, gpu.types.GPUTexture]] = {}
+"""Cache of one: the mask that was drawn last, and its texture."""
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    take, brush = find_take(context.scene), brush_at_work()
+    if take is None or (brush is None and not context.window_manager.keymark_show_masks):
+        return
+    view = footage_view(context.scene, take, context.area, context.region)
+    if view is None:
+        return
+    mask = ignored_mask(take, () if brush is None else brush.regions())
+    if mask is None:
+        return
+    if 0 not in _drawn or _drawn[0][0] is not mask:
+        _drawn[0] = (mask, drawing.texture(hatched(mask)))
+    draw_picture(_drawn[0][1], view)
+
+
+def hatched(mask: Image) -> SingleArray:
+    """A mask as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
+    row, column = np.indices(mask.shape)
+    stripe = ((row + column) % STRIPE < STRIPE // 3)[..., None]
+    picture = np.where(stripe, np.array(LIGHT), np.array(DARK))
+    picture[mask == 0] = 0.0
+    return picture.astype(np.float32)
+
+
+def register() -> None:
+    """Nothing is to be done before the first drawing."""
+
+
+def unregister() -> None:
+    """Release the texture."""
+    _drawn.clear()
+
+
+# --- Paths of points over time
+
+
+def window(index: int, frame_count: int) -> IndexArray:
+    """Indices of a path's frames about one, within the clip."""
+    return np.arange(max(0, index - PATH_FRAMES), min(frame_count, index + PATH_FRAMES + 1))
+
+
+def paths(
+    names: Sequence[str],
+    positions: Array,
+    frames: IndexArray,
+    index: int,
+    keyframe_indices: IndexArray,
+    style: Style,
+) -> list[Item]:
+    """The paths of N points.
+
+    Args:
+        names: The points' names.
+        positions: (N, I, 2) their region pixels in each frame of the window.
+        frames: (I,) indices of those frames in the clip.
+        index: Index of the current frame in the clip.
+        keyframe_indices: Indices of the keyframes.
+        style: Colors and sizes.
+    """
+    keyed = np.isin(frames, keyframe_indices)
+    dots, marks = positions[:, ~keyed].reshape(-1, 2), positions[:, keyed]
+    items: list[Item] = []
+    for name, path in zip(names, positions, strict=True):
+        color = style.color(side_color(name))
+        ahead = dashes(path[frames >= index], DASH * style.scale, GAP * style.scale)
+        items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
+        items.append(Stroke(ahead, color, style.width, style.halo))
+    items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
+    # All edges, then all diamonds: alike neighbors are drawn in one call.
+    corners = [diamonds(mark, style.size(DIAMOND)) for mark in marks]
+    colors = [style.color(side_color(name)) for name in names]
+    pairs = list(zip(corners, colors, strict=True))
+    items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]
+    items += [Fill(mark, color) for mark, color in pairs]
+    return items

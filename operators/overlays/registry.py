@@ -1,15 +1,182 @@
-"""Registry of the overlays, and their draw handlers in Blender's editors."""
+"""Overlay of the 3D viewport: the reconstructed motion; marker outlines in the view of the take's camera."""
 
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import bpy
 import gpu
+import numpy as np
 
+from ...core.arrays import Array, IndexArray
 from ...core.errors import KeymarkError
+from ..bridge.camera_placement import read_lens
+from ..shell.footage_view import FootageRequest, FootageView, footage_view, shown_request
+from ..shell.takes import find_take, footage_of
+from . import drawing
+from .figures import segments
+from .mask import paint
+from .motion import picture, shown
+
+if TYPE_CHECKING:
+    from ...core.review.review import Review
+
+
+@dataclass(frozen=True, eq=False)
+class WorldView:
+    """A region of a 3D viewport as a view of the motion."""
+
+    footage: FootageView | None
+    matrix: Array
+    """(4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division."""
+    right: Array
+    """(3,) the viewer's right in the world."""
+    size: Array
+    """(2,) of the region [px]."""
+
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
+        return self.project(review.points[indices])
+
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
+        points = review.points[index]
+        depth = self._before(points)
+        return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)
+
+    def project(self, points: Array) -> Array:
+        """Region pixels (..., 2) of points (..., 3) in the world."""
+        flat = points @ self.matrix[:2, :3].T + self.matrix[:2, 3]
+        return np.asarray(0.5 * self.size * (1.0 + flat / self._before(points)[..., None]))
+
+    def _before(self, points: Array) -> Array:
+        """Homogeneous coordinate w (...) of points, which grows with the distance; NaN behind the viewer."""
+        divisor = points @ self.matrix[3, :3] + self.matrix[3, 3]
+        return np.where(divisor > 1e-6, divisor, np.nan)
+
+
+def world_view(
+    region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
+) -> WorldView:
+    """A region of a 3D viewport as a view of the motion."""
+    right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
+    return WorldView(
+        footage,
+        np.array(view.perspective_matrix, dtype=np.float64),
+        right / np.linalg.norm(right),
+        np.array([region.width, region.height], dtype=np.float64),
+    )
+
+
+def draw(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    space = context.space_data
+    what = shown(context.scene)
+    if what is None or not space.overlay.show_overlays:
+        return
+    footage = footage_view(context.scene, what.take, context.area, context.region)
+    view = world_view(context.region, context.region_data, footage)
+    paint(picture(context, what, view, context.scene.keymark.overlays))
+
+
+# --- Overlay of the Movie Clip editor
+
+
+@dataclass(frozen=True, eq=False)
+class ClipView:
+    """A region of the Movie Clip editor as a view of the motion."""
+
+    footage: FootageView
+    to_camera: Array
+    """(4, 4) from the world to the footage's camera."""
+    focal_px: float
+    """Focal length of that camera [px of the footage]."""
+
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
+        return self.footage.to_region(review.image_points[indices])
+
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
+        depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
+        magnified = abs(self.footage.extent[0]) / self.footage.size[0]
+        return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))
+
+
+def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
+    """A region of a Movie Clip editor as a view of a take's motion.
+
+    Raises:
+        InputError: The take's camera is missing, or of an unsupported type.
+    """
+    source = footage_of(scene, take)
+    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
+    return ClipView(footage, to_camera, read_lens(source).focal_px)
+
+
+def draw_clip_editor(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    scene, what = context.scene, shown(context.scene)
+    if what is None or context.space_data.view != "CLIP" or what.take.camera is None:
+        return
+    footage = footage_view(scene, what.take, context.area, context.region)
+    if footage is not None:
+        paint(picture(context, what, clip_view(scene, what.take, footage), scene.keymark.overlays))
+
+
+# --- Overlay of what an operator asks for
+
+
+TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0
+TOP_GAP, NEAR_GAP = 84.0, 18.0
+"""Distances of the title from the region's top, where headers lie, and of the words from the mouse."""
+CORNERS = 48
+"""Of the brush's circle."""
+
+
+def draw_request(context: bpy.types.Context) -> None:
+    """Draw into the region that Blender is drawing."""
+    take, request = find_take(context.scene), shown_request()
+    if request is None or take is None:
+        return
+    view = footage_view(context.scene, take, context.area, context.region)
+    if view is None:
+        return
+    scale, region = drawing.ui_scale(), context.region
+    middle, top = 0.5 * region.width, region.height - TOP_GAP * scale
+    drawing.text(request.title, middle, top, size=TITLE_SIZE, align="middle")
+    if request.detail:
+        below = top - 1.6 * DETAIL_SIZE * scale
+        drawing.text(request.detail, middle, below, size=DETAIL_SIZE, align="middle")
+    x, y = request.mouse[0] - region.x, request.mouse[1] - region.y
+    if 0 <= x < region.width and 0 <= y < region.height:
+        _near_mouse(request, view, float(x), float(y))
+
+
+def _near_mouse(request: FootageRequest, view: FootageView, x: float, y: float) -> None:
+    scale = drawing.ui_scale()
+    if request.brush_px:
+        drawing.lines(
+            segments(brush_circle(request.brush_px, view, x, y), closed=True), drawing.INK, halo=1.0
+        )
+        return
+    words = f"{request.title}, {request.detail}" if request.detail else request.title
+    width = drawing.text_size(words, NEAR_SIZE)[0]
+    left = min(x + NEAR_GAP * scale, view.region.width - width - NEAR_GAP * scale)
+    drawing.text(words, left, y + NEAR_GAP * scale, size=NEAR_SIZE)
+
+
+def brush_circle(radius_px: float, view: FootageView, x: float, y: float) -> np.ndarray:
+    """The circle (N, 2) of a brush about a position in the region; its radius is in pixels of the footage."""
+    angle = np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False)
+    around = radius_px * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return view.to_region(view.to_footage((x, y)) + around)
+
+
+# --- Registry of the overlays, and their draw handlers in Blender's editors
+
 
 DrawFunction = Callable[[bpy.types.Context], None]
 

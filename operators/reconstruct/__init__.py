@@ -1,3 +1,6 @@
 """Step 5, the reconstruction: from keyframes and footage to the motion."""
 
-MODULES = ("reconstruct", "show_action", "panel")
+MODULES = (
+    "reconstruct",
+    "panel",
+)

@@ -1,6 +1,7 @@
 """Live preview: the actor shows what a running job has found, and is restored afterwards."""
 
 from contextlib import ExitStack, suppress
+from dataclasses import dataclass
 from math import floor
 from typing import Any
 
@@ -9,9 +10,15 @@ from bpy.app import handlers
 
 from ...core.arrays import Array
 from ...core.errors import InputError
+from ...core.estimate.reconstruct import Reconstruction
 from ...core.progress import Preview
+from ...core.review.review import Review
+from ..bridge.fcurves import write_motion
 from ..bridge.pose import write_posture
 from ..bridge.scene_frames import at_scene_frame, showing_action
+from ..review.review_results import show_review
+from ..shell.results import keep_reading, keep_reconstruction, keep_review, reconstructed_again
+from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
 """Handlers before which the preview is undone: files must not hold it, and these events move data blocks."""
@@ -91,3 +98,41 @@ def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
         if item.session_uid == uid:
             return item
     raise InputError("the actor or the scene that the job was about has been removed meanwhile; run it again")
+
+
+# --- The result of a reconstruction, and how it is written into the scene
+
+
+@dataclass(frozen=True, eq=False)
+class ReconstructionResult:
+    """The result of a reconstruction, for the scene."""
+
+    take: str
+    """The take's identifier."""
+    frames: Array
+    """(F,) scene frames."""
+    reconstruction: Reconstruction
+    review: Review
+    notes: tuple[str, ...]
+
+    def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
+        """Write the motion's Action and its review, and let the Action animate the actor; returns the take.
+
+        Raises:
+            InputError: The take or its actor has been removed, or the actor lacks bones.
+        """
+        take = take_by_identifier(scene, self.take)
+        take.motion_action = write_motion(
+            actor_of(take),
+            self.reconstruction.motion,
+            take.motion_action,
+            take.keyframe_action,
+            self.frames,
+        )
+        take.motion_action.use_fake_user = True
+        reconstructed_again(take)
+        keep_reading(take, self.reconstruction.reading)
+        keep_reconstruction(take, self.reconstruction)
+        keep_review(take, self.review)
+        show_review(take, self.review)
+        return take

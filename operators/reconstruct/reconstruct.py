@@ -6,19 +6,21 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import stretch
+from ..bridge.actions import assign_action
 from ..bridge.scene_frames import scene_frames
-from ..keypoints.evidence import scene_evidence
-from ..keypoints.requirements import anything_to_follow
-from ..matching.matches import known_matches
+from ..follow.evidence import anything_to_follow, scene_evidence
+from ..keyframes.found_keyframes import known_matches
+from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.job_operator import JobOperator
-from ..shell.messages import capitalized, warn
+from ..shell.keyed_frames import straighten_unposed
 from ..shell.requirements import actor, all_colors, footage, idle, two_keyframes
 from ..shell.results import last_reconstruction, reading_of
 from ..shell.takes import active_take, footage_of
 
 if TYPE_CHECKING:
     from ...core.progress import Job, Progress
-    from .reconstruction_result import ReconstructionResult
+    from .live_preview import ReconstructionResult
+
 
 TIMES, READ, SOLVED = 0.05, 0.4, 0.97
 """Shares of the job at which the clip's times are read, its pictures, and the motion is found."""
@@ -40,8 +42,7 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         from ...core.review.review import review
         from ...core.take.read_footage import read_footage
         from ..bridge.take_from_scene import read_scene_take
-        from .live_preview import LivePreview
-        from .reconstruction_result import ReconstructionResult
+        from .live_preview import LivePreview, ReconstructionResult
 
         settings = active_take(scene)
         identifier, method, armature = settings.identifier, settings.method, settings.armature
@@ -102,4 +103,54 @@ def _check_enough(count: int, notes: tuple[str, ...]) -> None:
         )
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct,))
+# --- Show keyframes, motion or final Action on the actor
+
+
+MISSING = {
+    "KEYFRAMES": "There are no keyframes yet; pose the actor and store one",
+    "MOTION": "There is no motion yet; reconstruct it",
+    "FINAL": "There is no final Action yet; bake it",
+}
+
+
+class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
+    """Animate the actor by its keyframes, the reconstructed motion or the final Action"""
+
+    bl_idname = "keymark.show_action"
+    bl_label = "Show on Actor"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, idle)
+
+    which: bpy.props.EnumProperty(
+        name="Show",
+        description="Action of the take to show",
+        items=[
+            ("KEYFRAMES", "Keyframes", "Animate the actor by its keyframes"),
+            ("MOTION", "Motion", "Animate the actor by the reconstructed motion"),
+            ("FINAL", "Final", "Animate the actor by the final Action"),
+        ],
+    )
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Assign the Action."""
+        settings = active_take(context.scene)
+        action = {
+            "KEYFRAMES": settings.keyframe_action,
+            "MOTION": settings.motion_action,
+            "FINAL": settings.finish.action,
+        }[self.which]
+        if action is None:
+            self.report({"ERROR"}, MISSING[self.which])
+            return {"CANCELLED"}
+        if self.which == "KEYFRAMES":
+            straighten_unposed(settings)
+        assign_action(settings.armature, action)
+        return None
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_reconstruct,
+        KEYMARK_OT_show_action,
+    )
+)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..markers.properties import segment_title
+from ..follow.marker_properties import segment_title
 from ..shell.keyed_frames import is_posed
 from ..shell.panel import RowList, draw_sentence
 from ..shell.step_panel import StepPanel

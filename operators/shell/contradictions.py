@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import bpy
 
-from ...core.footage.keypoints.body_points import BODY_POINTS
+from ...core.footage.keypoints.keypoints import BODY_POINTS
 from .job_progress import steady_frame
 from .panel import draw_sentence
 

@@ -13,8 +13,10 @@ from numpy.typing import ArrayLike
 
 from ...core.arrays import Array
 from ...core.footage.camera import Camera
-from ..bridge.camera_from_scene import read_lens
-from .takes import footage_of
+from ..bridge.camera_placement import read_lens
+from ..bridge.scene_frames import scene_frames, shown_index
+from .results import reading_of
+from .takes import FOOTAGE_EDITORS, areas, footage_of, redraw_footage
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,3 +155,94 @@ def _clip_view(
 
 def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))
+
+
+# --- Which frame of a take's clip a scene frame shows, as panels and overlays need it
+
+
+def clip_index(take: bpy.types.PropertyGroup, scene_frame: int | None = None) -> int:
+    """Index of the clip's frame that is shown in a scene frame, the current one by default; -1 for none.
+
+    Where the rate varies and the clip was not read yet, the frame is a guess.
+    """
+    scene, footage = take.id_data, footage_of(take.id_data, take)
+    reading = reading_of(take)
+    if reading is not None:
+        frames = scene_frames(reading.tracks.time_s, footage.first_frame, footage.rate)
+    else:
+        frames = footage.first_frame + np.arange(max(1, take.clip.frame_duration), dtype=np.float64)
+    return int(shown_index(frames, scene.frame_current if scene_frame is None else scene_frame))
+
+
+# --- What an operator that waits for clicks on the footage asks for
+
+
+SIDES = {".L": "the performer's own left", ".R": "the performer's own right"}
+"""Of what people read as left or right of the picture."""
+
+
+@dataclass
+class FootageRequest:
+    """What is asked for now."""
+
+    title: str
+    """As in `Click on: Forearm Left`."""
+    detail: str = ""
+    """What is easily mistaken about it."""
+    brush_px: float = 0.0
+    """Radius of a brush in pixels of the footage; 0 for an operator without one."""
+    mouse: tuple[int, int] = (-1, -1)
+    """Position of the mouse in the window [px]."""
+
+
+_request: FootageRequest | None = None
+
+
+def shown_request() -> FootageRequest | None:
+    """What is asked for now; None if nothing is."""
+    return _request
+
+
+def side_of(name: str) -> str:
+    """Whose left or right a body part or point is; empty for those in the middle."""
+    side = SIDES.get(name[-2:])
+    return side if side else ""
+
+
+def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:
+    """Ask for something.
+
+    Args:
+        context: Its windows show it.
+        request: What is asked for.
+        keys: The keys that may be pressed, for the status bar.
+    """
+    global _request
+    if _request is not None and request.mouse == (-1, -1):
+        request.mouse = _request.mouse
+    _request = request
+    sentence = f"{request.title}, {request.detail}" if request.detail else request.title
+    context.workspace.status_text_set(f"{sentence}   |   {keys}")
+    for area in areas(context, *FOOTAGE_EDITORS):
+        area.header_text_set(sentence)
+    redraw_footage(context)
+
+
+def follow_mouse(context: bpy.types.Context, event: bpy.types.Event) -> None:
+    """Let the request follow the mouse."""
+    if _request is not None and (event.mouse_x, event.mouse_y) != _request.mouse:
+        _request.mouse = event.mouse_x, event.mouse_y
+        redraw_footage(context)
+
+
+def stop_asking(context: bpy.types.Context) -> None:
+    """Ask for nothing; status bar, headers and cursor are as before."""
+    global _request
+    _request = None
+    if context.window is None:  # Blender closes it or opens another file
+        return
+    context.window.cursor_modal_restore()
+    context.workspace.status_text_set(None)
+    for area in areas(context, *FOOTAGE_EDITORS):
+        area.header_text_set(None)
+    redraw_footage(context)

@@ -1,23 +1,61 @@
-"""Operators of long jobs: synchronous in scripts, on a timer with a progress bar in the user interface."""
+"""Esc in Keymark's modal operators: a running job, and an operator that waits for a click.
+
+Both are ended by their own `cancel`, which Blender also calls when it closes a window or opens another file.
+A job's generator is closed in the middle; only `JobOperator.finish` writes to the scene, so the scene is as
+before the job, and Blender adds no undo step.
+"""
 
 from abc import abstractmethod
 from collections.abc import Generator
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run as run_job
-from .base_operator import BaseOperator
-from .cancel_on_esc import cancel_job
-from .error_reports import reported
+from .base_operator import BaseOperator, capitalized, reported
 from .job_progress import time_left
-from .messages import capitalized
-from .redraw import redraw_sidebars, redraw_sidebars_soon
+from .takes import redraw_sidebars, redraw_sidebars_soon
 
 if TYPE_CHECKING:
     from ...core.progress import Progress
+
+
+CANCELS_JOB = frozenset({"ESC"})
+CANCELS_CLICK = frozenset({"ESC", "RIGHTMOUSE"})
+"""As in Blender's own operators that wait for a click."""
+
+
+class Modal(Protocol):
+    """A modal operator."""
+
+    def report(self, kind: set[str], text: str) -> None:
+        """Show a sentence in the status bar."""
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Stop, and leave everything as it was."""
+
+
+def cancel_job(operator: Modal, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Cancel a job if the event is Esc, and report it; return whether it was cancelled."""
+    if event.type not in CANCELS_JOB or event.value != "PRESS":
+        return False
+    operator.cancel(context)
+    operator.report({"INFO"}, "Cancelled")
+    return True
+
+
+def cancel_click(operator: Modal, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Cancel an operator that waits for a click on Esc or a right click; return whether it was cancelled."""
+    if event.type not in CANCELS_CLICK or event.value != "PRESS":
+        return False
+    operator.cancel(context)
+    return True
+
+
+# --- Operators of long jobs
+
 
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 """Bounds of a time slice; in between, a job runs as long as the user interface took to draw."""

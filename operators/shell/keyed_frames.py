@@ -1,4 +1,4 @@
-"""Scene frames of keyframes, posed and found, cached so that redraws need not read the keys."""
+"""A take's keyframe Action: it must animate the actor while the animator poses."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -12,6 +12,57 @@ from numpy.typing import ArrayLike
 from ...core.arrays import BoolArray
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
+from ..bridge.actions import assign_action
+from ..bridge.object_space import evaluated
+from .contradictions import contradictions_at
+
+
+def shows_keyframes(take: bpy.types.PropertyGroup) -> bool:
+    """Whether the actor is animated by its keyframe Action, or by none."""
+    data = take.armature.animation_data
+    return data is None or data.action is None or data.action == take.keyframe_action
+
+
+def show_keyframes(take: bpy.types.PropertyGroup) -> bool:
+    """Let the keyframe Action animate the actor instead of the motion; return whether that changed anything.
+
+    The new Action is evaluated at once: evaluated later, it would overwrite a pose set in between.
+    """
+    data = take.armature.animation_data
+    if data is None or data.action == take.keyframe_action:
+        return False
+    straighten_unposed(take)
+    if take.keyframe_action is None:
+        data.action = None
+    else:
+        assign_action(take.armature, take.keyframe_action)
+    evaluated(take.armature)
+    return True
+
+
+def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
+    """Put hands and feet back to rest where they stand as the motion that is shown has turned them.
+
+    To be called before keyframes are stored or shown: nobody has posed these.
+    """
+    from ..bridge.extremity_curves import straighten_extremities
+
+    data = take.armature.animation_data
+    shown = None if data is None else data.action
+    if shown is not None and shown in (take.motion_action, take.finish.action):
+        frame = float(bpy.context.scene.frame_current_final)
+        straighten_extremities(take.armature, HUMAN, shown, take.keyframe_action, frame)
+
+
+def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
+    """Return an empty Action for keyframes, with a fake user: kept while the motion's is in use."""
+    action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
+    action.use_fake_user = True
+    return action
+
+
+# --- Scene frames of keyframes, posed and found, cached so that redraws need not read the keys
+
 
 SAME_FRAME = 0.5
 """A key nearer to a frame than this [frames] counts as that frame's."""
@@ -52,8 +103,7 @@ def _keyed_of(take: bpy.types.PropertyGroup) -> KeyedFrames:
         return KeyedFrames()
     key = take.armature.session_uid, take.keyframe_action.session_uid
     if key not in _keyed:
-        from ..bridge.keyframes import keyed_frames
-        from ..bridge.matched_keyframes import untouched_frames
+        from ..bridge.keyframes import keyed_frames, untouched_frames
 
         source = take.armature, take.keyframe_action, HUMAN
         try:
@@ -132,3 +182,58 @@ def unregister() -> None:
     for name in LOAD_HANDLERS:
         getattr(bpy.app.handlers, name).remove(_on_load)
     invalidate_keyed_frames()
+
+
+# --- Found keyframes of a take, those that nobody posed
+
+
+DOUBTFUL = 0.5
+"""Confidence below which a found keyframe is doubtful: it is more likely wrong than right."""
+
+
+def state_of(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> str:
+    """What has become of a found keyframe: FOUND still, POSED by the animator, or GONE with its keys."""
+    frame = round(match.frame, 3)
+    if frame in matched_frames(take):
+        return "FOUND"
+    return "POSED" if frame in posed_frames(take) else "GONE"
+
+
+def is_doubtful(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> bool:
+    """Whether a found keyframe is worth a check: undecided yet, and unsure or contradicted."""
+    if match.by_hand or state_of(take, match) != "FOUND":
+        return False
+    return bool(match.confidence < DOUBTFUL or contradictions_at(take, match.frame))
+
+
+def doubtful_matches(take: bpy.types.PropertyGroup) -> list[int]:
+    """Places in the list of the doubtful found keyframes: contradicted ones first, then the least sure."""
+    matches: Sequence[bpy.types.PropertyGroup] = take.matching.matches
+    doubtful = [index for index, match in enumerate(matches) if is_doubtful(take, match)]
+
+    def rank(index: int) -> tuple[bool, float, int]:
+        match = matches[index]
+        return not contradictions_at(take, match.frame), match.confidence, index
+
+    return sorted(doubtful, key=rank)
+
+
+def match_at(take: bpy.types.PropertyGroup, frame: float) -> int:
+    """Place in the list of the found keyframe at a scene frame; -1 for none."""
+    apart = [abs(match.frame - frame) for match in take.matching.matches]
+    nearest = min(range(len(apart)), key=apart.__getitem__, default=-1)
+    return nearest if apart and apart[nearest] < SAME_FRAME else -1
+
+
+def offered_at(take: bpy.types.PropertyGroup, frame: float) -> bpy.types.PropertyGroup | None:
+    """The poses to choose from at a scene frame that has no key; None where there are none."""
+    offered = take.offered
+    here = len(offered.candidates) > 1 and abs(offered.frame - frame) < SAME_FRAME
+    keyed = round(frame, 3) in {*matched_frames(take), *posed_frames(take)}
+    return offered if here and not keyed else None
+
+
+def count_found(take: bpy.types.PropertyGroup) -> tuple[int, int]:
+    """Number of the found keyframes that are still as they were found, and of the doubtful ones."""
+    matches = take.matching.matches
+    return sum(state_of(take, match) == "FOUND" for match in matches), len(doubtful_matches(take))

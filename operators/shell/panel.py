@@ -10,7 +10,7 @@ import bpy
 
 from .job_progress import job_is_running
 from .steps import is_open
-from .takes import find_take
+from .takes import active_take, find_take
 
 ESCAPE_UNITS = 2.9
 """Width of the label Esc with its icon."""
@@ -156,3 +156,39 @@ def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = N
     letters = max(FEWEST_LETTERS, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
+
+
+# --- Bases of the panels inside What to Follow
+
+
+MOST_LETTERS = 7
+"""Of what fits beside a name in the header of a narrow sidebar: `13 of 17`, and no more."""
+
+
+class FollowPanel(TakePanel):
+    """A panel inside What to Follow in the viewport's sidebar."""
+
+    bl_parent_id = "KEYMARK_PT_follow"
+
+
+class ClipFollowPanel:
+    """The same in the Movie Clip editor."""
+
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Keymark"
+    bl_parent_id = "KEYMARK_PT_clip_follow"
+
+
+def draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, switch: str) -> None:
+    """Draw the switch of a kind of evidence."""
+    layout.prop(active_take(context.scene).follow, switch, text="")
+
+
+def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
+    """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
+    if not is_roomy(bpy.context) and len(text) > MOST_LETTERS:
+        return
+    row = layout.row()
+    row.active = False
+    row.label(text=text, translate=False)

@@ -1,28 +1,58 @@
-"""Cache of a take's results: its reading, its review and its last reconstruction.
+"""Cache of the results last used, which also remembers that a result is absent."""
 
-A take holds the keys of its reading and its review. A key is a digest of what the result was computed from;
-undo sets it back. A result is looked up in memory, then in the user's folder of the extension; one that is in
-neither is remembered as absent, so that drawing reads the disk at most once.
-"""
-
+from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import bpy
 
 from ...core.errors import ConversionError
-from ...core.files.array_cache import ArrayCache, Arrays
-from ...core.files.digest import digest
-from .lru_cache import LruCache, Result
+from ...core.files.digest import ArrayCache, Arrays, digest
 
 if TYPE_CHECKING:
     from ...core.arrays import Array
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.footage.reading import Reading
     from ...core.review.review import Review
+
+
+Result = TypeVar("Result")
+
+DEFAULT_SIZE = 6
+"""Results of one kind: those of the takes at hand."""
+
+
+class LruCache(Generic[Result]):
+    """Results by key; when it is full, the least recently used one is dropped. None: known to be absent."""
+
+    def __init__(self, size: int = DEFAULT_SIZE) -> None:
+        """Begin empty."""
+        self._size = size
+        self._results: OrderedDict[str, Result | None] = OrderedDict()
+
+    def get(self, key: str, load: Callable[[], Result | None]) -> Result | None:
+        """Return the result of a key; the first time, what `load` returns."""
+        if key not in self._results:
+            self.put(key, load())
+        self._results.move_to_end(key)
+        return self._results[key]
+
+    def put(self, key: str, result: Result | None) -> None:
+        """Add or replace a result."""
+        self._results[key] = result
+        self._results.move_to_end(key)
+        while len(self._results) > self._size:
+            self._results.popitem(last=False)
+
+    def clear(self) -> None:
+        """Drop all results."""
+        self._results.clear()
+
+
+# --- Cache of a take's results
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +151,7 @@ def clear_cache() -> None:
 
 def _reading_conversions() -> "tuple[Callable[[Reading], Arrays], Callable[[Arrays], Reading]]":
     """Conversion of readings to arrays and back; imported late, as registering must not need OpenCV."""
-    from ...core.footage.reading_arrays import reading_arrays, reading_from_arrays
+    from ...core.footage.reading import reading_arrays, reading_from_arrays
 
     return reading_arrays, reading_from_arrays
 
@@ -161,3 +191,20 @@ def register() -> None:
 def unregister() -> None:
     """Drop all results from memory."""
     clear_cache()
+
+
+# --- What a new motion makes outdated
+
+
+def reconstructed_again(take: bpy.types.PropertyGroup) -> None:
+    """Note that the take's motion is newer than what was made from it."""
+    take.finish.outdated = take.finish.action is not None
+    finished_again(take)
+
+
+def finished_again(take: bpy.types.PropertyGroup) -> None:
+    """Note that the take's final Action is newer than the characters' motions."""
+    for character in take.characters:
+        for result in character.results:
+            if result.source in ("FINAL", "MOTION"):  # not those of other Actions
+                result.outdated = result.action is not None

@@ -9,8 +9,7 @@ from collections.abc import Callable
 
 import bpy
 
-from .placement_guess import placement_is_guess
-from .takes import find_take, present_actor
+from .takes import find_take, placement_is_guess, present_actor
 
 _chosen: dict[tuple[str, str], tuple[bool, bool]] = {}
 """By a take's identifier and a step: whether it was behind when a person chose, and whether it is open."""

@@ -1,12 +1,20 @@
 """The takes of a scene: finding one, adding one, switching between them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 from uuid import uuid4
 
 import bpy
+from bpy.app import timers
 
 from ...core.errors import InputError
+from ..bridge.camera_placement import read_placement
 from ..bridge.footage import Footage, set_scene_range
+from ..bridge.footage_camera import may_move
+
+if TYPE_CHECKING:
+    from ...core.footage.camera_fields import CameraPlacement
+
 
 VERSION = 1
 """Version of Keymark's properties; each scene holds the version that wrote it."""
@@ -139,3 +147,81 @@ def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) ->
         chosen.select_set(False)
     armature_object.select_set(True)
     layer.objects.active = armature_object
+
+
+# --- Redrawing editors and their sidebars
+
+
+FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
+SETTLING_S = 0.1
+"""Delay after which everything has been drawn once."""
+
+
+def areas(context: bpy.types.Context, *kinds: str) -> Iterator[bpy.types.Area]:
+    """Yield the areas of these kinds in all windows."""
+    for window in context.window_manager.windows:
+        yield from (area for area in window.screen.areas if area.type in kinds)
+
+
+def redraw_editors(context: bpy.types.Context, *kinds: str) -> None:
+    """Redraw every editor of these kinds."""
+    for area in areas(context, *kinds):
+        area.tag_redraw()
+
+
+def redraw_footage(context: bpy.types.Context) -> None:
+    """Redraw every editor that can show footage."""
+    redraw_editors(context, *FOOTAGE_EDITORS)
+
+
+def redraw_sidebars(context: bpy.types.Context) -> None:
+    """Redraw the sidebars, which show a job's progress."""
+    for area in areas(context, *FOOTAGE_EDITORS):
+        for region in area.regions:
+            if region.type == "UI":
+                region.tag_redraw()
+
+
+def redraw_sidebars_soon() -> None:
+    """Redraw the sidebars once more, after the next drawing.
+
+    Blender moves sub-panels only when it draws once more after the panel above them has grown or shrunk.
+    """
+    if not bpy.app.background and not timers.is_registered(_redraw_once):
+        timers.register(_redraw_once, first_interval=SETTLING_S)
+
+
+def refresh_asset_browsers(context: bpy.types.Context) -> None:
+    """Reload the assets and catalogs of open asset browsers."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.ui_type == "ASSETS":
+                with context.temp_override(window=window, area=area):
+                    if bpy.ops.asset.library_refresh.poll():
+                        bpy.ops.asset.library_refresh()
+
+
+def _redraw_once() -> None:
+    redraw_sidebars(bpy.context)
+
+
+# --- Whether a take's camera still stands where it was put by guess
+
+
+NO_GUESS = (0.0, 0.0, 0.0)
+"""Height, tilt and roll of a take whose camera was not put anywhere by guess."""
+SAME = 1e-4
+"""Difference from the guess [m, rad] that still counts as rounding."""
+
+
+def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
+    """Whether the take's camera still is where it was put because nobody had said where it stood."""
+    if take.camera is None or tuple(take.guessed_placement) == NO_GUESS or may_move(take.camera):
+        return False
+    now = as_numbers(read_placement(take.camera))
+    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < SAME
+
+
+def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:
+    """Height [m], tilt and roll [rad]."""
+    return placement.height_m, placement.tilt_rad, placement.roll_rad

@@ -1,11 +1,15 @@
 """Open a take from disk: footage, camera, actor, what is followed, and keyframes."""
 
+from pathlib import Path
+
 import bpy
 
-from ..footage.take_footage import VIDEOS
-from ..shell.base_operator import BaseOperator
+from ...core.errors import InputError
+from ...core.files.json_file import read_json_value
+from ..footage.take_footage import IMAGES, VIDEOS
+from ..shell.base_operator import BaseOperator, reported
 from ..shell.file_browser import browse, chosen_path
-from ..shell.requirements import idle, object_mode_possible
+from ..shell.requirements import footage, idle, object_mode_possible
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
@@ -50,13 +54,231 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(KEYMARK_OT_open_take.bl_idname, text="Keymark Take (take.json)")
 
 
-def register() -> None:
+def _register_open_take() -> None:
     """Add the operator, and an entry to File > Import."""
     bpy.utils.register_class(KEYMARK_OT_open_take)
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
-def unregister() -> None:
+def _unregister_open_take() -> None:
     """Remove both."""
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     bpy.utils.unregister_class(KEYMARK_OT_open_take)
+
+
+# --- Open a take that comes with Keymark, ready to reconstruct
+
+
+AEROBIC, GREETING = "AEROBIC", "GREETING"
+EXAMPLES = (
+    (
+        AEROBIC,
+        "Exercise in Colored Sleeves",
+        "Four seconds of exercise in sleeves and leggings of five colors, picked already, with twelve "
+        "keyframes posed by hand",
+    ),
+    (
+        GREETING,
+        "Greeting in Plain Clothes",
+        "Somebody comes in and waves, in clothes without markers: keypoints as a detector sees them, the "
+        "body's contours, and ten keyframes posed by hand",
+    ),
+)
+
+
+class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
+    """Open a take that comes with Keymark, ready to reconstruct; nothing is written unless you copy it"""
+
+    bl_idname = "keymark.open_example"
+    bl_label = "Open Example"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (object_mode_possible, idle)
+
+    example: bpy.props.EnumProperty(
+        name="Example", description="Which take is opened", items=EXAMPLES, options={"SKIP_SAVE"}
+    )
+    copy: bpy.props.BoolProperty(
+        name="Copy to Folder",
+        description="Copy the take to a folder of yours first, and open that. Otherwise nothing is written, "
+        "and the clip is read from Keymark's own folder, which goes when Keymark is removed",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    directory: bpy.props.StringProperty(
+        name="Folder",
+        description="The folder in which the copy gets a folder of its own",
+        subtype="DIR_PATH",
+        options={"SKIP_SAVE"},
+    )
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """What the chosen example shows, and where its clip lies."""
+        if not properties.is_property_set("example"):
+            return cls.__doc__ or ""
+        shown = next(text for name, _, text in EXAMPLES if name == properties.example)
+        kept = cls.bl_rna.properties["copy"].description
+        return f"{shown}.\n{kept}"
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask which example, and for the folder of a copy."""
+        if not self.properties.is_property_set("example"):
+            context.window_manager.popup_menu(_draw_examples, title=self.bl_label)
+            return {"CANCELLED"}  # each entry is a step of its own
+        if not self.copy or self.directory:
+            return self.execute(context)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw which example, beside the folder's picker and in Adjust Last Operation."""
+        self.layout.prop(self, "example", text="")
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Copy the take if that is wanted, read it, and only then change the scene."""
+        from ...core.take.examples import POSED_BY_HAND, copy_example, example_folder
+        from .take_to_scene import open_in_scene, read_for_scene
+
+        name = self.example.lower()
+        if self.copy:
+            if not self.directory:
+                raise InputError("directory is empty; name the folder to copy the example to")
+            opened = read_for_scene(copy_example(name, Path(bpy.path.abspath(self.directory))))
+        else:
+            opened = read_for_scene(example_folder(name), POSED_BY_HAND)
+        open_in_scene(self, context, opened)
+
+
+def _draw_examples(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Draw each example, to be opened as it is, and once more to be copied first."""
+    layout = menu.layout
+    for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
+        for name, title, _ in EXAMPLES:
+            text = title
+            entry = layout.operator(
+                KEYMARK_OT_open_example.bl_idname,
+                text=f"Copy {text} to Folder" if copy else text,
+                icon=icon,
+                translate=False,
+            )
+            entry.example, entry.copy = name, copy
+        if not copy:
+            layout.separator()
+
+
+# --- Open a dropped .json
+
+
+TAKE_FILE = "take.json"
+"""Or NAME.take.json beside the clip NAME; opening a take reads no file of another name."""
+
+
+class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
+    """Open a take, import a keyframe library or load keypoints, depending on what the file holds"""
+
+    bl_idname = "keymark.open_dropped"
+    bl_label = "Open Take, Library or Keypoints"
+    bl_options = {"REGISTER", "INTERNAL"}
+    requirements = (idle,)
+
+    filepath: bpy.props.StringProperty(name="File Path", subtype="FILE_PATH", options={"SKIP_SAVE"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Invoke the file's operator, which may show a dialog."""
+        with reported(self):
+            return self._delegate("INVOKE_DEFAULT")
+        return {"CANCELLED"}
+
+    def run(self, context: bpy.types.Context) -> set[str]:
+        """Run the file's operator."""
+        return self._delegate("EXEC_DEFAULT")
+
+    def _delegate(self, execution_context: str) -> set[str]:
+        """Call the operator for the file's content, and return its result.
+
+        Raises:
+            InputError: The file is none of these, or the operator failed.
+        """
+        from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
+
+        path = Path(bpy.path.abspath(self.filepath))
+        value = read_json_value(path, LARGEST_BYTES)
+        fields = value if isinstance(value, dict) else {}
+        if "schema" in fields:
+            operator = bpy.ops.keymark.import_library
+        elif path.name == TAKE_FILE or path.name.endswith(f".{TAKE_FILE}"):
+            operator = bpy.ops.keymark.open_take
+        elif "clip" in fields:
+            raise InputError(f"{path}: a take's file is called {TAKE_FILE}; give it that name to open it")
+        elif footage(bpy.context) is None:
+            operator = bpy.ops.keymark.load_keypoints
+        else:
+            raise InputError(
+                f"{path}: is neither a take's take.json nor a keyframe library; keypoints need the "
+                "footage that they are of, so load that first"
+            )
+        try:
+            return set(operator(execution_context, filepath=str(path)))
+        except RuntimeError as error:  # the operator's own error report
+            raise InputError(str(error).removeprefix("Error: ").strip()) from error
+
+
+# --- Handlers of files dropped onto an editor
+
+
+EDITORS = {"VIEW_3D", "CLIP_EDITOR"}
+
+
+def _over_an_editor(context: bpy.types.Context) -> bool:
+    return context.area is not None and context.area.type in EDITORS
+
+
+class KEYMARK_FH_footage(bpy.types.FileHandler):
+    """Dropped videos and images are loaded as footage."""
+
+    bl_idname = "KEYMARK_FH_footage"
+    bl_label = "Footage for Keymark"
+    bl_import_operator = "keymark.load_footage"
+    bl_file_extensions = ";".join(VIDEOS + IMAGES)
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        """Over editors that show footage."""
+        return _over_an_editor(context)
+
+
+class KEYMARK_FH_take(bpy.types.FileHandler):
+    """A dropped take.json is opened, a keyframe library imported, and keypoints are loaded."""
+
+    bl_idname = "KEYMARK_FH_take"
+    bl_label = "Take, Library or Keypoints for Keymark"
+    bl_import_operator = "keymark.open_dropped"
+    bl_file_extensions = ".json"
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        """Over editors that show footage or assets."""
+        return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_open_example,
+        KEYMARK_OT_open_dropped,
+        KEYMARK_FH_footage,
+        KEYMARK_FH_take,
+    )
+)
+
+
+def register() -> None:
+    """Register all of this module."""
+    _register_classes()
+    _register_open_take()
+
+
+def unregister() -> None:
+    """Take it all back."""
+    _unregister_open_take()
+    _unregister_classes()

@@ -6,10 +6,9 @@ from pathlib import Path
 import bpy
 
 from ...core.arrays import Array
-from ...core.footage.clip_times import clip_times
+from ...core.footage.reading import clip_times
 from ...core.progress import run
-from ...core.take.clip_check import check_frame_count, open_clip
-from ...core.take.clip_notes import rate_note
+from ...core.take.clip_check import check_frame_count, open_clip, rate_note
 from ...core.take.description import KEYFRAME_FILE, describe
 from ...core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, EVIDENCE, KEYPOINTS, MARKERS
 from ...core.take.take import Take
@@ -20,14 +19,14 @@ from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
-from ..footage.startup_cube import hide_startup_cube
+from ..follow.ignored_regions import add_ignored_regions
+from ..follow.keypoint_paths import add_keypoint_file
+from ..follow.marker_styles import set_marker_color
+from ..footage.load_footage import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
-from ..keypoints.keypoint_paths import add_keypoint_file
-from ..markers.ignored_regions import add_ignored_regions
-from ..markers.marker_styles import set_marker_color
-from ..matching.match_edits import add_candidate, add_match
-from ..shell.keyframe_action import new_keyframe_action
-from ..shell.messages import warn
+from ..keyframes.match_edits import add_candidate, add_match
+from ..shell.base_operator import warn
+from ..shell.keyed_frames import new_keyframe_action
 from ..shell.notices import give_notices
 from ..shell.takes import active_take, add_take
 

@@ -7,8 +7,7 @@ from uuid import uuid4
 import bpy
 from bpy.app.handlers import persistent
 
-from ..bridge.actor_bones import hips_at_rest, is_actor
-from ..bridge.bone_colors import recolor_earlier
+from ..bridge.actor_bones import hips_at_rest, is_actor, recolor_earlier
 from ..footage.take_footage import is_missing, update_clip_digest
 from ..shell.takes import VERSION
 

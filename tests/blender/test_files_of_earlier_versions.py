@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 import pytest
-from keymark.core.library.library_file import library_digest, read_library
+from keymark.core.prior.library import library_digest, read_library
 from keymark.core.shoot.discovery import take_path
 from keymark.core.take.conversion_digest import conversion_digest
 from keymark.core.take.conversion_record import is_up_to_date, read_record

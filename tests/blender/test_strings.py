@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import bpy
 import pytest
-from keymark.operators.shell.messages import capitalized
+from keymark.operators.shell.base_operator import capitalized
 
 OWN = "KEYMARK_"
 OUTSIDE = ("filepath", "directory", "filter_glob", "filter_folder")

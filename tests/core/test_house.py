@@ -15,13 +15,13 @@ LINES_AT_MOST = 400
 # The rooms of docs/architecture.md, the lowest first: imports run from a line to those above it alone, and
 # rooms in one line do not know each other.
 ROOMS = (
-    ("core.arrays", "core.text"),
+    ("core.arrays",),
     ("core.numerics",),
     ("core.errors",),
     ("core.progress", "core.files"),
     ("core.body",),
     ("core.footage",),
-    ("core.observation", "core.library"),
+    ("core.evidence",),
     ("core.prior",),
     ("core.take",),
     ("core.estimate",),
@@ -34,11 +34,9 @@ ROOMS = (
     ("operators.bridge",),
     ("operators.shell",),
     ("operators.footage",),
-    ("operators.markers",),
-    ("operators.keypoints",),
+    ("operators.follow",),
     ("operators.overlays",),
     ("operators.actor", "operators.library"),
-    ("operators.matching",),
     ("operators.keyframes", "operators.review"),
     ("operators.reconstruct",),
     ("operators.finish",),
@@ -177,7 +175,7 @@ def test_a_wrong_import_is_found(name: str, source: str) -> None:
             "core.body.skeleton",
             "import numpy as np\nfrom . import rotations\nfrom ..errors import InputError",
         ),
-        ("core.observation.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
+        ("core.evidence.regions", "from ..body.kinematics import Body\nfrom ..footage import camera"),
         ("core.estimate.reconstruct", "from ..take.take import Take\nfrom . import kalman"),
         ("operators.bridge.fcurves", "import bpy\nfrom ...core.body import skeleton"),
         (

@@ -9,8 +9,7 @@ import pytest
 from keymark.core.arrays import Array
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture_fit import fit_posture
-from keymark.core.prior.interpolation import interpolate_linearly
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate_linearly
 from keymark.core.review.score import read_truth
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from keymark.core.arrays import Array
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
-from keymark.core.footage.keypoints.people import People
+from keymark.core.footage.keypoints.keypoints import People
 from keymark.core.take.evidence import evidence_of
 from keymark.core.take.take_file import read_take
 

@@ -3,7 +3,7 @@
 from importlib import import_module
 from pathlib import Path
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 NAMES = tuple(sorted(file.stem for file in (Path(__file__).parent / "kinds").glob("[a-z]*.py")))
 

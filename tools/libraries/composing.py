@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
+from keymark.core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 
 from .moment import Moment
 from .solving import BODY, posture_of

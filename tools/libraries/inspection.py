@@ -7,8 +7,8 @@ import numpy as np
 from keymark.core.arrays import Array
 from keymark.core.body.kinematics import Body, Pose
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryMotion
-from keymark.core.library.motion_playback import sample_motion
+from keymark.core.prior.library import Library, LibraryMotion
+from keymark.core.prior.motion_playback import sample_motion
 
 from .solving import BALL, HEEL
 

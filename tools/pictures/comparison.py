@@ -13,7 +13,7 @@ from keymark.core.footage.clips.clip import Clip
 from keymark.core.progress import run
 from keymark.core.report.canvas import INK, Canvas
 from keymark.core.report.stick_figure import draw_figure, stick_figure
-from keymark.core.take.methods import METHODS
+from keymark.core.take.conversion_settings import METHODS
 from keymark.core.take.motion import Motion
 from keymark.core.take.take_file import read_take
 

@@ -8,12 +8,10 @@ import numpy as np
 from keymark.core.arrays import Array, Image
 from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.clip_samples import sample_clip
+from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.colors.color_model import ColorModel
 from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.segmentation.region_outlines import mask_outlines
-from keymark.core.footage.segmentation.regions import color_masks
+from keymark.core.footage.segmentation.regions import color_masks, mask_outlines
 from keymark.core.progress import run
 from keymark.core.report.canvas import WHITE, Canvas, Color
 from keymark.core.report.overlay_sheet import paler

@@ -3,10 +3,10 @@
 import numpy as np
 from keymark.core.arrays import Image
 from keymark.core.body.kinematics import Body
-from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.registry import SHIPPED, registered_libraries
+from keymark.core.prior.library import Library, LibraryPosture
+from keymark.core.prior.registry import SHIPPED, registered_libraries
 from keymark.core.report.canvas import GRAY, INK, Canvas
-from keymark.core.report.posture_picture import posture_picture
+from keymark.core.report.mannequin import posture_picture
 
 FIGURES, CELL = 8, 116
 TITLE, GAP = 190, 4

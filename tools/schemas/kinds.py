@@ -6,11 +6,11 @@ import re
 from functools import cache, singledispatch
 from typing import Any
 
-from keymark.core.body.posture_fields import PostureValues
+from keymark.core.body.posture import PostureValues
 from keymark.core.files import kinds, records
 from keymark.core.files.kinds import Kind
-from keymark.core.files.number_lists import NumberArray
 from keymark.core.files.records import Record, declared
+from keymark.core.files.safe_path import NumberArray
 from keymark.core.footage.camera_fields import (
     FARTHEST_M,
     MOST_DISTORTION,
@@ -18,22 +18,22 @@ from keymark.core.footage.camera_fields import (
     Distortion,
     Pose,
 )
-from keymark.core.footage.ignored_region_fields import RegionFields
+from keymark.core.footage.ignored_regions import RegionFields
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_M as FARTHEST_GUESS_M
 from keymark.core.footage.keypoints.detected_frames import FARTHEST_PX, MOST_PEOPLE
+from keymark.core.footage.keypoints.keypoint_file import OwnFile
 from keymark.core.footage.keypoints.layouts import OWN
-from keymark.core.footage.keypoints.own_file import OwnFile
-from keymark.core.library.library import LibraryMotion, TravelKind
+from keymark.core.prior.library import LibraryMotion, TravelKind
 from keymark.core.retarget.maps.character_map import PropertyValue, Turn
-from keymark.core.take.character_settings import CharacterFields
 from keymark.core.take.conversion_settings import (
+    CharacterFields,
     EvidenceKinds,
     KeypointFiles,
     SettingsFields,
 )
 from keymark.core.take.evidence_kinds import DEPTH_HINTS, EVIDENCE, KEYPOINTS
 from keymark.core.take.keyframe_file import KeyframeRow
-from keymark.core.take.motion_file import Diagnostic
+from keymark.core.take.motion import Diagnostic
 from keymark.core.take.take_file import (
     ActorFields,
     CameraKind,

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from keymark.core.arrays import Array, BoolArray
-from keymark.core.body.soles import sole_offsets
+from keymark.core.body.body_volume import sole_offsets
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.body_points import mirrored_point
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
 from scipy.signal import lfilter
 
 from .performance import Performance, principal_points

@@ -11,29 +11,26 @@ import numpy as np
 
 from ...arrays import Array
 from ...body.kinematics import Body
-from ...observation import depths
-from ...prior.frame_prior import FramePrior
-from ...prior.process_noise import REFERENCE_STEP_S
-from ..ankle_height import ANKLE_HEIGHT_STD_M, standing_ankle_m
+from ...evidence import keypoints as depths
+from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
 from ..clip_problem import ClipProblem
-from ..clip_state import ClipState
+from ..clip_state import ClipState, Window
 from ..keyframe_evidence import KeyframeEvidence
 from ..keypoint_evidence import KeypointEvidence
-from ..windows import Window
-from .balance import BalanceTerm
-from .belief import BeliefTerm
+from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
+from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .contours import ContourTerm
-from .depth_hints import DepthHintTerm
-from .depths import DepthTerm
-from .frame_keypoints import FrameDepthTerm, FrameKeypointTerm
-from .ground import GroundTerm
-from .joint_limits import LimitTerm
-from .keypoints import LEAST_CONFIDENCE, KeypointTerm, ObservedKeypoints
-from .quadratic import QuadraticBuilder, QuadraticTerm
+from .keypoints import (
+    LEAST_CONFIDENCE,
+    DepthHintTerm,
+    FrameDepthTerm,
+    FrameKeypointTerm,
+    KeypointTerm,
+    ObservedKeypoints,
+)
+from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from .regions import ObservedRegions, RegionNoise, RegionTerm
-from .smoothness import SmoothnessTerm
-from .stillness import StillnessTerm
-from .term import Term
+from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
 LARGEST_VARIATION = 20.0

@@ -6,9 +6,10 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, BoolArray
+from ...evidence.contours import SHARES, SIDES, ContourModel, ContourPrediction, LimbAxes
 from ...numerics.robust import student_cost, student_weight
-from ...observation.contours import SHARES, SIDES, ContourModel, ContourPrediction
 from ..clip_state import ClipState
+from .motion import add_drift, drift, drift_cost
 from .term import DEGREES, NormalEquations
 
 SURFACE_SHARE = 0.2
@@ -62,3 +63,44 @@ class ContourTerm:
         found = np.isfinite(residual)
         variance = self.variance + (SURFACE_SHARE * predicted.half_width) ** 2
         return np.where(found, residual, 0.0), variance, found
+
+
+# --- Parts of the body against the shifts along their axes that their colors tell
+
+
+@dataclass(frozen=True, eq=False)
+class AxialTerm:
+    """Compares where parts are along their axes with where their colors are seen."""
+
+    axes: LimbAxes
+    share: Array
+    """(F, O) the point of each part's length that the colors say most of."""
+    place: Array
+    """(F, O) where it is seen, along the direction [px]; NaN where nothing was found."""
+    direction: Array
+    """(F, O, 2) unit direction of the axis."""
+    variance: Array
+    """(F, O) [px²]."""
+    kept: Array
+    """(F - 1, 1) share of an error that is left in the next frame."""
+    robust: ClassVar[bool] = True
+
+    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
+        """Add a row for each part, with an error that lasts."""
+        world, error, std, found = self._errors(state)
+        jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction)
+        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)
+        rows = drift(error[..., None], found, self.kept, temperature)
+        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)
+
+    def cost(self, state: ClipState) -> Array:
+        """(F,) see `drift_cost`."""
+        _, error, _, found = self._errors(state)
+        return drift_cost(error[..., None], found, self.kept)
+
+    def _errors(self, state: ClipState) -> tuple[Array, Array, Array, BoolArray]:
+        """The axes' points (F, O, 3) [m], errors in standard deviations, these [px], and which are known."""
+        world, pixel = self.axes.points(state.pose, state.frame, self.share)
+        std = np.sqrt(self.variance)
+        error = (np.sum(self.direction * pixel, axis=-1) - self.place) / std
+        return world, error, std, np.isfinite(error)

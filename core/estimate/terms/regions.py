@@ -11,9 +11,9 @@ from typing import ClassVar
 import numpy as np
 
 from ...arrays import Array, IndexArray
+from ...evidence.regions import MOMENTS, RegionModel, RegionPrediction
 from ...footage.region_tracks import RegionTracks
 from ...numerics.robust import student_cost, student_weight
-from ...observation.regions import MOMENTS, RegionModel, RegionPrediction
 from ..clip_state import ClipState
 from .term import DEGREES, NormalEquations
 

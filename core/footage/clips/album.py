@@ -4,7 +4,7 @@ The estimate needs the pictures only after it knows roughly where the performer 
 Compressed pictures of that grid take some kilobytes each: ten minutes fit in memory.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,8 +12,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import BoolArray, Image, IndexArray
+from ...arrays import Array, BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
+from .clip import Clip, FrameSource
+from .frame_checks import FrameChecks
 
 QUALITY = 90
 """JPEG quality; its error stays below that of the video's compression."""
@@ -99,3 +101,96 @@ class Album:
             self._room -= image.nbytes
             self._opened[index] = image
         return image
+
+
+# --- A clip whose frames are checked and kept in an album while they are read, to decode it only once
+
+
+@dataclass(eq=False)
+class _WatchedSource:
+    """A source of frames that passes every frame to checks and album before yielding it."""
+
+    size: tuple[int, int]
+    fps: float
+    frame_count: int
+    source: FrameSource
+    checks: FrameChecks
+    album: Album | None
+
+    def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """Yield every frame after checking it; blank ones are not kept in the album."""
+        for index, time_s, image in self.source.frames():
+            if self.checks.add(index, image) and self.album is not None:
+                self.album.add(index, image)
+            yield index, time_s, image
+
+    def time_stamps(self) -> Iterator[float]:
+        """Yield the time of every frame."""
+        return self.source.time_stamps()
+
+    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
+        """Yield the frames of ascending indices."""
+        return self.source.at(indices)
+
+    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
+        """Yield the frames from about `first` on."""
+        return self.source.onward(first)
+
+
+def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
+    """The clip with checks, and an album to fill, that run while its frames are read in order."""
+    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
+    return Clip(clip.path, source)
+
+
+# --- How much a clip's pictures change from frame to frame
+
+
+NOISE_FACTOR = 4.0
+"""A pixel changes where its difference exceeds the picture's usual one this many times ..."""
+LEAST_LEVELS = 6.0
+"""... and this many of 256 levels."""
+MAD_TO_STD = 1.4826
+TAIL_PERCENT = 2.0
+"""Share of the changes at either edge that are not the performer's."""
+
+
+def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
+    """Roughly the speed of whatever moves in front of a camera that stands still.
+
+    Args:
+        album: The pictures; missing ones repeat the one before.
+        frames: Number of frames F of the clip.
+
+    Yields:
+        The fraction done.
+
+    Returns:
+        (F,) [px per frame], zero where nothing changes.
+    """
+    swept = np.zeros(max(frames - 1, 0))
+    rows: Array | None = None
+    before: Array | None = None
+    for index in range(frames):
+        if index in album:
+            now = cv2.cvtColor(album.picture(index), cv2.COLOR_BGR2GRAY).astype(np.float64)
+            if before is not None:
+                changed = _changed(now - before)
+                swept[index - 1] = changed.sum()
+                rows = changed.sum(axis=1) + (0.0 if rows is None else rows)
+            before = now
+        yield (index + 1) / frames
+    if rows is None or not swept.any():
+        return np.zeros(frames)
+    share = np.cumsum(rows) / rows.sum()
+    low, high = np.searchsorted(share, [0.01 * TAIL_PERCENT, 1.0 - 0.01 * TAIL_PERCENT])
+    step = 0.5 * album.factor * swept / (high - low + 1)
+    padded = np.concatenate([step[:1], step, step[-1:]])
+    return np.asarray(0.5 * (padded[:-1] + padded[1:]))
+
+
+def _changed(difference: Array) -> BoolArray:
+    """Pixels that change, beside noise and the light of the whole picture."""
+    difference = np.abs(difference - np.median(difference))
+    usual = MAD_TO_STD * float(np.median(difference))
+    return np.asarray(difference > max(NOISE_FACTOR * usual, LEAST_LEVELS))

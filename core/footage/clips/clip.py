@@ -1,6 +1,6 @@
 """A clip on disk, a video or an image sequence: its size and frame rate, and an iterator of its frames."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -9,7 +9,9 @@ import numpy as np
 
 from ...arrays import Array, Image
 from ...errors import InputError
+from ..segmentation.working_image import halvings, measuring_image
 from .clip_timing import is_variable_frame_rate
+from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
@@ -126,3 +128,163 @@ class Clip:
         # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
         middles = (np.arange(count) + 0.5) * self.frame_count / count
         return self.source.at(sorted({int(index) for index in middles}))
+
+
+# --- Frame reader for playback
+
+
+Stamped = tuple[float, Image]
+
+EARLY = 0.1
+"""Share of a frame's interval by which its time stamp may be rounded up."""
+LONGEST_STEP = 12.0
+"""Intervals up to which frames are decoded on the way instead of seeking."""
+BEFORE = 2
+"""Frames before the wanted one at which a seek begins."""
+
+
+class FrameReader:
+    """A clip's decoder that keeps its position between calls.
+
+    Frames are found by time and not by index, so that a variable frame rate needs no pass over the clip.
+    """
+
+    def __init__(self, clip: Clip) -> None:
+        """Take a clip; nothing is decoded yet."""
+        self._clip = clip
+        self._onward: Iterator[Stamped] = iter(())
+        self._shown: Stamped | None = None
+        self._coming: Stamped | None = None
+
+    def image_at(self, time_s: float) -> Image | None:
+        """The last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
+
+        None before the first frame, and once the last has been shown for an interval.
+
+        Args:
+            time_s: Seconds from the first frame.
+
+        Raises:
+            InputError: The clip is gone, or an image of a sequence cannot be read.
+        """
+        interval = 1.0 / self._clip.fps
+        limit = time_s + EARLY * interval
+        if limit < 0.0:
+            return None
+        if self._shown is None or not 0.0 <= limit - self._shown[0] < LONGEST_STEP * interval:
+            self._begin(max(int(limit / interval) - BEFORE, 0))
+            if self._shown is None or self._shown[0] > limit:
+                self._begin(0)
+        while self._coming is not None and self._coming[0] <= limit:
+            self._shown, self._coming = self._coming, next(self._onward, None)
+        if self._shown is None or (
+            self._coming is None and limit >= self._shown[0] + (1.0 + EARLY) * interval
+        ):
+            return None
+        return self._shown[1]
+
+    def _begin(self, first: int) -> None:
+        """Restart the decoder at about frame `first`."""
+        self._onward = self._clip.source.onward(first)
+        self._shown, self._coming = next(self._onward, None), next(self._onward, None)
+
+
+# --- Clip samples
+
+
+SAMPLED_FRAMES = 24
+"""Twice as many as colors are learned from, so that most frames are checked with colors learned elsewhere."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClipSamples:
+    """N sampled frames of a clip."""
+
+    path: Path
+    """The clip, for messages."""
+    size: tuple[int, int]
+    """Width and height of its frames in px."""
+    indices: tuple[int, ...]
+    """(N,) their frame indices."""
+    images: tuple[Image, ...]
+    """Their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid."""
+
+
+def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+    """Sample frames evenly over a clip.
+
+    Args:
+        clip: The footage.
+        count: Number of samples; fewer for a shorter clip.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Raises:
+        InputError: None of them can be read.
+    """
+    times = halvings(clip.size)
+    indices: list[int] = []
+    images: list[Image] = []
+    yield 0.0
+    for index, image in clip.sample(count):
+        indices.append(index)
+        images.append(measuring_image(image, times))
+        yield min(len(indices) / min(count, clip.frame_count), 1.0)
+    if not images:
+        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
+    return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))
+
+
+# --- Sampling spread frames on a budget
+
+
+MOST_DECODED_PX = 90_000_000
+"""Budget of decoded pixels: about half a second of a processor, at any size."""
+FRAMES_PER_SEARCH = 18
+"""Frames decoded for each seek."""
+MOST_SEARCHES = 12
+IMAGE_COST = 4
+"""Cost of opening an image, in decoded video frames."""
+FEWEST = 3
+
+
+def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
+    """Sample frames evenly over a clip like `sample_clip`, within a budget of decoded pixels.
+
+    Args:
+        clip: The footage.
+        count: Most samples.
+
+    Yields:
+        The fraction done, from 0 to 1.
+
+    Raises:
+        InputError: None of them can be read.
+    """
+    pixels = clip.size[0] * clip.size[1]
+    if not isinstance(clip.source, VideoFile):
+        affordable = max(MOST_DECODED_PX // (IMAGE_COST * pixels), FEWEST)
+        return (yield from sample_clip(clip, min(count, affordable)))
+    if clip.frame_count * pixels <= MOST_DECODED_PX:
+        return (yield from sample_clip(clip, count))
+    most = min(count, MOST_SEARCHES, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
+    middles = (np.arange(most) + 0.5) * clip.frame_count / most
+    indices = quickly_found(clip.path, [int(index) for index in middles])
+    if indices:
+        return (yield from _kept(clip, clip.source.sought([0, *indices]), len(indices) + 1))
+    # In files that cannot be seeked, only the beginning is affordable.
+    first = range(0, min(clip.frame_count, MOST_DECODED_PX // pixels + 1), FRAMES_PER_SEARCH)
+    return (yield from _kept(clip, clip.source.at(first), len(first)))
+
+
+def _kept(clip: Clip, frames: Iterator[tuple[int, Image]], count: int) -> Generator[float, None, ClipSamples]:
+    times = halvings(clip.size)
+    found = []
+    yield 0.0
+    for index, image in frames:
+        found.append((index, measuring_image(image, times)))
+        yield min(len(found) / count, 1.0)
+    if not found:
+        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
+    return ClipSamples(clip.path, clip.size, tuple(i for i, _ in found), tuple(image for _, image in found))

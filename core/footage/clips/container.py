@@ -1,15 +1,59 @@
-"""Magic numbers of video containers: no other file is given to a decoder.
+"""Workarounds for OpenCV: log messages on standard error, and rows that it leaves uninitialized."""
 
-Decoders look at content, not at names. A text called `clip.mp4` may be a playlist (HLS, a list of files to be
-joined, a session description), which makes them open other files or the network. All of these are text; none
-begins like the containers and streams here.
-"""
-
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
+import numpy as np
+
 from ... import MOST_PIXELS
+from ...arrays import Array, Image
 from ...errors import InputError
-from ...files.regular_file import regular_file_size
+from ...files.control_characters import regular_file_size
+
+DEEP_YUV420 = b"Y3\x0b"
+"""FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows."""
+BLOCK = 16
+"""Coded pictures have a multiple of this many rows."""
+ROWS = 3
+
+
+@contextmanager
+def opencv_silence() -> Iterator[None]:
+    """Suppress OpenCV's log, so that standard error has our one sentence alone."""
+    level = cv2.getLogLevel()
+    cv2.setLogLevel(0)
+    try:
+        yield
+    finally:
+        cv2.setLogLevel(level)
+
+
+def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
+    """Repeat the last written row in the uninitialized rows below it.
+
+    OpenCV 4.11 does not write the last three rows of pictures of more than eight bits in 4:2:0 whose height
+    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run.
+
+    Args:
+        capture: Source of the image.
+        image: (rows, columns, 3), rotated as the file asks for; changed in place.
+    """
+    code = int(capture.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) & 0xFFFFFFFF
+    name = code.to_bytes(4, "little")
+    if name[:3] != DEEP_YUV420 or name[3] <= 8:
+        return
+    turned = int(capture.get(cv2.CAP_PROP_ORIENTATION_META)) // 90
+    coded = np.rot90(image, turned)
+    if coded.shape[0] % BLOCK and coded.shape[0] > ROWS:
+        coded[-ROWS:] = coded[-ROWS - 1]
+
+
+# --- Magic numbers of video containers
+
 
 HEAD_BYTES = 4096
 VALID = "a video that OpenCV can read"
@@ -101,3 +145,62 @@ def _is_text(data: bytes) -> bool:
         if error.start < len(data) - 4:  # not merely cut within a character
             return False
     return all(letter.isprintable() or letter.isspace() for letter in text)
+
+
+# --- Packets of a video file, undecoded
+
+
+MOST_PACKETS = 20_000
+"""Packets read of a longer file: ten minutes tell whether the frame rate varies."""
+SEARCH_BEGINS = 16
+"""Frames before a wanted one from which OpenCV seeks backwards for a video keyframe."""
+MORE = 2
+"""Packets that must follow a wanted frame, so that seeking never meets the end."""
+
+
+@dataclass(frozen=True, eq=False)
+class Packets:
+    """Presentation times of a video file's first pictures."""
+
+    time_s: Array
+    """(N,) time of each picture, ascending."""
+    complete: bool
+    """Whether these are all of the file's pictures."""
+
+
+def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:
+    """Read the times of a file's pictures; None if its packets cannot be read."""
+    times: list[float] = []
+    with _packets(path) as capture:
+        while len(times) < most and capture.grab():
+            times.append(float(capture.get(cv2.CAP_PROP_POS_MSEC)) / 1000.0)
+    if not times or not np.isfinite(times).all():
+        return None
+    return Packets(np.sort(np.array(times)), len(times) < most)
+
+
+def quickly_found(path: Path, wanted: Sequence[int]) -> list[int]:
+    """Indices near the wanted ones, ascending, that can be decoded with few other frames.
+
+    Frames beyond the file's actual end are left out.
+    """
+    found = set()
+    with _packets(path) as capture:
+        for index in wanted:
+            if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
+                continue
+            begins = int(capture.get(cv2.CAP_PROP_POS_FRAMES))
+            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + MORE)):
+                found.add(begins + SEARCH_BEGINS)
+    return sorted(found)
+
+
+@contextmanager
+def _packets(path: Path) -> Iterator[cv2.VideoCapture]:
+    capture = cv2.VideoCapture()
+    with opencv_silence():
+        try:
+            capture.open(os.path.abspath(path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_FORMAT, -1])
+            yield capture
+        finally:
+            capture.release()

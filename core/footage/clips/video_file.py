@@ -10,9 +10,8 @@ import numpy as np
 
 from ...arrays import Image
 from ...errors import InputError
-from .container import check_container, check_pixels
-from .opencv_workarounds import fill_last_rows, opencv_silence
-from .video_notes import video_notes
+from .container import check_container, check_pixels, fill_last_rows, opencv_silence
+from .frame_checks import video_notes
 
 FALLBACK_FPS = 24.0
 HIGHEST_PLAUSIBLE_FPS = 2000.0

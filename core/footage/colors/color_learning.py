@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array, BoolArray, Image, IntArray
-from .color_model import ColorDistribution, ColorModel, color_model
-from .color_space import chromaticity
+from .color_model import ColorDistribution, ColorModel, chromaticity, color_model
 from .indexed_frames import LEARNING_NOISE_LEVELS, CroppedMask, IndexedFrames
 
 # Uncertainty of one sample: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.

@@ -10,8 +10,14 @@ from numpy.typing import NDArray
 from ...arrays import Array, Image, IndexArray, IntArray
 from ..ignored_regions import is_ignored
 from ..segmentation.working_image import smooth
-from .color_model import ColorDistribution, weigh
-from .color_space import CELL_COUNT, CELLS_PER_CHANNEL, cell_chromaticity, cell_index
+from .color_model import (
+    CELL_COUNT,
+    CELLS_PER_CHANNEL,
+    ColorDistribution,
+    cell_chromaticity,
+    cell_index,
+    weigh,
+)
 
 _Number = TypeVar("_Number", bound=np.generic)
 

@@ -12,14 +12,11 @@ import numpy as np
 from ...arrays import Array, Image, IndexArray
 from ...errors import InputError
 from ...files.digest import digest
-from ..detections import Detections, LearningRound
 from ..ignored_regions import IgnoredPixels
-from ..marker_style import MarkerStyle, color_groups
-from ..region_tracks import ExpectedRegions
+from ..region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, color_groups
 from ..segmentation.working_image import halvings, learning_image, measuring_image
 from .color_learning import LearnedColors, learn_colors
-from .color_model import ColorModel
-from .nearest_colors import nearest_colors, share_of_color
+from .color_model import ColorModel, nearest_colors, share_of_color
 
 SAMPLES = 12
 """Frames of the first learning; up to three times as many are kept later."""

@@ -7,9 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, Image
-from ...numerics.smoothing import weighted_median
+from ...numerics.vectors import weighted_median
 from ..segmentation.working_image import learning_image, smooth
-from .color_space import CELL_COUNT, LUMA_OFFSET, cell_colors, cell_index, chromaticity
+from .color_model import (
+    CELL_COUNT,
+    LUMA_OFFSET,
+    ColorModel,
+    cell_chromaticity,
+    cell_colors,
+    cell_index,
+    cell_volume,
+    chromaticity,
+)
 
 MOST = 12
 """Most listed colors: five markers, skin, and things in the room."""
@@ -91,3 +100,35 @@ def _densest(chroma: Array, weight: Array) -> Array:
 def _median(colors: Array, weight: Array) -> list[int]:
     """The weighted median of each channel, three whole numbers."""
     return [round(weighted_median(channel, weight)) for channel in colors.T]
+
+
+# --- Confusion matrix of the learned colors
+
+
+LEAST = 1e-300
+"""A density that vanishes everywhere stays zero."""
+
+
+def color_confusion(model: ColorModel) -> Array:
+    """Confusion matrix (C, C + 1): shares of each color's pixels classified as each color, and as background.
+
+    Pixels drawn from a color's learned density count by the posterior probability of their cells, as in
+    tracking; rows sum to 1.
+
+    Args:
+        model: C colors learned for a clip.
+    """
+    cells = np.arange(len(model.label), dtype=np.int32)
+    chroma, luma = cell_chromaticity(cells)
+    count = len(model.distributions)
+    claims = np.zeros((count, count + 1))
+    for color, distribution in enumerate(model.distributions):
+        near = distribution.within_reach(chroma, luma)
+        _, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
+        share = np.exp(log_density) * cell_volume(luma.take(near))
+        share = share / max(float(share.sum()), LEAST)
+        sureness = model.probability.take(near) / 255.0
+        label = np.minimum(model.label.take(near), count)
+        claims[color] = np.bincount(label, share * sureness, minlength=count + 1)
+        claims[color, count] = 1.0 - claims[color, :count].sum()
+    return claims

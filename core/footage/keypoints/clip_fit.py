@@ -7,9 +7,8 @@ import numpy as np
 from ...arrays import Array, BoolArray
 from ...errors import InputError
 from .detected_frames import DetectedFrames, DetectedPerson, check_points
-from .frame_numbers import MOST_FRAMES, Alignment, align_listed, align_numbered
-from .people import People, SeenPeople
-from .scores import confidences
+from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
+from .keypoints import People, SeenPeople, confidences
 
 RATE_TOLERANCE = 0.01
 """Frame rates closer than this share are one: 29.97 and 30."""

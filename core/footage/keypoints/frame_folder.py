@@ -1,20 +1,156 @@
-"""A folder of JSON files, one a frame: OpenPose's and its kin's, and MMPose's of an image sequence."""
+"""Which frame of the clip each frame of a detector's result is; nothing is shifted without a word."""
 
 import os
 import re
+from collections.abc import Collection
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import InputError, pluralize
 from ...files.json_file import read_json_value, shown
 from ...files.safe_path import check_symlinks
 from .detected_frames import DetectedFrames, DetectedPerson, check_people, check_points, same_layout
-from .frame_numbers import MOST_FRAMES
+from .detector_formats import BODY, instance_people, is_instances, is_openpose_frame, openpose_people
 from .layouts import Layout, with_hands
-from .mmpose_results import instance_people, is_instances
-from .openpose_frame import BODY, is_openpose_frame, openpose_people
+
+MOST_FRAMES = 10**6
+FEW_FRAMES, FEW_SHARE = 2, 0.01
+"""Decoders disagree by so many frames at a clip's end, or by this share of them; more is another clip."""
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """How a result's frames lie in the clip."""
+
+    first: int
+    """Number of the clip's first frame in the result."""
+    frame_count: int
+    """Frames of the clip."""
+    notes: tuple[str, ...] = ()
+    """Sentences on what was taken for granted."""
+
+
+def tolerance(frame_count: int) -> int:
+    """By how many frames a result may be longer or shorter than the clip."""
+    return max(FEW_FRAMES, round(FEW_SHARE * frame_count))
+
+
+def align_listed(count: int, frame_count: int | None, where: str, why: str = "") -> Alignment:
+    """Align a list with one entry a frame, the first of which is the clip's first frame.
+
+    Args:
+        count: Number of entries.
+        frame_count: Frames of the clip; None where it is not known.
+        where: The file.
+        why: What is known of the reason for a difference, to end the sentence.
+
+    Raises:
+        InputError: The list is of another clip.
+    """
+    if frame_count is None or count == frame_count:
+        return Alignment(0, count)
+    difference = count - frame_count
+    if abs(difference) > tolerance(frame_count):
+        raise InputError(
+            f"{where}: has {pluralize(count, 'frame')}, the clip {frame_count}; it must have one entry for "
+            f"every frame of the clip, null where nobody was seen{why or _rate_words(count, frame_count)}"
+        )
+    rest = "the last are not used" if difference > 0 else "in the last ones nobody is seen"
+    note = f"{where}: has {pluralize(count, 'frame')}, the clip {frame_count}; the first are the same, {rest}"
+    return Alignment(0, frame_count, (note,))
+
+
+def align_numbered(
+    numbers: Collection[int], frame_count: int | None, frame_start: int, where: str, complete: bool
+) -> Alignment:
+    """Align frames that carry numbers, which count from 0, from 1, from the scene's first frame or otherwise.
+
+    Args:
+        numbers: The numbers that are there, at least one.
+        frame_count: Frames of the clip; None where it is not known.
+        frame_start: Scene frame of the clip's first frame.
+        where: The file or folder.
+        complete: Whether frames in which nobody was seen have a number too.
+
+    Raises:
+        InputError: The numbers do not fit the clip.
+    """
+    lowest, highest = min(numbers), max(numbers)
+    bases = sorted({0, 1, frame_start})
+    if frame_count is None:
+        return _without_clip(lowest, highest, bases, where)
+    length = highest - lowest + 1
+    if length == frame_count:
+        return Alignment(lowest, frame_count, _hole_notes(numbers, lowest, frame_count, where, complete))
+    fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
+    notes: tuple[str, ...] = ()
+    if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
+        notes = (
+            (
+                f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are "
+                "left out"
+            ),
+        )
+        fitting = [lowest]
+    if not fitting:
+        raise InputError(
+            f"{where}: its frames are numbered {lowest} to {highest}; the clip has {frame_count}, so they "
+            f"must lie within 0 to {frame_count - 1} or 1 to {frame_count}{_rate_words(length, frame_count)}"
+        )
+    touching = [base for base in fitting if base == lowest or highest == base + frame_count - 1]
+    first = (touching or fitting)[0]
+    missing = frame_count - len(set(numbers))
+    at_end = frame_count - 1 - (highest - first)
+    if complete and at_end > tolerance(frame_count):
+        raise InputError(
+            f"{where}: ends with frame {highest}, {pluralize(at_end, 'frame')} before the clip's last; every "
+            f"frame must be there, also where nobody was seen{_rate_words(length, frame_count)}"
+        )
+    if len(touching or fitting) > 1 and missing:
+        notes += (
+            (
+                f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
+                "check that they lie on the performer"
+            ),
+        )
+    return Alignment(first, frame_count, notes + _hole_notes(numbers, first, frame_count, where, complete))
+
+
+def _without_clip(lowest: int, highest: int, bases: list[int], where: str) -> Alignment:
+    if lowest not in bases or highest - lowest >= MOST_FRAMES:
+        raise InputError(
+            f"{where}: its frames are numbered {lowest} to {highest}; they must begin with 0, 1 or the "
+            f"clip's first scene frame, and be at most {MOST_FRAMES}"
+        )
+    return Alignment(lowest, highest - lowest + 1)
+
+
+def _hole_notes(
+    numbers: Collection[int], first: int, frame_count: int, where: str, complete: bool
+) -> tuple[str, ...]:
+    missing = frame_count - sum(0 <= number - first < frame_count for number in set(numbers))
+    if not complete or not missing:
+        return ()
+    return (f"{where}: lacks {missing} of {pluralize(frame_count, 'frame')}; nobody is seen in them",)
+
+
+def _rate_words(count: int, frame_count: int) -> str:
+    """The rest of the sentence where one is a whole multiple of the other: the detector saw another rate."""
+    for many, few, what in (
+        (frame_count, count, "one for every {}"),
+        (count, frame_count, "{} for every one"),
+    ):
+        times = round(many / max(few, 1))
+        if 2 <= times <= 10 and abs(many - times * few) <= times:
+            return f"; it has about {what.format(times)} of the clip, as if made at another frame rate"
+    return ""
+
+
+# --- A folder of JSON files, one a frame
+
 
 LARGEST_FILE_BYTES = 4 * 2**20
 """A hundred people with hands and face."""

@@ -1,21 +1,232 @@
-"""Files of keypoints: our own, and those of detectors, recognized by their content."""
+"""Keymark's own file of keypoints; see docs/keypoint_format.md."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import numpy as np
+
+from ...arrays import Array
 from ...errors import InputError
 from ...files.control_characters import is_control_character
 from ...files.fields import Fields
-from ...files.json_file import read_json_value, shown
+from ...files.json_file import read_json_value, shown, write_json
+from ...files.kinds import Anything, Choice, Items, Number, Text, Whole
+from ...files.records import Record, read_record
 from .clip_fit import held_against_clip
-from .coco_results import is_coco, read_coco
-from .detected_frames import DetectedFrames
-from .frame_folder import read_frame_folder
-from .mediapipe_landmarks import is_mediapipe, read_mediapipe
-from .mmpose_results import is_instances, is_mmpose, read_mmpose
-from .openpose_frame import is_openpose_frame
-from .own_file import read_own, write_keypoints
-from .people import People
+from .detected_frames import (
+    FARTHEST_M,
+    FARTHEST_PX,
+    DetectedFrames,
+    DetectedPerson,
+    check_people,
+    person_array,
+)
+from .detector_formats import (
+    is_coco,
+    is_instances,
+    is_mediapipe,
+    is_mmpose,
+    is_openpose_frame,
+    read_coco,
+    read_mediapipe,
+    read_mmpose,
+)
+from .frame_folder import MOST_FRAMES, read_frame_folder
+from .keypoints import BODY_POINTS, People, SeenPeople
+from .layouts import LAYOUTS, OWN, Layout, own_layout
+
+LARGEST_SIDE_PX = 65536
+LONGEST_DETECTOR = 200
+"""Characters."""
+PIXEL_DIGITS, SCORE_DIGITS, HINT_DIGITS = 3, 4, 4
+"""Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
+
+
+NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
+Rows = Annotated[tuple[Any, ...], Items("entries, one a frame", 1, MOST_FRAMES, item=Anything("an entry"))]
+
+
+@dataclass(frozen=True)
+class OwnFile(Record):
+    """The fields of a file of our own."""
+
+    TITLE = "keypoints"
+
+    layout: Annotated[str, Choice((*LAYOUTS, OWN))]
+    """Order of the points of a person; own is that of names."""
+    size: Annotated[
+        tuple[Annotated[int, Whole(1, LARGEST_SIDE_PX)], ...],
+        Items("numbers", 2, 2, f"[width, height] of the clip in whole pixels, at most {LARGEST_SIDE_PX}"),
+    ]
+    """Width and height of the pictures in which they were seen [px]; of the clip, or of the same
+    proportions."""
+    names: Annotated[Any, Anything("a list of body points")] = None
+    """Body points of the layout own, each once; other layouts ignore it."""
+    detector: (
+        Annotated[
+            str,
+            Text(
+                LONGEST_DETECTOR,
+                f"one line of at most {LONGEST_DETECTOR} visible characters",
+                one_line=True,
+            ),
+        ]
+        | None
+    ) = None
+    """What saw the points; shown to people."""
+    frame_start: Annotated[int, Whole(-(10**6), 10**6)] | None = None
+    """Scene frame of the first entry, which is the clip's first frame."""
+    fps: Annotated[float, Number(1.0, 1000.0, "frames per second")] | None = None
+    """Frames per second of the clip."""
+    by_hand: bool | None = None
+    """Whether a person placed the points; they are then the performer's."""
+    frames: Rows | None = None
+    """One person a frame, null where nobody is seen; instead of people."""
+    people: Rows | None = None
+    """A list of people a frame, null where nobody is seen; instead of frames."""
+    world: Rows | None = None
+    """A network's guess of the same points in space, in the order of frames or people; null where there is
+    none."""
+
+
+def read_own(fields: Fields, name: str) -> DetectedFrames:
+    """Read a file of our own.
+
+    Args:
+        fields: The file's fields.
+        name: The file's name, which stands for a detector that is not named.
+
+    Raises:
+        InputError: A field is missing or not what it must be.
+    """
+    said = read_record(OwnFile, fields)
+    layout = _layout(said, fields)
+    several = said.people is not None
+    if several == (said.frames is not None):
+        found = "both frames and people" if several else "neither frames nor people"
+        raise InputError(
+            f"{fields.where}: has {found}; it must have frames, with one person in each, or people, with "
+            "several"
+        )
+    rows = said.people or said.frames or ()
+    world = said.world or (None,) * len(rows)
+    if len(world) != len(rows):
+        raise InputError(
+            f"{fields.where}: world has {len(world)} entries; it must have one for each of the {len(rows)} "
+            "frames"
+        )
+    field = "people" if several else "frames"
+    people = {}
+    for index, (row, hints) in enumerate(zip(rows, world, strict=True)):
+        where = f"{fields.where}: {field}[{index}]"
+        hint_where = f"{fields.where}: world[{index}]"
+        if not several:
+            row, hints = _alone(row), _alone(hints)
+        people[index] = _frame(row, hints, layout, where, hint_where)
+    return DetectedFrames(
+        where=fields.where,
+        source=said.detector or name,
+        layout=layout,
+        people=people,
+        numbered=False,
+        size=(said.size[0], said.size[1]),
+        fps=said.fps,
+        frame_start=said.frame_start,
+        by_hand=bool(said.by_hand),
+    )
+
+
+def write_keypoints(path: Path, people: People, frame_start: int, fps: float | None = None) -> None:
+    """Write a file of our own, atomically; `read_keypoints` reads it back.
+
+    Args:
+        path: The file; an older one is replaced.
+        people: Whom a source saw, in every frame of the clip.
+        frame_start: Scene frame of the clip's first frame.
+        fps: Frames per second of the clip.
+
+    Raises:
+        ConversionError: The file cannot be written.
+    """
+    several = people.most_people > 1
+    fields: dict[str, Any] = {"detector": people.source[:LONGEST_DETECTOR] or "unknown", "layout": OWN}
+    fields |= {"names": list(people.names), "size": list(people.size), "frame_start": frame_start}
+    if fps is not None:
+        fields["fps"] = fps
+    if people.by_hand:
+        fields["by_hand"] = True
+    rows = [_written(frame, several) for frame in people.frames]
+    fields["people" if several else "frames"] = [row for row, _ in rows]
+    if any(hint is not None for _, hint in rows):
+        fields["world"] = [hint for _, hint in rows]
+    write_json(path, fields)
+
+
+def _alone(entry: Any) -> Any:
+    return None if entry is None else [entry]
+
+
+def _layout(said: OwnFile, fields: Fields) -> Layout:
+    if said.layout != OWN:
+        return LAYOUTS[said.layout]
+    fields.required("names", NAMES.valid)
+    return own_layout(NAMES.read(said.names, fields.where, "names"))
+
+
+def _frame(row: Any, hints: Any, layout: Layout, where: str, hint_where: str) -> tuple[DetectedPerson, ...]:
+    if row is None:
+        if hints is not None:
+            raise InputError(f"{hint_where} guesses depths where nobody is seen; it must be null there")
+        return ()
+    if not isinstance(row, list):
+        raise InputError(f"{where} is {shown(row)}; it must be a list of people or null")
+    check_people(len(row), where)
+    if hints is not None and (not isinstance(hints, list) or len(hints) != len(row)):
+        raise InputError(
+            f"{hint_where} is {shown(hints)}; it must be null or have as many people as the frame"
+        )
+    return tuple(
+        _person(one, hints[index] if hints is not None else None, layout, where, hint_where)
+        for index, one in enumerate(row)
+    )
+
+
+def _person(value: Any, hint: Any, layout: Layout, where: str, hint_where: str) -> DetectedPerson:
+    points = person_array(value, (layout.count, 3), FARTHEST_PX, where)
+    if np.isnan(points).any():
+        raise InputError(
+            f"{where} has null or NaN among its numbers; a point that is not seen must be [0, 0, 0]"
+        )
+    hint_m = None if hint is None else person_array(hint, (layout.count, 3), FARTHEST_M, hint_where)
+    return DetectedPerson(points[:, :2], points[:, 2], hint_m)
+
+
+def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
+    """A frame's people and their hints as JSON, None where there are none."""
+    if not len(frame.pixel):
+        return None, None
+    seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
+    # A score that is rounded to 0 would say that the point is not seen.
+    score = np.where(seen, np.maximum(np.round(frame.score, SCORE_DIGITS), 10.0**-SCORE_DIGITS), 0.0)
+    pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), PIXEL_DIGITS)
+    rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
+    hints = [_written_hints(hint) for hint in frame.hint_m]
+    if all(hint is None for hint in hints):
+        return (rows if several else rows[0]), None
+    return (rows, hints) if several else (rows[0], hints[0])
+
+
+def _written_hints(hint: Array) -> Sequence[Any] | None:
+    if not np.isfinite(hint).any():
+        return None
+    rounded = np.round(hint, HINT_DIGITS)
+    return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
+
+
+# --- Files of keypoints
+
 
 __all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
 

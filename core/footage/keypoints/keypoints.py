@@ -1,4 +1,8 @@
-"""Keypoints of the performer: where in the image points of the body are seen, frame by frame."""
+"""Names of the points of the body that a keypoint may show.
+
+The principal points of the skeleton, and what detectors add: face, spine, hands and feet. Left and right are
+the performer's own.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,7 +10,70 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array, BoolArray
-from .body_points import BODY_POINTS
+from ...body.human import HUMAN
+from ...body.skeleton import SIDES
+
+FACE = ("nose", *(f"{part}.{side}" for part in ("eye", "ear") for side in SIDES))
+SPINE = ("crown", "neck", "pelvis")
+"""Top of the head, the middle between the shoulders, and the middle between the hips."""
+HANDS = tuple(f"{part}.{side}" for part in ("index", "thumb", "pinky") for side in SIDES)
+"""Knuckles: where the finger begins."""
+FEET = tuple(f"{part}.{side}" for part in ("heel", "toe", "small_toe") for side in SIDES)
+"""Back of the heel, tip of the big toe, tip of the small toe."""
+BODY_POINTS = (*HUMAN.point_names, *FACE, *SPINE, *HANDS, *FEET)
+"""All names, in the order in which they are listed to people."""
+
+
+def mirrored_point(name: str) -> str:
+    """The same point on the other side of the body; a point in the middle is its own mirror image."""
+    stem, dot, side = name.rpartition(".")
+    return f"{stem}.{'R' if side == 'L' else 'L'}" if dot else name
+
+
+def mirror_images(names: Sequence[str], sources: Sequence[str]) -> list[int]:
+    """For each keypoint the index of the one that its source has on the other side; its own without one."""
+    index = {key: i for i, key in enumerate(zip(names, sources, strict=True))}
+    return [
+        index.get((mirrored_point(name), source), i)
+        for i, (name, source) in enumerate(zip(names, sources, strict=True))
+    ]
+
+
+# --- Detectors' scores as confidences from 0 to 1, whatever they are
+
+
+HIGH_SHARE = 0.95
+"""Share of all scores that lie below the one that counts as certain: a few outliers set no scale."""
+
+
+def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
+    """Scores as confidences, and a sentence where they had to be changed.
+
+    Probabilities stay as they are; a negative one among them stands for nothing found. Negative scores beside
+    such above 1 are logits, the logarithm of the odds. Responses of networks that exceed 1 (SimCC's heat
+    maps, percentages) are divided by the one that most stay below: only their order and proportion mean
+    anything. A file without any score vouches for all of its points.
+
+    Args:
+        scores: (S,) all scores of points that have a place; NaN where there is none.
+        where: The file.
+    """
+    known = scores[np.isfinite(scores)]
+    if not len(known) or not known.any():
+        note = f"{where}: has no scores; every point in it is believed alike"
+        return np.where(np.isnan(scores), np.nan, 1.0), (note,) if len(scores) else ()
+    low, high = float(known.min()), float(known.max())
+    if high <= 1.0:
+        return np.maximum(scores, 0.0), ()
+    if low < 0.0:
+        note = f"{where}: its scores, {low:.3g} to {high:.3g}, were taken for logits and made confidences"
+        return 1.0 / (1.0 + np.exp(-np.clip(scores, -50.0, 50.0))), (note,)
+    certain = max(1.0, float(np.quantile(known, HIGH_SHARE)))
+    note = f"{where}: its scores reach {high:.3g}; {certain:.3g} and more count as certain"
+    return np.minimum(scores / certain, 1.0), (note,)
+
+
+# --- Keypoints of the performer
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,3 +157,53 @@ class Keypoints:
     def without_hints(self) -> "Keypoints":
         """The same keypoints without the guess of the points in space."""
         return replace(self, hint_m=np.full(self.hint_m.shape, np.nan))
+
+
+# --- People
+
+
+@dataclass(frozen=True, eq=False)
+class SeenPeople:
+    """One source's people of one frame, H of them; a person may be missing in any frame."""
+
+    pixel: Array
+    """(H, N, 2) [px] of the clip, NaN where not seen."""
+    score: Array
+    """(H, N) 0 to 1, 0 where not seen."""
+    hint_m: Array
+    """(H, N, 3) as in `Keypoints`."""
+
+
+@dataclass(frozen=True, eq=False)
+class People:
+    """Everyone whom a source saw in F frames, with N body points each."""
+
+    names: tuple[str, ...]
+    """(N,) the body points."""
+    source: str
+    """What saw them: the name of the detector, or of the file."""
+    size: tuple[int, int]
+    """Width and height of the pictures they were seen in [px]."""
+    frames: tuple[SeenPeople, ...]
+    """Those of each frame of the clip, none or several."""
+    file: str = ""
+    """The file they were read from, for sentences; empty where there is none."""
+    by_hand: bool = False
+    """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
+    notes: tuple[str, ...] = ()
+    """Sentences on what was taken for granted or mended."""
+
+    @property
+    def most_people(self) -> int:
+        """Largest number of people in a frame."""
+        return max((len(frame.pixel) for frame in self.frames), default=0)
+
+    @property
+    def seen_frames(self) -> int:
+        """Number of frames in which anybody is seen."""
+        return sum(len(frame.pixel) > 0 for frame in self.frames)
+
+    def without_hints(self) -> "People":
+        """The same people without the guess of the points in space."""
+        frames = tuple(replace(frame, hint_m=np.full(frame.hint_m.shape, np.nan)) for frame in self.frames)
+        return replace(self, frames=frames)

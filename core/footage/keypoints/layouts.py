@@ -7,11 +7,14 @@ the tip of the big toe, and its mouth and the corners of its eyes are left out. 
 the head have the ears: what was seen is kept, and the estimate makes of it what it can.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from types import MappingProxyType
 
 from ...body.skeleton import SIDES
+from .keypoints import BODY_POINTS
 
 OWN = "own"
 """Name of a layout whose file lists the names itself."""
@@ -127,3 +130,50 @@ def with_hands(layout: Layout) -> Layout:
 def layout_words() -> str:
     """The layouts with their numbers of points, for sentences."""
     return ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())
+
+
+# --- Which body point a track is meant to follow, by the name that a person gave it
+
+
+SIDE_WORDS = {"l": "L", "left": "L", "r": "R", "right": "R"}
+SYNONYMS = {
+    "skull": "head",
+    "head top": "crown",
+    "top of head": "crown",
+    "top head": "crown",
+    "vertex": "crown",
+    "throat": "neck",
+    "hips": "pelvis",
+    "hip": "pelvis",
+    "root": "pelvis",
+    "big toe": "toe",
+    "toes": "toe",
+    "little toe": "small_toe",
+    "small toe": "small_toe",
+    "pinky toe": "small_toe",
+    "index finger": "index",
+    "little finger": "pinky",
+}
+"""Other words for a body point, sides left out; hips without a side are the middle between both."""
+WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
+"""Words of a name, whatever separates them, as in `LeftWrist`, `left_wrist` and `wrist.L`; no numbers."""
+
+MOST_NAMES = 4096
+"""Names that are remembered: panels ask for those of all tracks of a clip whenever they are drawn."""
+
+
+@lru_cache(maxsize=MOST_NAMES)
+def named_point(name: str) -> str | None:
+    """Body point that a track is named after, as `wrist.L`, `Left Wrist` or `l_wrist.001`; None if none."""
+    words = [word.lower() for word in WORDS.findall(name)]
+    sides = {SIDE_WORDS[word] for word in words if word in SIDE_WORDS}
+    part = " ".join(word for word in words if word not in SIDE_WORDS)
+    if len(sides) > 1 or not part:
+        return None
+    (side,) = sides or {""}
+    if side:
+        stems = (part.replace(" ", "_"), SYNONYMS.get(part, ""))
+        candidates = [f"{stem}.{side}" for stem in stems]
+    else:
+        candidates = [part, SYNONYMS.get(part, "")]
+    return next((point for point in candidates if point in BODY_POINTS), None)

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 
 from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
-from ..colors.color_space import BLUE_SCALE, LUMA_BGR, RED_SCALE
+from ..colors.color_model import BLUE_SCALE, LUMA_BGR, RED_SCALE
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 
 LUMA_WEIGHT = 1.0 / 3.0

@@ -1,15 +1,130 @@
-"""The row of one take on the page of a batch."""
+"""Escaping of untrusted texts for HTML: nothing in them is markup, and invisible characters are spelt out.
 
+Names, sentences and paths come from the people who filmed or shared a take.
+"""
+
+import html
+import os
 from collections.abc import Sequence
+from enum import StrEnum
 from pathlib import Path, PurePosixPath
+from urllib.parse import quote
 
-from ...library.several_libraries import COMPOSED
+from ...errors import pluralize
+from ...files.control_characters import escape_control_characters
+from ...prior.texts import COMPOSED
+from ...review.weak_frames import WEAK_CONFIDENCE
 from ...shoot.outcomes import Outcome, Status
 from ...take.conversion_record import ConversionRecord
-from ...take.used_evidence import UsedEvidence
-from ...text import pluralize
-from .html_text import address, duration, escaped, isolated, percent, relative_path
-from .verdict import Verdict, current_record, verdict
+from ...take.evidence_kinds import UsedEvidence
+
+LONGEST = 1000
+"""Characters shown of one text."""
+
+
+def visible(text: str) -> str:
+    r"""A text with invisible and invalid characters spelt out, as `\u202e`, cut at `LONGEST` characters.
+
+    Spelt out are control characters, line breaks, surrogates (bytes of a file name that are not UTF-8) and
+    marks that change the direction of writing.
+    """
+    shown = text if len(text) <= LONGEST else f"{text[:LONGEST]} ..."
+    return escape_control_characters(shown)
+
+
+def escaped(text: str) -> str:
+    """`visible` text, escaped for use between tags or within a quoted attribute."""
+    return html.escape(visible(text), quote=True)
+
+
+def isolated(text: str) -> str:
+    """`escaped` text in an element that isolates its direction of writing."""
+    return f"<bdi>{escaped(text)}</bdi>"
+
+
+def relative_path(folder: Path, output: Path) -> str:
+    """Path of a folder relative to a page in `output`, with slashes."""
+    return os.path.relpath(folder, output).replace(os.sep, "/")
+
+
+def address(*parts: str) -> str:
+    """A percent-encoded relative link; no character of the parts can end it or add a scheme."""
+    path = "/".join(parts)
+    return html.escape(quote(path.encode("utf-8", "surrogatepass"), safe="/"), quote=True)
+
+
+def percent(share: float) -> str:
+    """A share from 0 to 1 in percent, rounded down: a value below a threshold never appears to reach it."""
+    return f"{int(100.0 * share + 1e-9)}\u00a0%"
+
+
+def duration(seconds: float) -> str:
+    """A duration for people: `3.9 s`, `4 min 5 s`, `2 h 10 min`."""
+    if seconds < 59.95:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
+
+
+# --- Verdicts on the takes of a batch
+
+
+GOOD = WEAK_CONFIDENCE
+"""Mean confidence from which a take is good: frames of this confidence need no keyframe."""
+FAIR = 0.5
+"""Mean confidence from which a take is fair: below, most joints are likely off."""
+GOOD_WEAKEST = FAIR
+"""Least confidence of the weakest twentieth of a good take's frames."""
+
+
+class Verdict(StrEnum):
+    """State of a take, the most urgent first."""
+
+    FAILED = "failed"
+    POOR = "poor"
+    FAIR = "fair"
+    UNJUDGED = "not judged"
+    """Converted by a method without a confidence."""
+    GOOD = "good"
+    WAITING = "waiting"
+
+
+def current_record(outcome: Outcome) -> ConversionRecord | None:
+    """The record of a take's result; None without a result of the present input."""
+    return outcome.record if outcome.status in (Status.CONVERTED, Status.UNCHANGED) else None
+
+
+def verdict(outcome: Outcome) -> Verdict:
+    """The verdict on a take; of a result by its mean confidence and that of its weakest twentieth."""
+    if outcome.status is Status.FAILED:
+        return Verdict.FAILED
+    record = current_record(outcome)
+    if record is None:
+        return Verdict.WAITING
+    if record.confidence is None:
+        return Verdict.UNJUDGED
+    if record.confidence >= GOOD and (record.weakest is None or record.weakest >= GOOD_WEAKEST):
+        return Verdict.GOOD
+    return Verdict.FAIR if record.confidence >= FAIR else Verdict.POOR
+
+
+def sections(outcomes: Sequence[Outcome]) -> dict[Verdict, list[Outcome]]:
+    """Takes by verdict, without empty verdicts; sorted by confidence, the least first, then by name."""
+    found: dict[Verdict, list[Outcome]] = {kind: [] for kind in Verdict}
+    for outcome in sorted(outcomes, key=_urgency):
+        found[verdict(outcome)].append(outcome)
+    return {kind: those for kind, those in found.items() if those}
+
+
+def _urgency(outcome: Outcome) -> tuple[float, str]:
+    record = current_record(outcome)
+    return (0.0 if record is None or record.confidence is None else record.confidence, outcome.take)
+
+
+# --- The row of one take on the page of a batch
+
 
 COLUMNS = ("Take", "Footage", "Confidence", "To do and to know", "Files")
 MOST_NAMED = 12

@@ -7,7 +7,7 @@ from ...arrays import Array
 from ...finish.hermite import Spline
 from .control_channels import Control, ControlChannels
 from .control_plan import ControlKind
-from .held_points import HeldPoint
+from .point_tolerances import HeldPoint
 
 ChannelValues = Callable[[Array, str], Array]
 """From turns (F, 3, 3) and a rotation mode to the values (F, C) of its channels, without jumps."""

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+from ..character import LIMBS, ROLES
 from ..maps.character_map import CharacterMap, IkControls
 from ..options import LimbKeys, RetargetOptions, RootMotion
-from ..roles import LIMBS, ROLES
 
 
 class ControlKind(Enum):

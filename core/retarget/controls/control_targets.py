@@ -8,8 +8,14 @@ import numpy as np
 from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
+from ..character import LIMBS, Character
 from ..character_motion import CharacterMotion
-from .control_plan import ControlKind, PlannedControl
+from ..maps.character_map import CharacterMap
+from ..solve.two_bone import STRAIGHTEST, LimbPose, reach_for
+from .control_channels import Control, ControlChannels
+from .control_motion import ControlMotion, LimbPaths
+from .control_plan import ControlKind, PlannedControl, joint_roles, limb_bones
+from .control_spaces import NOTHING
 
 SHORTEST_POLE = 0.25
 """Least distance of a pole from its joint, in lengths of the limb."""
@@ -89,3 +95,92 @@ def pole_offset(root: Array, middle: Array, end: Array, pole: Array) -> float:
     axis = unit(end - root)
     toward = [point - root - ((point - root) @ axis) * axis for point in (pole, middle)]
     return float(np.arctan2(np.cross(toward[0], toward[1]) @ axis, toward[0] @ toward[1]))
+
+
+# --- The limbs of a character with the paths of their joints
+
+
+IN_FK = (ControlKind.FK, ControlKind.HIPS)
+
+
+def limb_paths(
+    character: Character,
+    character_map: CharacterMap,
+    motion: CharacterMotion,
+    controls: Sequence[Control],
+    offsets: Mapping[str, Array],
+    poles: Mapping[str, PoleSetting],
+) -> dict[str, LimbPaths]:
+    """The limbs whose three joints are moved, by name.
+
+    Args:
+        character: The character.
+        character_map: Its map.
+        motion: Its motion.
+        controls: Its controls.
+        offsets: (4, 4) by control the pose of its bone in its own axes.
+        poles: Where its poles belong.
+    """
+    found = {}
+    in_ik = {control.plan.limb for control in controls if control.plan.kind is ControlKind.GOAL}
+    in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}
+    for limb in LIMBS:
+        if not set(joint_roles(limb)) <= set(character_map.roles):
+            continue
+        bones = limb_bones(character_map, limb)
+        if not set(bones) <= set(motion.poses):
+            continue
+        root, middle, end = (motion.poses[bone][:, :3, 3] for bone in bones)
+        pole = character_map.ik[limb].pole if limb in in_ik else None
+        carrier, place = _carrier(character, character_map, controls, offsets, limb)
+        found[limb] = LimbPaths(
+            bones,
+            (root, middle, end),
+            carrier,
+            place,
+            motion.bends[limb],
+            set(bones) <= in_fk,
+            limb in in_ik,
+            poles[pole].distance if pole is not None else 0.0,
+        )
+    return found
+
+
+def _carrier(
+    character: Character,
+    character_map: CharacterMap,
+    controls: Sequence[Control],
+    offsets: Mapping[str, Array],
+    limb: str,
+) -> tuple[int, Array]:
+    """Index of the control that carries a limb's root, and the root's place in its axes; NOTHING for none."""
+    root = character.bone(limb_bones(character_map, limb)[0]).head
+    above = (LIMBS[limb][0], "spine", "hips") if limb.startswith("arm") else ("hips",)
+    for bone in [name for role in above for name in reversed(character_map.bones(role))]:
+        for index, control in enumerate(controls):
+            if control.plan.bone == bone and control.plan.kind in IN_FK:
+                rest, offset = character.bone(bone).rest, offsets[control.name]
+                place = (root - rest[:3, 3]) @ rest[:3, :3]
+                return index, np.asarray(offset[:3, :3] @ place + offset[:3, 3])
+    return NOTHING, np.zeros(3)
+
+
+# --- A leg in FK on a body that few keys have moved a little
+
+
+def leg_on_body(motion: ControlMotion, leg: str, carrier: ControlChannels) -> dict[str, Array]:
+    """(F, 4, 4) poses of the bones at a leg's three joints, in the armature's space."""
+    limb = motion.limbs[leg]
+    first, second, third = limb.bones
+    upper, lower, end = (motion.bones[bone].copy() for bone in limb.bones)
+    start, middle, goal = limb.joints
+    line = unit(goal - start)
+    before = LimbPose(
+        upper[:, :3, :3], lower[:, :3, :3], start, middle, goal, rotations.cross(limb.bend, line)
+    )
+    root = carrier.place + (carrier.turn @ limb.root_place)
+    after = reach_for(before, root, goal, STRAIGHTEST)
+    upper[:, :3, :3], upper[:, :3, 3] = after.upper_turn, root
+    lower[:, :3, :3], lower[:, :3, 3] = after.lower_turn, after.middle
+    end[:, :3, 3] = after.end
+    return {first: upper, second: lower, third: end}

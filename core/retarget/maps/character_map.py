@@ -3,19 +3,21 @@
 `docs/character_map_format.md` describes the fields. Conventions in `presets/characters` have a few more.
 """
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import hypot
+from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, ClassVar
 
+from ...files.digest import digest
 from ...files.fields import is_number, listed
-from ...files.json_file import shown
+from ...files.json_file import read_json, shown, write_readable_json
 from ...files.kinds import ByName, Choice, Items, Kind, Never, Number, Text, first_twice, refuse
 from ...files.records import Object, Record
-from ...library.text_fields import LONGEST_LINE, LONGEST_TEXT, SPDX, Tags, line
-from ...library.texts import LONGEST_NAME
-from ..roles import CHAINS, LIMBS, ROLES, SOURCES
+from ...prior.texts import LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line
+from ..character import CHAINS, LIMBS, ROLES, SOURCES
 
 MOST_BONES, MOST_SETTINGS, MOST_SOLE_POINTS = 100, 1000, 1000
 """Most bones of one role; settings; points of one sole."""
@@ -311,3 +313,35 @@ class CharacterMap(Record):
         if role not in CHAINS or given:
             return given or (1.0,) * len(bones)
         return tuple((number + 1) / len(bones) for number in range(len(bones)))
+
+
+# --- Character map files
+
+
+LARGEST_BYTES = 2**20
+
+
+def read_character_map(path: Path) -> CharacterMap:
+    """Read a character map file.
+
+    Raises:
+        InputError: The file is missing, no character map, or invalid.
+    """
+    return CharacterMap.from_json(read_json(path, LARGEST_BYTES), str(path))
+
+
+def write_character_map(path: Path, character_map: CharacterMap) -> None:
+    """Write a character map file, whole or not at all.
+
+    Raises:
+        InputError: The map is invalid and could not be read back.
+        ConversionError: The file cannot be written.
+    """
+    value = character_map.to_json()
+    CharacterMap.from_json(value, f"character map {shown(character_map.title)}")
+    write_readable_json(path, value)
+
+
+def map_digest(character_map: CharacterMap) -> str:
+    """Digest of a map's content, whatever the path and the layout of its file."""
+    return digest(json.dumps(character_map.to_json(), sort_keys=True))

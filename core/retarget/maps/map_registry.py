@@ -1,4 +1,4 @@
-"""Registry of character maps: those in some folders, found by title, by path, or by a character's bones."""
+"""Whether a character map is for a character: all bones that it names must be there."""
 
 import os
 from collections.abc import Sequence
@@ -8,14 +8,51 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files.fields import listed
-from ...files.json_file import read_json, shown
-from ...files.json_folder import ENDING, is_other_format, is_path, json_files
-from ...library.library_file import LARGEST_BYTES
-from ...library.texts import identifier_from, name_key
-from ..character import Character
-from .character_map import CharacterMap
-from .character_map_file import read_character_map
-from .map_check import missing_bones
+from ...files.json_file import ENDING, is_other_format, is_path, json_files, read_json, shown
+from ...prior.library import LARGEST_BYTES
+from ...prior.texts import identifier_from, name_key
+from ...take.conversion_settings import AUTO, NO_MAP
+from ..character import REQUIRED, Character
+from ..recognition.recognize import recognize
+from ..retarget_record import GIVEN, RECOGNIZED, SAVED
+from .character_map import CharacterMap, map_digest, read_character_map
+
+MOST_NAMED = 5
+"""Missing bones that are named in a sentence."""
+
+
+def missing_bones(character_map: CharacterMap, character: Character) -> tuple[str, ...]:
+    """Bones that the map names and the character lacks, those of roles first."""
+    return tuple(name for name in character_map.named_bones if name not in character.index)
+
+
+def check_map(character_map: CharacterMap, character: Character, where: str = "") -> None:
+    """Refuse a map for another character, or one without the roles that every character has.
+
+    Args:
+        character_map: The map.
+        character: The character that it is to be used for.
+        where: The map's file for the sentence; by default it is named by its title.
+
+    Raises:
+        InputError: A bone or a role is missing.
+    """
+    name = where or f"character map {shown(character_map.title)}"
+    missing = missing_bones(character_map, character)
+    if missing:
+        raise InputError(
+            f"{name} is for another character: '{character.name}' has no bone "
+            f"{listed(map(shown, missing), MOST_NAMED)}; choose a map made for its bones, or recognize them"
+        )
+    absent = [role for role in REQUIRED if role not in character_map.roles]
+    if absent:
+        raise InputError(
+            f"{name} gives no bones for {listed(absent, MOST_NAMED)} of '{character.name}'; "
+            f"a character map needs {listed(REQUIRED)}"
+        )
+
+
+# --- Registry of character maps
 
 
 @dataclass(frozen=True)
@@ -116,3 +153,63 @@ def _read(path: Path) -> RegisteredMap | None:
         return RegisteredMap(path, CharacterMap.from_json(value, str(path)))
     except InputError as error:
         return RegisteredMap(path, None, str(error))
+
+
+# --- Choice of a character's map
+
+
+@dataclass(frozen=True)
+class ChosenMap:
+    """A character's map, and where it comes from."""
+
+    character_map: CharacterMap
+    origin: str
+    """One of `retarget_record.ORIGINS`."""
+    path: Path | None = None
+    """Its file; None where it was recognized."""
+    doubts: tuple[str, ...] = ()
+    """What was recognized without being sure, one sentence each."""
+
+
+def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> ChosenMap:
+    """The map of a character.
+
+    Args:
+        character: The character.
+        wanted: A map's title or path; `auto` for a saved one that knows the character's bones, else
+            recognition; `none` for recognition alone.
+        folders: Where saved maps are found.
+
+    Raises:
+        InputError: There is no such map, it is for another character, or the bones are no character's.
+    """
+    if wanted not in (AUTO, NO_MAP):
+        named = find_map(wanted, folders)
+        return _checked(named, character, GIVEN)
+    saved = map_for(character, folders) if wanted == AUTO else None
+    if saved is not None:
+        return _checked(saved, character, SAVED)
+    found = recognize(character)
+    return ChosenMap(found.character_map, RECOGNIZED, doubts=tuple(found.doubts))
+
+
+def map_digests(wanted: str, folders: Sequence[Path]) -> tuple[str, ...]:
+    """Digests of the maps that `choose_map` may take, for the digest of what it is used for.
+
+    Raises:
+        InputError: There is no such map.
+    """
+    if wanted == NO_MAP:
+        return ()
+    if wanted != AUTO:
+        entries: Sequence[RegisteredMap] = [find_map(wanted, folders)]
+    else:
+        entries = registered_maps(folders)
+    return tuple(sorted(map_digest(entry.character_map) for entry in entries if entry.character_map))
+
+
+def _checked(entry: RegisteredMap, character: Character, origin: str) -> ChosenMap:
+    if entry.character_map is None:
+        raise InputError(entry.problem)
+    check_map(entry.character_map, character, str(entry.path))
+    return ChosenMap(entry.character_map, origin, entry.path)

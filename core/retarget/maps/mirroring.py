@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..character import Character
+from ..character import LIMBS, ROLES, Character
 from ..recognition.bones import anatomy
 from ..recognition.symmetry import find_planes, mirrored
-from ..roles import LIMBS, ROLES
 from .character_map import CharacterMap, IkControls, RoleBones
 
 WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))

@@ -7,8 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from ...files.json_file import read_json
-from ...files.json_folder import json_files
+from ...files.json_file import json_files, read_json
 from ...files.kinds import Never
 from ...files.records import declared
 from ..character import Character

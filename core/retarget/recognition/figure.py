@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array, IndexArray
-from ..roles import ARM, LEG, MIDDLE
+from ..character import ARM, LEG, MIDDLE
 from .names import CLEAR
 from .symmetry import Frame
 

@@ -10,16 +10,14 @@ from ...arrays import Array
 from ...body.human import HUMAN
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import Character
+from ..character import ARM, CHAINS, LEG, REQUIRED, ROLES, Character
+from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap, RoleBones
 from ..maps.presets import Preset, find_preset
-from ..roles import ARM, CHAINS, LEG, REQUIRED, ROLES
-from ..stance import find_stance
 from .bones import candidate_bones
-from .facing import Facing, find_facing
+from .facing import Facing, extra_ends, find_facing, find_root
 from .figure import Figure, best_figure
 from .names import CLEAR
-from .root_bone import extra_ends, find_root
 from .symmetry import Frame, find_frames
 
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6

@@ -1,20 +1,151 @@
-"""Places on a body that carry over to another: by the part they are near, in that part's own proportions.
+"""Alignment of rest poses: the turn that takes each role's rest to that of the performer's body.
 
-A point near a part is described in the part's frame, in shares of the part's own width, depth and length.
-On a wider body the hand on the hip is so much farther out.
+The performer at rest stands in a T pose. A limb of the character may rest anywhere (T, A, hanging, with bent
+elbows or knees): each bone takes on the turn of the one before it and then the smallest rotation of its
+direction, as if the character's arm were raised first and then stretched. So hinges and palms keep their
+places on the limb. Trunk, head, clavicles and feet are upright in both, and are not turned.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from ...arrays import Array
+from ...body import rotations
 from ...body.body_volume import segment_piece
-from ...body.segment_motion import SegmentMotion
+from ...body.kinematics import SegmentMotion
 from ...body.skeleton import SIDES
+from ...numerics.vectors import unit
+from .hips import ease
 from .rest_body import RestBody
 from .stage import Stage
+from .two_bone import smallest_rotation
+
+CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
+"""Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
+LARGEST_TWIST_RAD = np.radians(75.0)
+"""A resting bend farther than that from the hinge's own direction says nothing of it."""
+
+
+def rest_alignment(body: RestBody) -> Mapping[str, Array]:
+    """(3, 3) by role: the turn from the character's rest, in canonical axes, to the performer's."""
+    turns = {role: _correction(body, role) for role in body.first}
+    for side in SIDES:
+        out = 1.0 if side == "L" else -1.0
+        arm = [f"{part}.{side}" for part in ("upper_arm", "forearm", "hand")]
+        leg = [f"{part}.{side}" for part in ("thigh", "shin", "foot")]
+        _align(body, turns, arm, np.array([out, 0.0, 0.0]), np.array([0.0, 0.0, -out]))
+        _align(body, turns, leg, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0]))
+        if f"hand.{side}" in turns:
+            own = turns[f"hand.{side}"]
+            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ own
+    return turns
+
+
+def _correction(body: RestBody, role: str) -> Array:
+    """The map's correction of a role's rest, in canonical axes."""
+    given = body.character_map.rest_corrections.get(role)
+    if given is None:
+        return np.eye(3)
+    w, x, y, z = given
+    turn = Rotation.from_quat([x, y, z, w]).as_matrix()
+    return np.asarray(body.stance @ turn @ body.stance.T)
+
+
+def _align(body: RestBody, turns: dict[str, Array], limb: list[str], along: Array, hinge: Array) -> None:
+    """Align a limb's two long bones: `along` and `hinge` are its direction and axis in the T pose."""
+    upper, lower, end = limb
+    middle = body.joint(lower)
+    first = unit(middle - body.joint(upper))
+    tip = body.joint(end) if end in body.first else body.tip(lower)
+    second = first if tip is None else unit(tip - middle)
+    corrected = turns[upper] @ first
+    turn = smallest_rotation(corrected, along) @ turns[upper]
+    turn = _with_hinge(turn @ first, turn @ second, along, hinge) @ turn
+    turns[upper] = turn
+    bent = turn @ turns[lower] @ second
+    turns[lower] = smallest_rotation(bent, along) @ turn @ turns[lower]
+
+
+def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Array:
+    """A twist about the limb that lets its resting bend turn about the hinge; none where it hardly bends."""
+    axis = rotations.cross(first, second)
+    bend = float(np.arctan2(np.linalg.norm(axis), first @ second))
+    axis = unit(axis)
+    twist = float(np.arctan2(rotations.cross(axis, hinge) @ along, axis @ hinge))
+    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < LARGEST_TWIST_RAD)
+    return rotations.hinge(along, np.array(clear * twist))
+
+
+# --- Turns of bones that follow from the performer's segments alone, and where they put the joints
+
+
+SEGMENTS = {
+    "hips": "pelvis",
+    "head": "head",
+    "shoulder": "girdle",
+    "upper_arm": "upper_arm",
+    "forearm": "forearm",
+    "hand": "hand",
+    "thigh": "thigh",
+    "shin": "shin",
+    "foot": "foot",
+    "toe": "foot",
+}
+"""The performer's segment that a role follows; spine and neck lie between two of them."""
+
+
+def segment_of(role: str) -> str:
+    """The performer's segment that a role of one bone follows."""
+    part, dot, side = role.partition(".")
+    return f"{SEGMENTS[part]}{dot}{side}"
+
+
+def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:
+    """(F, 3, 3) a bone: its turn from the character's rest, in canonical axes.
+
+    Args:
+        body: The character at rest.
+        turn: (F, 3, 3) by segment of the performer, on the character's stage.
+        alignment: (3, 3) by role.
+    """
+    found: list[Array] = []
+    chest = turn["chest" if body.is_moved("spine") else "pelvis"]
+    for bone in body.bones:
+        if not body.is_moved(bone.role):
+            found.append(
+                found[bone.carrier] if bone.carrier >= 0 else np.broadcast_to(np.eye(3), chest.shape)
+            )
+            continue
+        if bone.role in ("spine", "neck"):
+            lower, upper = (turn["pelvis"], turn["chest"]) if bone.role == "spine" else (chest, turn["head"])
+            share = body.character_map.shares(bone.role)[bone.number]
+            wanted = lower @ rotations.exponential(
+                share * rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
+            )
+        else:
+            wanted = turn[segment_of(bone.role)]
+        found.append(np.asarray(wanted @ alignment[bone.role]))
+    return found
+
+
+def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
+    """(F, 3) a bone: its joint relative to the midpoint of the hip joints [m]."""
+    places: list[Array] = []
+    for bone in body.bones:
+        if bone.carrier < 0:
+            places.append(np.zeros((len(turns[0]), 3)))
+        else:
+            offset = bone.head - body.bones[bone.carrier].head
+            places.append(places[bone.carrier] + turns[bone.carrier] @ offset)
+    middle = 0.5 * (places[body.first["thigh.L"]] + places[body.first["thigh.R"]])
+    return [place - middle for place in places]
+
+
+# --- Places on a body that carry over to another
+
 
 HEAD_HEIGHT = 0.10
 """From the head's joint to the crown, as a share of stature."""

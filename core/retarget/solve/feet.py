@@ -12,16 +12,13 @@ from scipy.spatial.transform import Rotation
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
-from ...body.heading import UP
-from ...body.segment_motion import SegmentMotion
+from ...body.body_volume import sole_offsets
+from ...body.kinematics import SegmentMotion
+from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ...body.soles import sole_offsets
-from ...finish.contacts import RELEASE_SPEED_M_S, Contact
-from .foot_shape import FootShape
-from .ground import Ground, is_rigid
-from .hips import straightness
-from .holds import Hold, faded
-from .smoothing import ease, speeds
+from ...finish.planted_feet import RELEASE_SPEED_M_S, Contact
+from .foot_shape import FootShape, Ground, is_rigid
+from .hips import Hold, ease, faded, speeds, straightness
 from .stage import Stage
 from .two_bone import LimbPose, smallest_rotation
 

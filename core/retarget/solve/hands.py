@@ -12,15 +12,15 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...body import rotations
-from ...body.heading import UP
-from ...body.segment_motion import SegmentMotion
+from ...body.kinematics import SegmentMotion
+from ...body.posture import UP
 from ...body.skeleton import SIDES
 from ...numerics.vectors import unit
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
-from .ground import Ground
+from .foot_shape import Ground
+from .hips import ease, smoothed, speeds
 from .rest_body import RestBody
-from .smoothing import ease, smoothed, speeds
 from .stage import Stage
 from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m
 

@@ -1,15 +1,152 @@
-"""Hips: moved with what the standing feet are moved by, and lowered where a limb cannot reach.
-
-Both keep knees from bending: a nearly straight leg answers a centimeter with ten degrees.
-"""
+"""Holds: stretches of frames in which a path is replaced, and its fading correction on either side."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ...arrays import Array, BoolArray
-from .smoothing import ease, smooth_above, smoothed
+from ...body.posture import yaw_rotation
+from ...finish.foot_ground import smooth_step
+from ...numerics.vectors import columns_at, gaussian
 from .two_bone import STRAIGHTEST, LimbPose
+
+FADE_S = 0.2
+"""Time in which a correction fades on either side of a hold."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """A stretch of frames with a correction."""
+
+    first: int
+    """Its first frame, from 0."""
+    offset: Array
+    """(N, 3) the correction in each of its N frames."""
+
+    @property
+    def last(self) -> int:
+        """Its last frame, included."""
+        return self.first + len(self.offset) - 1
+
+
+def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array:
+    """(F, 3) the corrections of holds, fading on either side without a jump in place or speed.
+
+    Two holds that follow each other closely are joined by one cubic.
+
+    Args:
+        holds: In order, none overlapping another.
+        time_s: (F,) time of each frame [s].
+        fade_s: Time in which a correction fades [s].
+    """
+    offset = np.zeros((len(time_s), 3))
+    for hold in holds:
+        offset[hold.first : hold.last + 1] = hold.offset
+    for before, after in zip([None, *holds], [*holds, None], strict=True):
+        left = -1 if before is None else before.last
+        right = len(time_s) if after is None else after.first
+        if right - left < 2:
+            continue
+        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * fade_s
+        if before is not None:
+            end = time_s[right] if near else time_s[left] + fade_s
+            share, span = _share(time_s[left + 1 : right], time_s[left], end)
+            offset[left + 1 : right] += _cubic(share, before.offset[-1], span * _slope(before, time_s, -1))
+        if after is not None:
+            start = time_s[left] if near else time_s[right] - fade_s
+            share, span = _share(time_s[left + 1 : right], time_s[right], start)
+            offset[left + 1 : right] += _cubic(share, after.offset[0], span * _slope(after, time_s, 0))
+    return offset
+
+
+def _share(times: Array, edge: float, end: float) -> tuple[Array, float]:
+    """Share of the fade at some times, up to 1, and its signed length [s]."""
+    return np.clip((times - edge) / (end - edge), 0.0, 1.0), end - edge
+
+
+def _cubic(share: Array, value: Array, slope: Array) -> Array:
+    """From a value with a slope to zero without one; `slope` is that over the whole fade."""
+    s = share[:, None]
+    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * value + s * slope))
+
+
+def _slope(hold: Hold, time_s: Array, edge: int) -> Array:
+    """(3,) rate of the correction at the hold's first (0) or last (-1) frame."""
+    if len(hold.offset) < 2:
+        return np.zeros(3)
+    first, second = (0, 1) if edge == 0 else (-2, -1)
+    times = time_s[hold.first : hold.last + 1]
+    return np.asarray((hold.offset[second] - hold.offset[first]) / (times[second] - times[first]))
+
+
+# --- Signals over time
+
+
+def ease(value: Array, start: float, end: float) -> Array:
+    """0 up to `start`, 1 from `end` on (or the other way round, where `end` is below), smooth between."""
+    return smooth_step((np.asarray(value) - start) / (end - start))
+
+
+def speeds(path: Array, time_s: Array) -> Array:
+    """(F,) speed along a path (F, 3) [m/s]."""
+    if len(path) < 2:
+        return np.zeros(len(path))
+    return np.asarray(np.linalg.norm(np.gradient(path, time_s, axis=0), axis=-1))
+
+
+def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool = True) -> Array:
+    """Values (F, ...) smoothed by a Gaussian in time.
+
+    Args:
+        values: (F, ...).
+        time_s: (F,) time of each frame [s].
+        deviation_s: Standard deviation of the Gaussian [s].
+        ends_kept: Whether the first and last values stay and slopes go on beyond them, as a way's do; else
+            they are as smooth as all others.
+    """
+    if len(values) < 3:
+        return np.array(values)
+    even, step = _evenly(time_s)
+    columns = values.reshape(len(values), -1)
+    sampled = columns_at(even, time_s, columns)
+    reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
+    before, after = sampled[reach:0:-1], sampled[-2 : -reach - 2 : -1]
+    if ends_kept:
+        # Mirrored in value, too, about either end, so that the ends do not lag behind.
+        before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
+    extended = np.concatenate([before, sampled, after])
+    filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
+    back = columns_at(time_s, even, filtered)
+    return back.reshape(values.shape)
+
+
+def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
+    """A smooth signal (F,) that is nowhere below the needed one: its running maximum, smoothed.
+
+    Args:
+        needed: (F,).
+        time_s: (F,) time of each frame [s].
+        reach_s: Time over which it rises and falls to either side [s].
+    """
+    if len(needed) < 3 or not needed.any():
+        return np.array(needed)
+    step = float(np.median(np.diff(time_s)))
+    frames = max(1, int(np.ceil(reach_s / step)))
+    highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
+    window = np.hanning(2 * frames + 3)[1:-1]
+    return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
+
+
+def _evenly(time_s: Array) -> tuple[Array, float]:
+    """As many even times as there are frames, and the step between them [s]."""
+    even = np.linspace(time_s[0], time_s[-1], len(time_s))
+    return even, max(float(even[1] - even[0]), 1e-6)
+
+
+# --- Hips
+
 
 LEG_SOFT = 0.988
 """Share of its length from which a leg resists being stretched."""
@@ -78,3 +215,37 @@ def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:
     """(F,) how much lower the hips go, smoothly, for what their limbs need [m]."""
     highest = np.minimum(np.maximum.reduce(needed), DEEPEST_SHARE * leg_m)
     return smooth_above(highest, time_s, SINK_S)
+
+
+# --- The way over the ground
+
+
+WAY_S = 0.4
+"""Standard deviation in time of what counts as the way and heading; faster changes are sway."""
+
+
+def smooth_way(hips: Array, time_s: Array) -> Array:
+    """(F, 3) the smoothed way of the hips over the ground from where they begin [m]; heights are 0."""
+    way = smoothed(hips - hips[0], time_s, WAY_S) * [1.0, 1.0, 0.0]
+    return way - way[0]
+
+
+def smooth_headings_rad(headings_rad: Array, time_s: Array) -> Array:
+    """(F,) smoothed headings from the first one."""
+    return smoothed(np.unwrap(headings_rad) - headings_rad[0], time_s, WAY_S)
+
+
+def root_poses(rest: Array, stand: Array, way: Array, heading_rad: Array) -> Array:
+    """(F, 4, 4) poses of a root bone that goes along a way and turns, canonical [m].
+
+    Args:
+        rest: (4, 4) the bone at rest, canonical [m].
+        stand: (3,) the point that goes along the way, at rest [m].
+        way: (F, 3) [m].
+        heading_rad: (F,).
+    """
+    turn = yaw_rotation(heading_rad)
+    poses = np.broadcast_to(np.eye(4), (len(way), 4, 4)).copy()
+    poses[:, :3, :3] = turn @ rest[:3, :3]
+    poses[:, :3, 3] = stand + way + turn @ (rest[:3, 3] - stand)
+    return poses

@@ -15,11 +15,10 @@ from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import Character
+from ..character import LIMBS, MIDDLE, Character
+from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
-from ..maps.map_check import check_map
-from ..roles import LIMBS, MIDDLE
-from ..stance import find_stance
+from ..maps.map_registry import check_map
 
 SHORTEST_SHARE = 0.005
 """Least length of a long bone, as a share of the body's extent."""
@@ -204,3 +203,24 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
         return 0
     spine = [index for index in trunk.values() if bones[index].role in ("hips", "spine")]
     return spine[-1]
+
+
+# --- What a rest pose says against its map
+
+
+CLEARLY = 0.05
+"""Share of the leg's length by which toes lie clearly behind their ankle."""
+
+
+def rest_notes(body: RestBody) -> tuple[str, ...]:
+    """Sentences without a full stop on a rest pose that the map cannot mean."""
+    roles = [(f"foot.{side}", f"toe.{side}") for side in SIDES]
+    behind = [float(body.joint(toe)[1] - body.joint(foot)[1]) for foot, toe in roles if toe in body.first]
+    if behind and min(behind) > CLEARLY * body.leg_m:
+        return (
+            (
+                f"The toes of '{body.character.name}' point backward by its character map; left and "
+                "right may be mistaken for each other there"
+            ),
+        )
+    return ()

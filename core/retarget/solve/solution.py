@@ -6,19 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...body.heading import UP
-from ...body.segment_motion import SegmentMotion
+from ...body.kinematics import SegmentMotion
+from ...body.posture import UP
 from ...body.skeleton import SIDES
+from ..character import LIMBS
 from ..character_motion import FootRest, HandGoal
-from ..roles import LIMBS
+from .body_frames import bone_turns, joint_places
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
-from .foot_shape import FootShape
-from .ground import Ground
+from .foot_shape import FootShape, Ground
 from .hands import ARM_SOFT, above_floor, floor_goals, hand_goals, reach
 from .hips import LEG_SOFT, lowered_m, needed_drop_m, raised_m
 from .rest_body import RestBody
 from .stage import Stage
-from .turns import bone_turns, joint_places
 from .two_bone import LimbPose, reach_for
 
 HINGES = {

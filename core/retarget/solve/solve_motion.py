@@ -3,20 +3,18 @@
 import numpy as np
 
 from ...arrays import Array
-from ...body.heading import turn_headings_rad
-from ...body.segment_motion import SegmentMotion
+from ...body.kinematics import SegmentMotion
+from ...body.posture import turn_headings_rad
 from ...body.skeleton import SIDES
 from ...progress import Job, Progress
 from ..character import Character
 from ..character_motion import CharacterMotion, Similarity
 from ..maps.character_map import CharacterMap
 from ..options import Placement, RetargetOptions, RootMotion
-from .alignment import rest_alignment
-from .foot_shape import foot_shape, rest_floor_m, sole_points
-from .ground import find_ground
-from .rest_body import RestBody
-from .rest_notes import rest_notes
-from .root_motion import root_poses, smooth_headings_rad, smooth_way
+from .body_frames import rest_alignment
+from .foot_shape import find_ground, foot_shape, rest_floor_m, sole_points
+from .hips import root_poses, smooth_headings_rad, smooth_way
+from .rest_body import RestBody, rest_notes
 from .solution import Solution
 from .stage import find_stage
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...body.heading import turn_headings_rad, yaw_rotation
-from ...body.segment_motion import SegmentMotion
+from ...body.kinematics import SegmentMotion
+from ...body.posture import turn_headings_rad, yaw_rotation
 from ..character_motion import Similarity
-from .ground import Ground
+from .foot_shape import Ground
 
 
 @dataclass(frozen=True, eq=False)

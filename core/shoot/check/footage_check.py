@@ -4,22 +4,18 @@ import json
 
 import numpy as np
 
-from ...footage.clips.clip import Clip
-from ...footage.clips.clip_samples import SAMPLED_FRAMES, ClipSamples
+from ...footage.clips.clip import SAMPLED_FRAMES, Clip, ClipSamples, sample_spread_frames
 from ...footage.clips.clip_timing import is_variable_frame_rate
+from ...footage.clips.container import read_packets
 from ...footage.clips.image_sequence import ImageSequence
-from ...footage.clips.packets import read_packets
-from ...footage.clips.spread_frames import sample_spread_frames
 from ...footage.clips.video_file import VideoFile
-from ...footage.ignored_region_fields import IGNORED_REGIONS, ignored_region_fields
-from ...footage.ignored_regions import IgnoredRegion
+from ...footage.ignored_regions import IGNORED_REGIONS, IgnoredRegion, ignored_region_fields
 from ...footage.marker_check import MarkerCheck, MarkerReadout, check_markers
 from ...progress import run
-from ...take.clip_check import check_size
-from ...take.clip_notes import VARIABLE_RATE, rate_note
+from ...take.clip_check import VARIABLE_RATE, check_size, rate_note
 from ...take.read_footage import expected_regions
 from ...take.take import Take
-from .findings import Findings
+from .evidence_check import Findings
 
 ENOUGH_FRAMES = SAMPLED_FRAMES // 2
 """Sampled frames without a marker's color from which on the conversion will not find it either."""

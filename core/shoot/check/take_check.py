@@ -6,26 +6,21 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ...estimate.reconstruct import check_method
-from ...files.fields import Fields
-from ...files.inherited_fields import PLACED, child_location
+from ...files.fields import PLACED, Fields, child_location
 from ...footage.clips.clip import Clip
 from ...footage.marker_check import MarkerReadout
 from ...pipeline.found_keyframes import take_to_convert
 from ...posing.posing_input import check_followed
-from ...take.character_settings import CharacterSettings
 from ...take.clip_check import open_footage
-from ...take.conversion_settings import NO_SETTINGS, ConversionSettings
+from ...take.conversion_settings import METHODS, NO_SETTINGS, CharacterSettings, ConversionSettings
 from ...take.description import Description
 from ...take.evidence import evidence_of
 from ...take.evidence_kinds import CONTOURS, KEYPOINTS, MARKERS
-from ...take.methods import METHODS
 from ...take.take import Take
 from ...take.take_file import read_described
-from ..shoot import ShootTake
-from .findings import Findings
+from ..discovery import ShootTake
+from .evidence_check import Findings, KeypointReadout, check_keyframes, check_keypoints
 from .footage_check import check_footage, count_frames
-from .keyframe_check import check_keyframes
-from .keypoint_check import KeypointReadout, check_keypoints
 
 _CAMERA = {
     "lens_mm": "the focal length in millimeters",

@@ -10,11 +10,11 @@ import numpy as np
 from ....core.arrays import Image
 from ....core.body.human import HUMAN
 from ....core.progress import run, within
-from ....core.report.thumbnail import thumbnail
+from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
 from ..actor_lengths import read_body
 from ..final_motion import motion_frames, read_values, shown_postures
-from ..rig import read_rig
+from ..finish_motion import read_rig
 
 DRAWN_FRAMES = 25
 """Frames of the motion that the picture is drawn from."""

@@ -1,9 +1,4 @@
-"""Motions as assets: Actions, and actors that they animate.
-
-The curves are those that `convert` writes: of an armature as Keymark builds it, at the world's origin, every
-bone in the rotation mode it is built with. All actors have the same bones, so that any of these Actions can
-be assigned to any of them.
-"""
+"""Characters' Actions out of results, as they were made."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -11,21 +6,65 @@ from pathlib import Path
 
 import bpy
 
+from ....core.errors import InputError
+from ....core.files.control_characters import real_path
 from ....core.finish.natural_extremities import natural_extremities
-from ....core.report.thumbnail import thumbnail
+from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
-from ..actions import assign_action, new_channelbag
-from ..armature import build_armature
-from ..bone_channels import channels_at_rest
-from ..bones import bone_models, rest_matrices, usual_mode
-from ..fcurves import channel_columns
+from ..actions import action_digest, assign_action, new_channelbag
+from ..armature import bone_models, build_armature, rest_matrices, usual_mode
+from ..blend_files import check_blend, one_line, own_scene
+from ..fcurves import channel_columns, channels_at_rest
 from ..keys import add_generated_keys
 from ..object_space import AT_ORIGIN
-from ..own_scene import own_scene
 from ..scene_frames import scene_frames
-from .asset_blend import write_asset_blend
-from .character_actions import CharacterAsset
+from .catalogs import write_asset_blend
 from .marking import AssetDetails, mark_asset
+
+
+@dataclass(frozen=True, eq=False)
+class CharacterAsset:
+    """A character's Action with its details for the asset browser."""
+
+    name: str
+    catalog: str
+    """Path of its catalog below that of all characters, with slashes."""
+    description: str
+    tags: tuple[str, ...]
+    motion: Motion
+    """What it was made of, for the picture."""
+    action: bpy.types.Action
+
+
+def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Action:
+    """Append a character's Action; the character itself stays where it is.
+
+    Args:
+        blend: A character.blend.
+        name: The Action's name in it.
+        curves: Digest of its curves.
+
+    Raises:
+        InputError: The file cannot be read, lacks the Action, or holds another one than was made.
+    """
+    check_blend(blend, "a character")
+    try:
+        with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):
+            wanted.actions = [one for one in inside.actions if one == name]
+    except (OSError, RuntimeError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again"
+        ) from error
+    action = next((one for one in wanted.actions if one is not None), None)
+    if action is None:
+        raise InputError(f"{blend}: lacks its Action; convert the take again")
+    if action_digest(action) != curves:
+        raise InputError(f"{blend}: is not the file that the conversion wrote; convert the take again")
+    return action
+
+
+# --- Motions as assets
+
 
 MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 """Parents of the catalogs of all shoots."""

@@ -5,13 +5,20 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
-from ....core.arrays import Array
+from ....core.arrays import Array, Image
 from ....core.numerics.vectors import across
 from ....core.report.canvas import LEFT, RIGHT, Color
-from ....core.report.character_figure import SKIN, CharacterFigure
-from ....core.retarget.figure_lines import FigureLine
+from ....core.report.character_sheet import character_sheet
+from ....core.report.mannequin import SKIN, CharacterFigure
+from ....core.report.overlay_sheet import evenly_spaced_frames
+from ....core.report.pictures import footage_frames
+from ....core.retarget.figure_lines import FigureLine, figure_lines
+from ....core.retarget.maps.character_map import CharacterMap
+from ..camera_placement import read_camera
+from ..footage import Footage
 from ..object_space import evaluated
-from .skins import skins
+from ..scene_frames import at_scene_frame
+from .import_character import skins
 
 MOST_TRIANGLES = 200_000
 """With more, bones are drawn: a picture need not take half a minute."""
@@ -110,3 +117,44 @@ def _ring(start: Array, end: Array) -> list[Array] | None:
     aside = across(along)
     other = np.cross(along / size, aside)
     return [start + WAIST * along + THICKNESS * size * (a * aside + b * other) for a, b in CORNERS]
+
+
+# --- The picture of a character's motion
+
+
+MOST_FRAMES = 6
+
+
+def character_picture(
+    scene: bpy.types.Scene,
+    armature_object: bpy.types.Object,
+    character_map: CharacterMap,
+    frames: Array,
+    floor_m: float,
+) -> Image | None:
+    """Draw a character that shows its motion in a scene with the footage; None where there is no footage.
+
+    Args:
+        scene: A scene with the footage's clip and camera; its current frame is as before afterwards.
+        armature_object: The character, with the Action.
+        character_map: Its map, for a character without a mesh.
+        frames: (F,) scene frames of the motion, the clip's frames in order.
+        floor_m: Height of the floor under the character in the world [m].
+
+    Raises:
+        InputError: The clip cannot be read.
+    """
+    if scene.active_clip is None or scene.camera is None:
+        return None
+    footage = Footage(scene, scene.active_clip, scene.camera)
+    camera = read_camera(footage, frames)
+    shown = evenly_spaced_frames(len(frames), MOST_FRAMES)
+    lines = figure_lines(character_map)
+    figures = {}
+    with at_scene_frame(scene) as go_to:
+        for index in shown:
+            go_to(float(frames[index]))
+            figures[index] = character_figure(armature_object, lines)
+    images = footage_frames(footage.open(), shown)
+    first = round(float(frames[0]))
+    return character_sheet(armature_object.name, figures, camera, images, first, floor_m)

@@ -2,7 +2,7 @@
 
 import shutil
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,14 +10,13 @@ from pathlib import Path
 import bpy
 
 from ....core.errors import InputError
+from ....core.files.control_characters import real_path, regular_file_size
 from ....core.files.fields import listed
 from ....core.files.json_file import shown
-from ....core.files.paths import real_path
-from ....core.files.regular_file import regular_file_size
-from ....core.take.character_settings import CharacterFile
-from ..blend_reader import check_blend
-from ..blend_writer import one_line
-from ..own_scene import showing_scene
+from ....core.take.conversion_settings import CharacterFile
+from ..actions import curve_digest
+from ..blend_files import check_blend, one_line, showing_scene, write_blend
+from ..export_formats import FORMATS, export_motion
 
 MOST_NAMED = 5
 """Armatures named in a sentence."""
@@ -199,3 +198,66 @@ def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.ty
     for other in list(scene.collection.children):
         if other != collection:
             scene.collection.children.unlink(other)
+
+
+# --- The meshes of a character
+
+
+def skins(armature_object: bpy.types.Object) -> list[bpy.types.Object]:
+    """The rendered meshes that the armature deforms or carries, in its first scene."""
+    found = []
+    for scene in armature_object.users_scene[:1]:
+        for one in scene.objects:
+            if one.type == "MESH" and not one.hide_render:
+                if is_deformed(one, armature_object) or one.parent == armature_object:
+                    found.append(one)
+    return found
+
+
+def is_deformed(mesh_object: bpy.types.Object, armature_object: bpy.types.Object) -> bool:
+    """Whether an armature deforms a mesh."""
+    by_modifier = any(
+        modifier.type == "ARMATURE" and modifier.object == armature_object
+        for modifier in mesh_object.modifiers
+    )
+    return by_modifier or (mesh_object.parent == armature_object and mesh_object.parent_type == "ARMATURE")
+
+
+# --- A retargeted character as files
+
+
+def write_character_files(
+    scene: bpy.types.Scene,
+    imported: ImportedCharacter,
+    action: bpy.types.Action,
+    blend: Path,
+    exports: Mapping[str, Path],
+) -> str:
+    """Write a character with its Action.
+
+    A failure may leave half a file at these paths: the caller passes a staging folder.
+
+    Args:
+        scene: The scene with the character, its camera and range.
+        imported: The character, which the Action animates.
+        action: The motion.
+        blend: Path of the .blend; its folder exists.
+        exports: Paths by name of a format of `export_formats.FORMATS`.
+
+    Returns:
+        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
+
+    Raises:
+        ConversionError: Blender could not write a file.
+    """
+    scene.frame_set(scene.frame_start)
+    write_blend(blend, {scene, *imported.texts}, path_remap="RELATIVE_ALL", fake_user=False)
+    frames = (scene.frame_start, scene.frame_end)
+    for name, path in exports.items():
+        export_motion(scene, imported.armature, action, frames, FORMATS[name], path, along=imported.objects)
+    return curve_digest(imported.armature)
+
+
+def missing_exporter(name: str) -> str | None:
+    """Why this Blender cannot write a format; None where it can."""
+    return FORMATS[name].missing()

@@ -8,20 +8,18 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.body.segment_motion import SegmentMotion
+from ....core.body.kinematics import SegmentMotion
 from ....core.progress import Part, scaled
-from ....core.retarget.character import Character
+from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.character_motion import CharacterMotion
 from ....core.retarget.controls.control_plan import joint_roles
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Quality, farthest_mm, measured
-from ....core.retarget.roles import LIMBS
 from ..actions import existing_channelbag
 from ..object_space import evaluated, object_space
 from ..scene_frames import at_scene_frame
-from .controls.posing import Property, Value, posing
-from .controls.property_paths import property_path
+from .controls import Property, Value, posing, property_path
 from .write_retargeted import RetargetedKeys, write_keys
 
 TEMPORARY = "Keymark Measuring"

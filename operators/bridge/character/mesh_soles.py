@@ -8,10 +8,10 @@ import numpy as np
 from ....core.arrays import Array, IndexArray
 from ....core.body.skeleton import SIDES
 from ....core.retarget.character import Character
+from ....core.retarget.character_motion import find_stance
 from ....core.retarget.maps.character_map import CharacterMap, Point
-from ....core.retarget.stance import find_stance
-from .controls.dependencies import active_constraints, constraint_bones
-from .skins import is_deformed, skins
+from .controls import active_constraints, constraint_bones
+from .import_character import is_deformed, skins
 
 PARTS = ("foot", "toe")
 NEAR = 0.35

@@ -1,40 +1,91 @@
-"""Retarget a motion to a character: solved, brought onto its controls, reduced to few keys, measured."""
+"""A character map made ready for its character: soles of the mesh, controls found, properties checked."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import bpy
 
 from ....core.arrays import Array
-from ....core.body.segment_motion import SegmentMotion
+from ....core.body.kinematics import SegmentMotion
 from ....core.errors import InputError
 from ....core.progress import Job, Progress, stretch, within
 from ....core.retarget.character import Character
-from ....core.retarget.character_motion import CharacterMotion, Similarity
+from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
 from ....core.retarget.controls.control_channels import control_channels
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
 from ....core.retarget.controls.control_plan import ControlKind, limb_bones, planned_controls
-from ....core.retarget.controls.control_reduction import reduce_controls
-from ....core.retarget.controls.control_targets import control_targets
-from ....core.retarget.controls.held_points import held_points
-from ....core.retarget.controls.limb_paths import limb_paths
-from ....core.retarget.controls.point_tolerances import ToleranceRules
-from ....core.retarget.maps.character_map import CharacterMap
-from ....core.retarget.maps.map_check import check_map
+from ....core.retarget.controls.control_targets import control_targets, limb_paths
+from ....core.retarget.controls.point_tolerances import ToleranceRules, held_points
+from ....core.retarget.controls.stages import reduce_controls
+from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
+from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.options import Placement, RetargetOptions
 from ....core.retarget.quality import Quality
+from ....core.retarget.recognition.facing import find_root
 from ....core.retarget.solve.solve_motion import solve_motion
 from ..actions import assign_action
 from ..object_space import object_space
 from ..rotation_modes import rotation_values
-from .complete_map import complete_map
-from .controls.channel_notes import channel_notes
-from .controls.probe_controls import ProbedControls, probe_controls
-from .controls.shown_properties import fk_properties, shown_properties
+from .channel_notes import channel_notes
+from .controls import fk_properties, shown_properties
 from .measure import measure_keys
-from .object_placement import placement_keys, require_placeable
-from .pose_scales import scaled_bones
+from .mesh_soles import mesh_soles
+from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
-from .write_retargeted import RetargetedKeys, write_keys
+from .write_retargeted import RetargetedKeys, placement_keys, require_placeable, scaled_bones, write_keys
+
+
+def complete_map(
+    armature_object: bpy.types.Object, character: Character, character_map: CharacterMap
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """Add to a map what only Blender knows; what it says stays. Notes say what of it the rig lacks."""
+    completed, notes = _with_properties(armature_object, character_map)
+    if completed.root is None:
+        up = find_stance(character, completed)[2]
+        completed = replace(completed, root=find_root(character, completed, up))
+    if not completed.soles:
+        completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
+    return completed, notes
+
+
+def _switched(controls: IkControls, there: Callable[[str, str], bool]) -> IkControls:
+    """Controls of a limb without a switch that is not there."""
+    switch = controls.switch
+    return (
+        controls if switch is None or there(switch.bone, switch.property) else replace(controls, switch=None)
+    )
+
+
+def _lost_switches(before: Mapping[str, IkControls], after: Mapping[str, IkControls]) -> list[Switch]:
+    switches = ((before[limb].switch, after[limb].switch) for limb in before)
+    return [first for first, second in switches if first is not None and second is None]
+
+
+def _with_properties(
+    armature_object: bpy.types.Object, character_map: CharacterMap
+) -> tuple[CharacterMap, tuple[str, ...]]:
+    """The map without settings and switches that the armature lacks, and sentences on them."""
+    bones = armature_object.pose.bones
+
+    def there(bone: str, name: str) -> bool:
+        return isinstance(bones[bone].get(name), int | float)
+
+    settings = tuple(one for one in character_map.settings if there(one.bone, one.property))
+    ik = {limb: _switched(controls, there) for limb, controls in character_map.ik.items()}
+    lost = [(one.bone, one.property) for one in character_map.settings if one not in settings]
+    lost += [(one.bone, one.property) for one in _lost_switches(character_map.ik, ik)]
+    notes = tuple(
+        (
+            f"Bone '{bone}' has no property '{name}' that could be keyed; the rig may be of another "
+            f"version than the map '{character_map.title}'"
+        )
+        for bone, name in lost
+    )
+    return replace(character_map, settings=settings, ik=ik), notes
+
+
+# --- Retarget a motion to a character
+
 
 SOLVED, PROBED, REDUCED = 0.25, 0.3, 0.8
 """Shares of the job at which the motion is solved, the controls are known, and the keys are found."""

@@ -1,20 +1,28 @@
 """The motion that a character is to perform: an Action of a Keymark actor, hands and feet included."""
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 
 from ....core.arrays import Array
-from ....core.body.extremities import Extremities, extremity_names
 from ....core.body.human import HUMAN
-from ....core.body.segment_motion import SegmentMotion, segment_motion
+from ....core.body.kinematics import Extremities, SegmentMotion, extremity_names, segment_motion
+from ....core.errors import InputError
+from ....core.files.control_characters import real_path
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.finish.rig import Rig, RigPose
 from ....core.progress import Job, Progress, within
+from ....core.take.motion import Motion
 from ..actions import existing_channelbag
 from ..actor_lengths import read_body
+from ..blend_files import check_blend, one_line
 from ..final_motion import motion_frames, read_values, shown_postures
-from ..rig import read_rig
+from ..finish_motion import read_rig
+from ..footage import set_scene_range
+from ..result_files import set_look
 from ..rotation_modes import ALL_PATHS, bone_path
+from ..scene_frames import scene_frames
 
 READ, SEEN = 0.7, 0.8
 """Shares of the job at which the curves are read, and their postures known."""
@@ -69,3 +77,55 @@ def _turn(rig: Rig, shown: RigPose, name: str) -> Array:
     """(F, 3, 3) the turn of a hand or foot in its parent's frame."""
     index = next(number for number, bone in enumerate(rig.bones) if bone.name == name)
     return shown.local(rig, index, slice(None))
+
+
+# --- Camera and clip of a result, copied out of its motion.blend into another scene
+
+
+RENDER = ("resolution_x", "resolution_y", "resolution_percentage", "fps", "fps_base")
+USUAL_SIZE = (1920, 1080)
+
+
+def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> Array:
+    """Show a result's footage behind its camera, with rate, range and look.
+
+    Args:
+        scene: The scene to change.
+        blend: The result's motion.blend; None where there is none, and the scene gets rate and range alone.
+        motion: Its motion, F frames.
+
+    Returns:
+        (F,) scene frames of the motion.
+
+    Raises:
+        InputError: Blender cannot read the .blend.
+    """
+    set_scene_range(scene, USUAL_SIZE, motion.fps, motion.frame_start, len(motion.time_s))
+    set_look(scene)
+    if blend is not None:
+        _copy_footage(scene, blend)
+    rate = scene.render.fps / scene.render.fps_base
+    frames = scene_frames(motion.time_s, motion.frame_start, rate)
+    scene.frame_start = motion.frame_start
+    scene.frame_end = max(scene.frame_start + len(frames) - 1, int(np.floor(frames[-1])))
+    return frames
+
+
+def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
+    """Take camera, clip, size and rate from the first scene of a .blend that shows a clip."""
+    check_blend(blend, "a result")
+    try:
+        with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):
+            wanted.scenes = list(inside.scenes)
+    except (OSError, RuntimeError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"{blend}: Blender cannot read it ({one_line(error)}); convert the take again, or name its "
+            "motion.json instead"
+        ) from error
+    shown = next((one for one in wanted.scenes if one is not None and one.camera and one.active_clip), None)
+    if shown is None:
+        return
+    for name in RENDER:
+        setattr(scene.render, name, getattr(shown.render, name))
+    scene.collection.objects.link(shown.camera)
+    scene.camera, scene.active_clip = shown.camera, shown.active_clip

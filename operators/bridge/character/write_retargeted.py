@@ -1,4 +1,4 @@
-"""Write a retargeted motion into an Action; of what is there, only what an earlier retargeting made goes."""
+"""Bones that a pose scales: a motion that is solved for the rest's lengths keys them at one."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -8,16 +8,96 @@ import bpy
 import numpy as np
 
 from ....core.arrays import Array
+from ....core.errors import InputError
 from ....core.finish.hermite import Spline
+from ....core.retarget.character_motion import Similarity
 from ....core.retarget.controls.control_motion import KeyedControl
 from ..actions import channelbag_for
 from ..keys import ensure_fcurve, write_linear_keys, write_smooth_keys
-from ..rotation_modes import ALL_PATHS, bone_path
-from .controls.channel_notes import driven_channels, keyed_paths
-from .controls.posing import Property, Value
-from .controls.property_paths import property_path
-from .object_placement import PlacementKeys
-from .pose_scales import ONE
+from ..object_space import evaluated
+from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
+from .channel_notes import driven_channels, keyed_paths
+from .controls import Property, Value, property_path
+
+ONE = (1.0, 1.0, 1.0)
+NOTICEABLE = 1e-3
+
+
+def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tuple[str, ...]:
+    """The bones, and those above them, that are scaled now."""
+    found: dict[str, None] = {}
+    for name in names:
+        bone = armature_object.pose.bones[name]
+        for one in (bone, *bone.parent_recursive):
+            if max(abs(value - 1.0) for value in one.scale) > NOTICEABLE:
+                found[one.name] = None
+    return tuple(found)
+
+
+# --- Where an armature object stands, as channels that an Action may hold
+
+
+PlacementKeys = tuple[tuple[str, Array], ...]
+"""Data paths of the object's channels with their values."""
+CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler")
+
+
+def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> PlacementKeys:
+    """The object's location and rotation, in its own rotation mode, with which it stands somewhere.
+
+    Args:
+        armature_object: The object, with any parent; its scale stays.
+        to_world: From its own space to the world.
+    """
+    world = np.eye(4)
+    world[:3, :3], world[:3, 3] = to_world.rotation, to_world.location
+    basis = np.linalg.inv(_around(armature_object)) @ world
+    turn = basis[:3, :3] / np.linalg.norm(basis[:3, :3], axis=0)
+    mode = armature_object.rotation_mode
+    delta = _delta_rotation(armature_object)
+    location = basis[:3, 3] - np.array(armature_object.delta_location)
+    return (("location", location), (rotation_path(mode), rotation_values((delta.T @ turn)[None], mode)[0]))
+
+
+def _around(armature_object: bpy.types.Object) -> Array:
+    """(4, 4) what the object's own transform is multiplied with: parents."""
+    shown = evaluated(armature_object)
+    world = np.array(shown.matrix_world, dtype=np.float64)
+    return world @ np.linalg.inv(np.array(shown.matrix_basis, dtype=np.float64))
+
+
+def _delta_rotation(armature_object: bpy.types.Object) -> Array:
+    if armature_object.rotation_mode == "AXIS_ANGLE":  # has a delta of its own, which nobody can set
+        return np.eye(3)
+    if armature_object.rotation_mode == "QUATERNION":
+        delta = armature_object.delta_rotation_quaternion
+    else:
+        delta = armature_object.delta_rotation_euler.to_quaternion()
+    return np.array(delta.normalized().to_matrix(), dtype=np.float64)
+
+
+def require_placeable(armature_object: bpy.types.Object) -> None:
+    """Raise InputError where constraints or drivers decide where an object stands."""
+    name = armature_object.name
+    working = [one.name for one in armature_object.constraints if not one.mute and one.influence > 0.0]
+    if working:
+        raise InputError(
+            f"armature '{name}' stands where its constraint '{working[0]}' puts it; mute it, or let the "
+            "motion begin where the character stands"
+        )
+    data = armature_object.animation_data
+    driven = (
+        [] if data is None else [one for one in data.drivers if one.data_path in CHANNELS and not one.mute]
+    )
+    if driven:
+        raise InputError(
+            f"armature '{name}' has a driver on '{driven[0].data_path}', which wins over keys; mute it, "
+            "or let the motion begin where the character stands"
+        )
+
+
+# --- Write a retargeted motion into an Action
+
 
 MADE_BY_KEYMARK = "keymark_retargeted"
 """Custom property of an Action: which curves of which slot retargeting made, as JSON."""

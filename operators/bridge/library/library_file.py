@@ -1,11 +1,87 @@
-"""Keyframe libraries in files, by their suffix: .json, or .blend with pose assets."""
+"""Keyframe libraries as .blend files of pose assets with catalogs: written, and read from untrusted files."""
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
+import bpy
+
 from ....core.errors import InputError
-from ....core.library.library import Library
-from ....core.library.library_file import read_library, write_library
-from .library_blend import read_library_blend, write_library_blend
+from ....core.prior.library import MOST_POSTURES, Library, read_library, write_library
+from ..assets.catalogs import write_asset_blend
+from ..blend_files import check_blend, one_line
+from .pose_assets import add_assets, catalog_of, is_posture, library_from_assets
+
+LARGEST_BYTES = 256 * 2**20
+"""Enough for a library of a thousand postures with pictures; refuses a film's scene named by mistake."""
+
+
+def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
+    """Write a library's pose assets and nothing else into a .blend, and its catalogs into their file.
+
+    The open file is not touched. Both files appear whole, or neither.
+
+    Args:
+        path: The .blend.
+        library: The library.
+        root: Folder of the asset library that `path` lies in, whose catalogs are kept there; by default that
+            of the .blend itself.
+
+    Raises:
+        InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
+            file.
+        ConversionError: A file cannot be written.
+    """
+    catalogs = [catalog_of(library, posture) for posture in library.postures]
+    with bpy.data.temp_data() as data:
+        assets = zip(add_assets(library, data), catalogs, strict=True)
+        write_asset_blend(path, root or path.parent, data, assets)
+
+
+def read_library_blend(path: Path) -> tuple[Library, ...]:
+    """The libraries whose pose assets a .blend holds; nothing of it stays in the open file.
+
+    Only Actions marked as assets are loaded, and of these only curves and texts are read: scripts, drivers
+    and other data are neither loaded nor run.
+
+    Raises:
+        InputError: The file is not a .blend, damaged or too large, or has no library.
+    """
+    check_blend(path, "a library", LARGEST_BYTES)
+    with _loaded_actions(path) as actions:
+        libraries = library_from_assets(actions)
+    if not libraries:
+        raise InputError(
+            f"{path}: holds no pose assets of a keyframe library; export one with Keymark, as .blend or .json"
+        )
+    return libraries
+
+
+@contextmanager
+def _loaded_actions(path: Path) -> Iterator[Sequence[bpy.types.Action]]:
+    """The Actions of a .blend that are marked as assets; all that was loaded is removed afterwards."""
+    before = set(bpy.data.user_map())
+    try:
+        try:
+            with bpy.data.libraries.load(str(path), link=False, assets_only=True) as (found, wanted):
+                names = list(found.actions)
+                if len(names) <= MOST_POSTURES:
+                    wanted.actions = names
+        except (OSError, RuntimeError, UnicodeDecodeError) as error:
+            raise InputError(
+                f"{path}: Blender cannot read it ({one_line(error)}); it may be damaged or cut off"
+            ) from error
+        if len(names) > MOST_POSTURES:
+            raise InputError(
+                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
+            )
+        yield [action for action in wanted.actions if action is not None and is_posture(action)]
+    finally:
+        bpy.data.batch_remove(set(bpy.data.user_map()) - before)
+
+
+# --- Keyframe libraries in files, by their suffix
+
 
 JSON, BLEND = ".json", ".blend"
 

@@ -18,10 +18,9 @@ from ....core.body.actor import Actor
 from ....core.body.kinematics import Body
 from ....core.errors import InputError
 from ....core.files.json_file import parse_json
-from ....core.library.library import Library, LibraryPosture
-from ....core.library.text_fields import LONGEST_TAG
-from ....core.library.texts import LONGEST_NAME, text_fault, unique_name
-from ....core.report.posture_picture import posture_picture
+from ....core.prior.library import Library, LibraryPosture
+from ....core.prior.texts import LONGEST_NAME, LONGEST_TAG, text_fault, unique_name
+from ....core.report.mannequin import posture_picture
 from ..assets.catalogs import catalog_identifier
 from ..assets.marking import AssetDetails, mark_asset
 from ..posture_curves import read_posture_curves, write_posture_curves

@@ -8,17 +8,19 @@ import numpy as np
 
 from ....core.arrays import Array
 from ....core.body.actor import Actor
-from ....core.body.heading import headings_rad, turned_and_shifted
+from ....core.body.body_volume import lower_sole_m
 from ....core.body.human import HUMAN
 from ....core.body.kinematics import Body
-from ....core.body.posture import Posture
-from ....core.body.soles import lower_sole_m
+from ....core.body.posture import Posture, headings_rad, turned_and_shifted
 from ....core.errors import InputError
-from ....core.library.learning import LibraryMetadata, numbered_names
-from ....core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from ....core.library.texts import identifier_from, unique_name
-from ....core.library.transfer import transferred
+from ....core.prior.learning import LibraryMetadata, learn_library, numbered_names
+from ....core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
+from ....core.prior.texts import identifier_from, unique_name
+from ....core.prior.transfer import transferred
+from ....core.progress import run
 from ..actor_lengths import read_body
+from ..final_motion import motion_frames, read_values, shown_postures
+from ..finish_motion import read_rig
 from ..keyframes import keyed_frames, read_keyframes
 from ..posture_curves import read_posture_curves
 from .pose_assets import is_posture, library_from_assets
@@ -124,4 +126,37 @@ def _empty(body: Body, about: LibraryMetadata) -> Library:
 def _checked(library: Library) -> Library:
     """The library, which is what a file may hold: names are typed by people."""
     Library.from_json(library.to_json(), f"library '{library.title}'")
+    return library
+
+
+# --- A keyframe library learned from the motion in an Action, the animator's changes included
+
+
+def library_from_action(
+    armature_object: bpy.types.Object,
+    action: bpy.types.Action,
+    frame_s: float,
+    about: LibraryMetadata,
+    count: int | None = None,
+) -> Library:
+    """Learn a library from the motion that an Action holds for an actor.
+
+    Args:
+        armature_object: The actor.
+        action: The motion, with the animator's changes.
+        frame_s: Time from one scene frame to the next [s].
+        about: Title, author and license.
+        count: How many postures; by default 10 to 40, as many as differ.
+
+    Raises:
+        InputError: The Action has no motion of the actor, the armature is not an actor's, or the motion
+            is too short or stands still, or title, author or license is invalid.
+    """
+    body = read_body(armature_object, HUMAN)
+    rig = read_rig(armature_object, body)
+    frames = motion_frames(armature_object, action, body)
+    values = run(read_values(armature_object, action, rig, frames))
+    posture = shown_postures(armature_object, rig, rig.pose(values), body)
+    library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
+    Library.from_json(library.to_json(), f"library '{about.title}'")  # checks what was typed
     return library

@@ -1,5 +1,6 @@
 """Memory and processors of the machine, and the memory of this process, as far as the system tells."""
 
+import importlib.util
 import os
 import sys
 from contextlib import suppress
@@ -34,3 +35,26 @@ def processor_count() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+# --- Script that runs a worker in plain Python
+
+
+ROOT = Path(__file__).resolve().parents[3]
+PACKAGE = "keymark"
+
+
+def main() -> int:
+    """Run the command `worker`; returns the exit status."""
+    spec = importlib.util.spec_from_file_location(
+        PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
+    )
+    assert spec is not None and spec.loader is not None
+    sys.modules[PACKAGE] = package = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(package)
+    status: int = importlib.import_module(f"{PACKAGE}.operators.cli.main").main(["worker"])
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

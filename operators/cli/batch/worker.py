@@ -16,9 +16,9 @@ from ....core.shoot.outcomes import CONVERSION, CRASH, INPUT
 from ..blender_silence import blender_silence
 from ..console import JOB_SHARE, Console
 from ..conversion.convert_take import convert_if_changed
-from ..usage import UsageError
+from ..parser import UsageError
 from .machine_resources import resident_bytes
-from .protocol import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
+from .worker_process import BUSY, CONVERTED, FAILED, UNCHANGED, Done, Job, Message, Ready, Step, message_line
 
 SHORTEST_STEP_S = 0.5
 """Shortest time between two messages on the progress of a job."""

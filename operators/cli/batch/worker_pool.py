@@ -14,9 +14,19 @@ from types import FrameType
 
 from ....core.errors import ConversionError
 from ....core.shoot.outcomes import CRASH
-from .batch_outcomes import BatchOutcomes
-from .protocol import BUSY, FAILED, Done, Job, Message, Ready, Step
-from .worker_process import START_TIMEOUT_S, Events, WorkerProcess
+from .outcomes import BatchOutcomes
+from .worker_process import (
+    BUSY,
+    FAILED,
+    START_TIMEOUT_S,
+    Done,
+    Events,
+    Job,
+    Message,
+    Ready,
+    Step,
+    WorkerProcess,
+)
 
 MOST_ATTEMPTS = 2
 """A job whose worker is lost is retried once, by a new worker; the start of a worker likewise."""

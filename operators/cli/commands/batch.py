@@ -14,18 +14,15 @@ from pathlib import Path
 
 from ....core.errors import ConversionError, InputError
 from ....core.files.fields import listed
-from ....core.shoot.discovery import check_output, open_shoot
-from ....core.shoot.shoot import Shoot, ShootTake, part_of
+from ....core.shoot.discovery import Shoot, ShootTake, check_output, open_shoot, part_of
 from ....core.take.conversion_settings import ConversionSettings
-from ..batch.batch_outcomes import BatchOutcomes
 from ..batch.machine_resources import available_memory_bytes, processor_count
-from ..batch.protocol import Job
+from ..batch.outcomes import BatchOutcomes
 from ..batch.worker_pool import WorkerPool
-from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, worker_command_line
-from ..command import Command
+from ..batch.worker_process import HEARTBEAT_TIMEOUT_S, Job, worker_command_line
 from ..console import Console, arguments_console
 from ..options import SHOOT_HELP, add_shoot_options, given_settings
-from ..usage import UsageError, require_blender
+from ..parser import Command, UsageError, require_blender
 
 WORKER_BYTES = 1.5 * 2**30
 """Memory that a worker may need; the default number of jobs leaves each this much."""
@@ -183,4 +180,21 @@ BATCH = Command(
     ),
     add_arguments=_add_arguments,
     run=batch_command,
+)
+
+
+# --- `keymark worker`
+
+
+def run(_arguments: argparse.Namespace) -> None:
+    """Convert the jobs of a batch."""
+    from ..batch.worker import run_worker
+
+    run_worker()
+
+
+WORKER = Command(
+    name="worker",
+    description="",
+    run=run,
 )

@@ -3,8 +3,15 @@
 import argparse
 from pathlib import Path
 
-from ..command import Command
+from ....core.retarget.character import ROLES
+from ....core.retarget.maps.character_map import CharacterMap, IkControls, write_character_map
+from ....core.retarget.maps.map_registry import ChosenMap
+from ....core.retarget.retarget_record import GIVEN, SAVED
+from ....core.take.conversion_settings import CharacterFile
+from ..console import arguments_console, terminal_columns, wrapped
+from ..conversion.character_result import opened_character
 from ..options import CHARACTER_HELP, MAP_HELP
+from ..parser import Command, refuse_existing, require_blender
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,8 +24,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Show the character."""
-    from ..use_cases.character import character_command
-
     character_command(arguments)
 
 
@@ -32,3 +37,94 @@ CHARACTER = Command(
     add_arguments=add_arguments,
     run=run,
 )
+
+
+# --- `keymark character`
+
+
+UNSURE = 0.75
+"""Confidence below which a role is marked."""
+SOURCE_WORDS = {"preset": "convention", "names": "names", "shape": "shape", "you": "a person"}
+
+
+def character_command(arguments: argparse.Namespace) -> None:
+    """Show which bones play which role, how surely, and what is doubtful; write the map.
+
+    Raises:
+        InputError: The character or the map cannot be used; nothing was written.
+    """
+    require_blender("opening a character needs")
+    file = CharacterFile.parse(arguments.character)
+    if arguments.output is not None:
+        refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        console.stage("Opening the character")
+        with opened_character(file, arguments.map, arguments.debug) as (_, opened):
+            name, chosen = opened.character.name, opened.chosen
+            console.stage("Finding how the controls act")
+            character_map, found = opened.completed(arguments.debug)
+            notes = (*opened.imported.notes, *found)
+        result = {
+            "file": str(file.path),
+            "object": name,
+            "origin": chosen.origin,
+            "map_file": None if chosen.path is None else str(chosen.path),
+            "map": character_map.to_json(),
+            "doubts": list(chosen.doubts),
+            "notes": list(notes),
+            "files": [],
+        }
+        lines = [*_heading(str(file.path), name, chosen), *map_lines(character_map)]
+        columns = terminal_columns()
+        for title, sentences in (("Doubtful:", chosen.doubts), ("Notes:", notes)):
+            if sentences:
+                lines.append(title)
+                lines += [
+                    line for sentence in sentences for line in wrapped(f"{sentence.rstrip('.')}.", 2, columns)
+                ]
+        if arguments.output is not None:
+            write_character_map(arguments.output, character_map)
+            result["files"] = [str(arguments.output)]
+            lines.append(f"Written: {arguments.output}")
+        console.finish(result, "\n".join(lines))
+
+
+def _heading(file: str, name: str, chosen: ChosenMap) -> list[str]:
+    title = chosen.character_map.title
+    if chosen.origin == GIVEN:
+        return [f"{file}: '{name}' has all bones of the map {title}:"]
+    if chosen.origin == SAVED:
+        return [f"{file}: '{name}', by the saved map {title} ({chosen.path}):"]
+    preset = chosen.character_map.preset
+    return [f"{file}: '{name}', recognized{f' as {preset}' if preset else ''}:"]
+
+
+def map_lines(character_map: CharacterMap) -> list[str]:
+    """A map's roles and controls as lines for people; roles that are not sure have a mark."""
+    roles = [role for role in ROLES if role in character_map.roles]
+    lines = []
+    for role in roles:
+        bones = character_map.roles[role]
+        mark = "?" if bones.confidence < UNSURE else " "
+        keyed = [bone for bone in character_map.keyed_bones(role) if bone is not None]
+        by = f" (keyed: {', '.join(keyed)})" if keyed != list(bones.bones) else ""
+        source = SOURCE_WORDS[bones.source]
+        lines.append(f"{mark} {role:<12} {bones.confidence:4.0%}  {source:<10}  {', '.join(bones.bones)}{by}")
+    lines += [f"  IK of {limb:<6} {_control_names(controls)}" for limb, controls in character_map.ik.items()]
+    missing = [role for role in ROLES if role not in character_map.roles]
+    if missing:
+        lines.append(f"  without: {', '.join(missing)}")
+    if character_map.root is not None:
+        lines.append(f"  root bone: {character_map.root}")
+    if character_map.left_alone:
+        lines.append(f"  left alone: {', '.join(character_map.left_alone)}")
+    return lines
+
+
+def _control_names(controls: IkControls) -> str:
+    parts = [controls.goal]
+    parts += [f"pole {controls.pole}"] if controls.pole else []
+    parts += [f"toes {controls.toe}"] if controls.toe else []
+    if controls.switch is not None:
+        parts.append(f"switch {controls.switch.property} of {controls.switch.bone}")
+    return ", ".join(parts)

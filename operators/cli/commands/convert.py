@@ -8,15 +8,13 @@ from typing import Any
 from ....core.pipeline.found_keyframes import found_summary
 from ....core.pipeline.result import Conversion
 from ....core.shoot.discovery import take_path
-from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description, describe, effective_settings
 from ....core.take.evidence_kinds import KEYPOINTS
-from ....core.take.methods import METHODS
-from ..command import Command
 from ..console import arguments_console
 from ..conversion.convert_take import convert_take
 from ..options import add_evidence, add_keypoint_files, given_settings
-from ..usage import UsageError
+from ..parser import Command, UsageError
 
 
 def convert_command(arguments: argparse.Namespace) -> None:

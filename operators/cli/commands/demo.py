@@ -11,19 +11,17 @@ from ....core.errors import ConversionError
 from ....core.estimate.reconstruct import reconstruct
 from ....core.progress import run
 from ....core.review.score import Score, read_truth, score_points
-from ....core.take.character_settings import CharacterFile, CharacterSettings
-from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings, ConversionSettings
 from ....core.take.description import describe
 from ....core.take.evidence_kinds import CONTOURS, DEPTH_HINTS, KEYPOINTS, MARKERS
 from ....core.take.examples import AEROBIC, POSED_BY_HAND, example_folder
 from ....core.take.motion import Motion
 from ....core.take.take import Take
-from ..command import Command
 from ..console import arguments_console
 from ..conversion.blender_files import BLEND
 from ..conversion.character_result import CHARACTER_BLEND
 from ..conversion.convert_take import REPORT, convert_take
-from ..usage import require_blender
+from ..parser import Command, require_blender
 from .convert import conversion_summary
 
 MARKED = (MARKERS, CONTOURS)

@@ -1,9 +1,27 @@
 """`keymark detect`: its arguments."""
 
 import argparse
+import os
+from contextlib import closing
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from ..command import Command
+from ....core.errors import ConversionError, InputError, KeymarkError, describe_unexpected, pluralize
+from ....core.files.fields import listed
+from ....core.files.kinds import read_field
+from ....core.footage.clips.image_sequence import find_images
+from ....core.footage.keypoints.keypoint_file import write_keypoints
+from ....core.footage.keypoints.keypoints import People
+from ....core.footage.pose_network import PoseNetwork
+from ....core.footage.pose_tracking import find_people
+from ....core.progress import run, stretch
+from ....core.shoot.discovery import VIDEOS, ShootTake, find_takes, open_shoot
+from ....core.take.clip_check import LONGEST_FRAMES, open_footage
+from ....core.take.description import KEYPOINT_FILE, TAKE_FILE, Description, find_shoot_files, sidecar_file
+from ....core.take.take_file import FRAME_RATE, FRAME_START
+from ..console import Console, arguments_console
+from ..parser import Command, UsageError, refuse_existing
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,10 +43,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--replace", action="store_true", help="replace keypoint files that are there")
 
 
-def run(arguments: argparse.Namespace) -> None:
+def run_detect(arguments: argparse.Namespace) -> None:
     """Detect the keypoints."""
-    from ..use_cases.detect import detect_command
-
     detect_command(arguments)
 
 
@@ -39,5 +55,190 @@ DETECT = Command(
         "with Keymark, and keeps them beside the clip, where converting uses them."
     ),
     add_arguments=add_arguments,
-    run=run,
+    run=run_detect,
 )
+
+
+# --- `keymark detect`
+
+
+MOST_NAMED = 5
+
+
+@dataclass(frozen=True)
+class Footage:
+    """A clip, and where its keypoints go."""
+
+    name: str
+    clip: Path
+    fps: float | None
+    frame_start: int
+    output: Path
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one clip of several."""
+
+    name: str
+    output: Path | None
+    people: People | None = None
+    error: str | None = None
+
+    @property
+    def text(self) -> str:
+        """A line on it."""
+        if self.error is not None:
+            return f"{self.name}: {self.error}"
+        if self.people is None:
+            return f"{self.name}: {self.output} is there already"
+        return f"{self.name}: {_found_text(self.people)}, in {self.output}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The outcome for `--json`."""
+        found = None if self.people is None else _summary(self.people)
+        output = None if self.error is not None or self.output is None else str(self.output)
+        return {"take": self.name, "keypoints": output, "detected": found, "error": self.error}
+
+
+def detect_command(arguments: argparse.Namespace) -> None:
+    """Detect the keypoints of what the command line names.
+
+    Raises:
+        UsageError: An option is unusable, or a file is there and `--replace` is not given.
+        InputError: What is named is unusable, or shows nobody.
+        ConversionError: Some takes of a shoot failed.
+    """
+    network = PoseNetwork()
+    one = _single(arguments.target)
+    with arguments_console(arguments) as console:
+        if one is not None:
+            footage = one if arguments.output is None else replace(one, output=arguments.output)
+            refuse_existing(footage.output, arguments.replace)
+            people = _detect(footage, network, console, 0.0, 1.0)
+            result = {"keypoints": str(footage.output), **_summary(people)}
+            console.finish(result, f"{_found_text(people)}: {footage.output}")
+            return
+        if arguments.output is not None:
+            raise UsageError(
+                f"--output is one file, and {arguments.target} may hold several takes; their keypoints go "
+                "beside them"
+            )
+        outcomes = _detect_all(arguments, network, console)
+        failed = [outcome.name for outcome in outcomes if outcome.error is not None]
+        there = sum(outcome.error is None and outcome.people is None for outcome in outcomes)
+        found = len(outcomes) - len(failed) - there
+        counts = {"detected": found, "there_already": there, "failed": len(failed)}
+        takes = pluralize(len(outcomes), "take")
+        text = f"{takes}: {found} detected, {there} there already, {len(failed)} failed"
+        console.finish({**counts, "takes": [outcome.to_dict() for outcome in outcomes]}, text)
+    if failed:
+        raise ConversionError(f"{len(failed)} of {len(outcomes)} takes failed: {listed(failed, MOST_NAMED)}")
+
+
+def _found_text(people: People) -> str:
+    """What was found, for a person."""
+    who = "a person" if people.most_people == 1 else f"up to {people.most_people} people"
+    return f"{who} in {people.seen_frames} of {pluralize(len(people.frames), 'frame')}"
+
+
+def _summary(people: People) -> dict[str, Any]:
+    """What was found, for `--json`."""
+    return {
+        "detector": people.source,
+        "frames": len(people.frames),
+        "seen_frames": people.seen_frames,
+        "most_people": people.most_people,
+        "points": list(people.names),
+    }
+
+
+def _detect_all(arguments: argparse.Namespace, network: PoseNetwork, console: Console) -> list[Outcome]:
+    """Look at every take in turn; one that fails does not stop the others."""
+    target = arguments.target
+    shoot = find_takes(target, undescribed=True) if target.is_dir() else open_shoot(target)
+    takes = shoot.takes
+    outcomes: list[Outcome] = []
+    for index, take in enumerate(takes):
+        outcome = _outcome(take, network, arguments, console, index / len(takes), (index + 1) / len(takes))
+        outcomes.append(outcome)
+        console.take_line(outcome.text, None if outcome.error is None else outcome.text)
+    return outcomes
+
+
+def _outcome(
+    take: ShootTake,
+    network: PoseNetwork,
+    arguments: argparse.Namespace,
+    console: Console,
+    first: float,
+    last: float,
+) -> Outcome:
+    output = None
+    try:
+        footage = _footage(take)
+        output = footage.output
+        if os.path.lexists(output) and not arguments.replace:
+            return Outcome(take.name, output)
+        return Outcome(take.name, output, _detect(footage, network, console, first, last))
+    except KeymarkError as error:
+        return Outcome(take.name, output, error=str(error))
+    except Exception as error:
+        if arguments.debug:
+            raise
+        what = f"failed unexpectedly ({describe_unexpected(error)}); --debug shows where"
+        return Outcome(take.name, output, error=what)
+
+
+def _detect(footage: Footage, network: PoseNetwork, console: Console, first: float, last: float) -> People:
+    """Find the keypoints of one clip and write them."""
+    if not os.access(footage.output.parent, os.W_OK | os.X_OK):
+        raise InputError(f"{footage.output}: cannot be written; its folder must exist and be writable")
+    clip = open_footage(footage.clip, footage.fps)
+    job = find_people(clip, network, LONGEST_FRAMES)
+    with closing(stretch(job, first, last)) as stretched:
+        people = run(stretched, console.progress)
+    write_keypoints(footage.output, people, footage.frame_start, clip.fps)
+    return people
+
+
+def _single(path: Path) -> Footage | None:
+    """The one clip or take that a path names; None for a shoot."""
+    is_take = path.is_dir() and (path / TAKE_FILE).is_file()
+    is_clip = (path.suffix.lower() in VIDEOS and path.is_file()) or _is_sequence(path)
+    return _footage(ShootTake(path.name, path)) if is_take or is_clip else None
+
+
+def _is_sequence(path: Path) -> bool:
+    """Whether a path is a folder or pattern of images, or one of them."""
+    try:
+        return find_images(path) is not None
+    except (InputError, OSError):
+        return False
+
+
+def _footage(take: ShootTake) -> Footage:
+    """The clip of a take, as its files describe it, or as it is where none do.
+
+    Raises:
+        InputError: A file is unusable.
+    """
+    path = take.path
+    described = (path / TAKE_FILE, sidecar_file(path, TAKE_FILE))
+    if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):
+        return Footage(take.name, path, None, 1, sidecar_file(path, KEYPOINT_FILE))
+    description = take.describe()
+    fields = description.fields
+    return Footage(
+        name=take.name,
+        clip=description.clip,
+        fps=read_field(fields, "fps", FRAME_RATE, None),
+        frame_start=read_field(fields, "frame_start", FRAME_START, 1),
+        output=_keypoint_file(description),
+    )
+
+
+def _keypoint_file(description: Description) -> Path:
+    """The file that a take's keypoints go into: the one that it names, or that of the usual name."""
+    named = description.settings.keypoints or ()
+    return named[0] if len(named) == 1 else description.file_called(Path(KEYPOINT_FILE))

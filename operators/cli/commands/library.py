@@ -1,11 +1,22 @@
 """`keymark library` with its commands: their arguments."""
 
 import argparse
+from collections import Counter
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
-from ..command import Command, CommandGroup
+from ....core.errors import InputError
+from ....core.files.json_file import write_atomically
+from ....core.prior.library import Library, LibraryMotion, read_library, write_library
+from ....core.prior.registry import find_library, registered_libraries
+from ....core.prior.texts import checked_identifier
+from ....core.report.canvas import write_png
+from ..blender_silence import blender_silence
+from ..console import Console, arguments_console
+from ..library_search_path import library_folders
+from ..parser import Command, CommandGroup, UsageError, refuse_existing, require_blender
 
 LIBRARY_HELP = "name or file of a library"
 
@@ -198,3 +209,180 @@ examples:
 A library is a file, or the name of one that comes with Keymark or lies in a folder of KEYMARK_LIBRARIES.""",
     commands=(LIST, SHOW, CHECK, MERGE, MIRROR, LEARN, BLEND, READ),
 )
+
+
+# --- The contents of a keyframe library, as an object for programs and as lines for people
+
+
+def library_summary(library: Library) -> dict[str, Any]:
+    """A library's contents as an object for `--json`."""
+    return {
+        "identifier": library.identifier,
+        "title": library.title,
+        "version": library.version,
+        "author": library.author,
+        "license": library.license,
+        "description": library.description,
+        "tags": list(library.tags),
+        "sources": list(library.sources),
+        "stature_m": round(library.actor.stature_m, 3),
+        "postures": [posture.name for posture in library.postures],
+        "motions": [
+            {
+                "name": motion.name,
+                "cyclic": motion.cyclic,
+                "duration_s": motion.duration_s,
+                "steps": len(motion.steps),
+                "travel": list(motion.travel),
+            }
+            for motion in library.motions
+        ],
+    }
+
+
+def library_lines(library: Library) -> list[str]:
+    """A library's contents as lines for people."""
+    lines = [
+        f"{library.title} ({library.identifier}, version {library.version})",
+        *([library.description] if library.description else []),
+        f"By {library.author}; license {library.license}; posed on {100.0 * library.actor.stature_m:.0f} cm",
+        f"{library.size}:",
+        *(f"  {_motion_line(motion)}" for motion in library.motions),
+    ]
+    steps = Counter(step.posture for motion in library.motions for step in motion.steps)
+    loose = [posture.name for posture in library.postures if not steps[posture.name]]
+    if loose:
+        lines.append(f"  in no motion: {', '.join(loose)}")
+    return [*lines, *(f"Source: {source}" for source in library.sources)]
+
+
+def _motion_line(motion: LibraryMotion) -> str:
+    kind = "again and again, " if motion.cyclic else ""
+    x, y, _ = motion.travel
+    distance_m = (x * x + y * y) ** 0.5
+    travel = f", {distance_m:.2f} m on" if distance_m >= 0.01 else ""
+    return f"{motion.name}: {len(motion.steps)} postures, {kind}{motion.duration_s:.2f} s{travel}"
+
+
+# --- The library file that `learn`, `merge`, `mirror` and `read` write, and what they say of it
+
+
+def write_new_library(console: Console, arguments: argparse.Namespace, library: Library) -> None:
+    """Write a library to `--output` and finish the command with its summary."""
+    write_library(arguments.output, library)
+    result = {**library_summary(library), "files": [str(arguments.output)]}
+    console.finish(result, "\n".join([*library_lines(library), f"Written: {arguments.output}"]))
+
+
+# --- `keymark library list`, `show` and `check`
+
+
+def list_command(arguments: argparse.Namespace) -> None:
+    """List the libraries of the search path, those that cannot be used with the reason."""
+    with arguments_console(arguments) as console:
+        found = registered_libraries(library_folders())
+        rows = [
+            {
+                "identifier": entry.identifier,
+                "title": entry.title,
+                "version": entry.version,
+                "postures": len(entry.library.postures) if entry.library else 0,
+                "file": str(entry.path),
+                "problem": entry.problem,
+            }
+            for entry in found
+        ]
+        width = max((len(entry.identifier) for entry in found), default=0)
+        lines = [
+            f"{entry.identifier:{width}}  {entry.title}, {entry.library.size}"
+            if entry.library
+            else f"{entry.identifier:{width}}  cannot be used: {entry.problem}"
+            for entry in found
+        ]
+        console.finish({"libraries": rows}, "\n".join(lines) or "There are no libraries.")
+
+
+def show_command(arguments: argparse.Namespace) -> None:
+    """Print a library's contents; draw its postures where `--sheet` is given.
+
+    Raises:
+        UsageError: The picture is no .png: a library named there by mistake must not be overwritten.
+    """
+    if arguments.sheet is not None and arguments.sheet.suffix.lower() != ".png":
+        raise UsageError(f"--sheet is {str(arguments.sheet)!r}; name a file that ends in .png")
+    with arguments_console(arguments) as console:
+        library = find_library(arguments.library, library_folders())
+        lines = library_lines(library)
+        result = library_summary(library)
+        if arguments.sheet is not None:
+            from ....core.report.mannequin import library_sheet
+
+            console.stage("Drawing the postures")
+            picture = library_sheet(library)
+            write_atomically(arguments.sheet, lambda staged: write_png(str(staged), picture))
+            lines.append(f"Picture: {arguments.sheet}")
+            result["sheet"] = str(arguments.sheet)
+        console.finish(result, "\n".join(lines))
+
+
+def check_command(arguments: argparse.Namespace) -> None:
+    """Read library files and print what they hold.
+
+    Raises:
+        InputError: Files are invalid; one line names the problem of each.
+    """
+    with arguments_console(arguments) as console:
+        problems, lines, good = [], [], []
+        for file in arguments.files:
+            try:
+                library = read_library(file)
+            except InputError as error:
+                problems.append(str(error))
+                continue
+            good.append({"file": str(file), **library_summary(library)})
+            lines.append(f"{file}: {library.title}, version {library.version}, {library.size}")
+        if problems:
+            raise InputError("; ".join(problems))
+        console.finish({"libraries": good}, "\n".join(lines))
+
+
+# --- `keymark library blend` and `read`
+
+
+def blend_command(arguments: argparse.Namespace) -> None:
+    """Write a library's postures as pose assets, with their catalog, into the folder of an asset library."""
+    require_blender("pose assets need")
+    with arguments_console(arguments) as console:
+        library = find_library(arguments.library, library_folders())
+        file = arguments.output / f"{checked_identifier(library.identifier, 'the identifier')}.blend"
+        refuse_existing(file, arguments.replace)
+        console.stage("Writing Blender's files")
+        with blender_silence(arguments.debug):
+            from ...bridge.assets.catalogs import NAME
+            from ...bridge.library.library_file import write_library_blend
+
+            write_library_blend(file, library)
+        files = [str(file), str(arguments.output / NAME)]
+        text = f"{library.title}: {len(library.postures)} pose assets\n" + "\n".join(f"  {f}" for f in files)
+        console.finish({**library_summary(library), "files": files}, text)
+
+
+def read_command(arguments: argparse.Namespace) -> None:
+    """Write the library of a .blend's pose assets as a library file.
+
+    Raises:
+        InputError: The .blend holds no library, or more than one.
+    """
+    require_blender("pose assets need")
+    refuse_existing(arguments.output, arguments.replace)
+    with arguments_console(arguments) as console:
+        console.stage("Reading the pose assets")
+        with blender_silence(arguments.debug):
+            from ...bridge.library.library_file import read_library_blend
+
+            found = read_library_blend(arguments.file)
+        chosen = [one for one in found if arguments.identifier in (None, one.identifier)]
+        if len(chosen) != 1:
+            names = ", ".join(one.identifier for one in found)
+            raise InputError(f"{arguments.file}: holds the libraries {names}; name one with --identifier")
+        write_new_library(console, arguments, chosen[0])

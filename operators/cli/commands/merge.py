@@ -6,27 +6,23 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....core.errors import ConversionError, InputError
+from ....core.errors import ConversionError, InputError, pluralize
+from ....core.files.control_characters import absolute_path
 from ....core.files.digest import content_digest
 from ....core.files.fields import listed
-from ....core.files.paths import absolute_path
 from ....core.progress import Progress
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import read_retarget_record
 from ....core.shoot.outcomes import Failure, Result, Results, find_results, read_failures
-from ....core.take.motion import Motion
-from ....core.take.motion_file import read_motion
-from ....core.text import pluralize
+from ....core.take.motion import Motion, read_motion
 from ..blender_silence import blender_silence
-from ..command import Command
 from ..console import Console, arguments_console, terminal_columns, wrapped
 from ..conversion.character_result import CHARACTER_BLEND
 from ..conversion.convert_take import MOTION
-from ..usage import require_blender
+from ..parser import Command, require_blender
 
 if TYPE_CHECKING:
-    from ...bridge.assets.character_actions import CharacterAsset
-    from ...bridge.assets.motions import MotionAsset
+    from ...bridge.assets.motions import CharacterAsset, MotionAsset
 
 SUFFIX = ".blend"
 LONGEST_NAME_BYTES = 63
@@ -109,7 +105,7 @@ class MotionGathering:
         self, result: Result, catalog: str, motion: Motion, names: set[str]
     ) -> "Iterator[CharacterAsset]":
         """The asset of a result's character, where it has one; a problem of the take where it is unusable."""
-        from ...bridge.assets.character_actions import CharacterAsset, load_character_action
+        from ...bridge.assets.motions import CharacterAsset, load_character_action
 
         made = result.record.files
         if CHARACTER_BLEND not in made:

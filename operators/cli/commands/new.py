@@ -5,15 +5,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ....core.errors import InputError
-from ....core.files.json_layout import write_readable_json
-from ....core.files.paths import absolute_path
+from ....core.files.control_characters import absolute_path
+from ....core.files.json_file import write_readable_json
 from ....core.progress import run, within
 from ....core.shoot.discovery import find_takes
 from ....core.shoot.template import ClipSurvey, clip_lines, evidence_lines, shoot_template, survey_clips
-from ....core.take.shoot_file import SHOOT_FILE, find_shoot_files
-from ..command import Command
+from ....core.take.description import SHOOT_FILE, find_shoot_files
 from ..console import arguments_console
-from ..usage import program_name
+from ..parser import Command, program_name
 
 
 def new_command(arguments: argparse.Namespace) -> None:

@@ -4,8 +4,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from ....core.prior.evidence_speed import EvidenceSpeed, evidence_speed
-from ....core.prior.keyframe_proposals import propose_keyframes
+from ....core.prior.keyframe_proposals import EvidenceSpeed, evidence_speed, propose_keyframes
 from ....core.progress import Job, run, stretch, within
 from ....core.shoot.discovery import take_path
 from ....core.take.description import describe
@@ -13,9 +12,9 @@ from ....core.take.performer_keypoints import performer_keypoints
 from ....core.take.read_footage import read_footage
 from ....core.take.take import Take
 from ....core.take.take_file import read_described
-from ..command import Command
 from ..console import arguments_console
 from ..options import add_evidence, add_keypoint_files, given_settings
+from ..parser import Command
 
 UNPOSED = "no keyframe is posed yet; pose these frames, or let convert find them with --keyframes auto"
 READING_SHARE = 0.9

@@ -3,8 +3,25 @@
 import argparse
 from pathlib import Path
 
-from ..command import Command
+from ....core.errors import ConversionError, InputError
+from ....core.files.control_characters import absolute_path, real_path
+from ....core.files.fields import listed
+from ....core.files.output_folder import output_folder
+from ....core.retarget.retarget_record import RECORD_FILE, RetargetRecord, read_retarget_record
+from ....core.take.conversion_record import RECORD_FILE as CONVERSION
+from ....core.take.conversion_settings import (
+    LARGEST_TOLERANCE_MM,
+    CharacterFile,
+    CharacterOptions,
+    CharacterSettings,
+)
+from ....core.take.motion import read_motion
+from ..console import Console, arguments_console
+from ..conversion.blender_files import BLEND, refuse_unsupported_output
+from ..conversion.character_result import CHARACTER_BLEND, CHARACTER_PICTURE, EXPORTS, write_character_result
+from ..conversion.convert_take import AS_MADE, MOTION, changed_files, kept_note, write_made_digests
 from ..options import CHARACTER_HELP, MAP_HELP, add_retarget_options
+from ..parser import Command, UsageError, require_blender
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,8 +48,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> None:
     """Put the motion onto the character."""
-    from ..use_cases.retarget import retarget_command
-
     retarget_command(arguments)
 
 
@@ -47,3 +62,157 @@ RETARGET = Command(
     add_arguments=add_arguments,
     run=run,
 )
+
+
+# --- `keymark retarget`
+
+
+RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
+"""Every file that the command may make."""
+FIGURES = {
+    "arms_deg": "arms are {:.1f} degrees from the performer's on average",
+    "legs_deg": "legs are {:.1f} degrees from the performer's on average",
+    "skate_mm": "resting feet slide {:.2f} mm a frame",
+    "penetration_mm": "soles are at most {:.1f} mm below the floor",
+    "hands_mm": "hands are {:.0f} mm from what they reach on average",
+    "ik_fk_mm": "FK and IK are at most {:.1f} mm apart",
+}
+"""Sentences on the figures that people ask for first."""
+
+
+def retarget_command(arguments: argparse.Namespace) -> None:
+    """Put the motion that the command line names onto a character, and list the files that were made."""
+    require_blender("a character needs")
+    settings = CharacterSettings(CharacterFile.parse(arguments.character), arguments.map, _options(arguments))
+    formats = _formats(arguments.format)
+    motion_file, blend = _source(arguments.motion)
+    _check_output(arguments.output)
+    with arguments_console(arguments) as console:
+        record, files, notes = _retarget(arguments, settings, formats, (motion_file, blend), console)
+        result = {**record.to_json(), "notes": list(notes), "files": [str(file) for file in files]}
+        console.finish(result, _text(record, notes, files))
+
+
+def _retarget(
+    arguments: argparse.Namespace,
+    settings: CharacterSettings,
+    formats: tuple[str, ...],
+    source: tuple[Path, Path | None],
+    console: Console,
+) -> tuple[RetargetRecord, list[Path], tuple[str, ...]]:
+    """Write the result; returns its record, its files, and notes on it."""
+    from ...bridge.character.source import show_result
+
+    motion_file, blend = source
+    console.stage("Reading the motion")
+    motion = read_motion(motion_file)
+    _check_formats(formats)
+    output: Path = arguments.output
+    kept: dict[str, str] = {}
+    with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
+        record = write_character_result(
+            settings,
+            motion,
+            absolute_path(motion_file).parent.name,
+            lambda scene, shown: show_result(scene, blend, shown),
+            (staging_folder, real_path(output)),
+            console,
+            arguments.debug,
+            formats,
+        )
+        made = [name for name in RESULT_FILES[1:] if (staging_folder / name).exists()]
+        write_made_digests(staging_folder, made)
+        kept.update(
+            changed_files(output, staging_folder, RESULT_FILES, (CHARACTER_BLEND,), _made_before(output))
+        )
+        files = [output / name for name in (*made, RECORD_FILE)]
+    notes = (*record.notes, *(kept_note(*names) for names in kept.items()))
+    return record, files, notes
+
+
+def _made_before(output: Path) -> dict[str, str]:
+    """Digests of the files of the last result in a folder."""
+    try:
+        return dict(read_retarget_record(output).files)
+    except InputError:
+        return {}
+
+
+def _options(arguments: argparse.Namespace) -> CharacterOptions:
+    usual = CharacterOptions()
+    return CharacterOptions(
+        root_motion=arguments.root_motion,
+        place=arguments.place,
+        arms=arguments.arms or arguments.limbs or usual.arms,
+        legs=arguments.legs or arguments.limbs or usual.legs,
+        plant_feet=not arguments.no_plant_feet,
+        reach_hands=not arguments.no_reach_hands,
+        tolerance_mm=_tolerance_mm(arguments.tolerance),
+    )
+
+
+def _tolerance_mm(text: str) -> float:
+    if text.strip().lower() == "none":
+        return 0.0
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 < value <= LARGEST_TOLERANCE_MM:
+        raise UsageError(
+            f"--tolerance is {text}; millimeters above 0 and up to {LARGEST_TOLERANCE_MM:g} are valid, "
+            "or none for a key on every frame"
+        )
+    return value
+
+
+def _formats(text: str) -> tuple[str, ...]:
+    words = [word.strip().lower() for word in text.split(",") if word.strip()]
+    unknown = [word for word in words if word not in EXPORTS]
+    if unknown:
+        raise UsageError(f"--format is {text}; {listed(EXPORTS)} are valid, with commas between them")
+    return tuple(dict.fromkeys(words))
+
+
+def _check_formats(formats: tuple[str, ...]) -> None:
+    """Refuse formats that this Blender cannot write, before the work."""
+    from ...bridge.character.import_character import missing_exporter
+
+    for word in formats:
+        why = missing_exporter(EXPORTS[word][0])
+        if why:
+            raise ConversionError(f"--format {word} cannot be written: {why[:1].lower()}{why[1:]}")
+
+
+def _source(path: Path) -> tuple[Path, Path | None]:
+    """The motion's file, and the .blend with its footage where it is a folder that has one.
+
+    Raises:
+        InputError: The folder has no motion.
+    """
+    if not path.is_dir():
+        return path, None
+    motion, blend = path / MOTION, path / BLEND
+    if not motion.exists():
+        raise InputError(
+            f"{path}: holds no {MOTION}; it must be a folder that convert has written, or a motion's file"
+        )
+    return motion, blend if blend.is_file() else None
+
+
+def _check_output(output: Path) -> None:
+    refuse_unsupported_output(output)
+    if (output / CONVERSION).exists():
+        raise InputError(f"{output}: holds the result of a conversion; name another folder for the character")
+
+
+def _text(record: RetargetRecord, notes: tuple[str, ...], files: list[Path]) -> str:
+    lines = [f"Doubtful: {doubt.rstrip('.')}." for doubt in record.doubts]
+    lines += [f"Note: {note.rstrip('.')}." for note in notes]
+    lines.append(
+        f"{record.frames} frames on '{record.character.object}' of {record.character.file} "
+        f"({record.map.title}, {record.map.origin}):"
+    )
+    figures = {name: record.quality.get(name) for name in FIGURES}
+    lines += [f"  {FIGURES[name].format(value)}" for name, value in figures.items() if value is not None]
+    return "\n".join([*lines, *(f"  {file}" for file in files)])

@@ -1,32 +1,34 @@
 """A motion on a character as files in a staging folder: character.blend, retarget.json and exports."""
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+import importlib.util
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from ....core.body.segment_motion import SegmentMotion, segment_motion
-from ....core.errors import InputError
+from ....core.body.kinematics import SegmentMotion, segment_motion
+from ....core.errors import InputError, KeymarkError, describe_unexpected
+from ....core.files.control_characters import regular_file_size
 from ....core.files.digest import content_digest
 from ....core.finish.natural_extremities import natural_extremities
 from ....core.progress import Job, run
 from ....core.report.canvas import write_png
 from ....core.report.character_sheet import PICTURE
-from ....core.retarget.character import Character
+from ....core.retarget.character import LIMBS, Character
 from ....core.retarget.maps.character_map import CharacterMap
-from ....core.retarget.maps.choose_map import ChosenMap, choose_map
-from ....core.retarget.option_words import retarget_options
+from ....core.retarget.maps.map_registry import ChosenMap, choose_map, map_digests
+from ....core.retarget.options import retarget_options
 from ....core.retarget.retarget_record import RetargetRecord, UsedCharacter, UsedMap, write_retarget_record
-from ....core.retarget.roles import LIMBS
-from ....core.take.character_settings import CharacterFile, CharacterSettings
+from ....core.shoot.discovery import Shoot
+from ....core.take.conversion_settings import CharacterFile, CharacterSettings
 from ....core.take.motion import Motion
 from ..blender_silence import blender_silence
 from ..console import Console
 from ..library_search_path import library_folders
-from ..version import version
+from ..parser import version
 from .blender_files import hidden_files
 
 if TYPE_CHECKING:
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
     from ....core.arrays import Array
     from ...bridge.character.import_character import ImportedCharacter
     from ...bridge.character.retarget import Retargeted
+
 
 CHARACTER_BLEND = "character.blend"
 CHARACTER_PICTURE = f"report/{PICTURE}"
@@ -57,7 +60,7 @@ class OpenedCharacter:
     def completed(self, debug: bool) -> tuple[CharacterMap, tuple[str, ...]]:
         """The map with the controls and soles that only Blender finds, and notes on them."""
         with blender_silence(debug):
-            from ...bridge.character.complete_map import complete_map
+            from ...bridge.character.retarget import complete_map
 
             return complete_map(self.imported.armature, self.character, self.chosen.character_map)
 
@@ -73,9 +76,9 @@ def opened_character(
             no such map, or it is for another character. The sentence begins with the file or the map.
     """
     with blender_silence(debug):
+        from ...bridge.blend_files import own_scene, showing_scene
         from ...bridge.character.import_character import import_character
         from ...bridge.character.read_character import read_character
-        from ...bridge.own_scene import own_scene, showing_scene
 
     with own_scene("Character") as scene, showing_scene(scene):
         with blender_silence(debug):
@@ -123,7 +126,7 @@ def write_character_result(
     staging_folder, output = folders
     console.stage("Opening the character")
     with opened_character(settings.file, settings.map, debug) as (scene, opened):
-        from ...bridge.character.character_files import write_character_files
+        from ...bridge.character.import_character import write_character_files
         from ...bridge.character.retarget import retarget
 
         with blender_silence(debug):
@@ -172,7 +175,7 @@ def write_character_result(
 def _draw(
     scene: "bpy.types.Scene", armature: "bpy.types.Object", retargeted: "Retargeted", file: Path
 ) -> None:
-    from ...bridge.character.picture import character_picture
+    from ...bridge.character.figure import character_picture
 
     motion = retargeted.motion
     ground_m = [float(np.median(heights)) for heights in motion.ground_m.values()]  # none of feet not planted
@@ -209,3 +212,59 @@ def _silenced(job: Job[Result], debug: bool) -> Job[Result]:
                 result: Result = stop.value
                 return result
         yield progress
+
+
+# --- The characters of a shoot, each looked at once, before takes are checked in threads without Blender
+
+
+Wanted = tuple[CharacterFile, str]
+
+
+class CharacterChecks:
+    """What is wrong with characters, and what is doubtful about them."""
+
+    def __init__(self, shoot: Shoot, debug: bool) -> None:
+        """Look at all characters that the takes of a shoot name."""
+        self._debug = debug
+        self._findings: dict[Wanted, tuple[KeymarkError | None, Sequence[str]]] = {}
+        for take in shoot.takes:
+            with suppress(KeymarkError):  # its own check says so
+                settings = take.describe().settings.character
+                if settings is not None:
+                    self._look_at(settings)
+
+    def check(self, settings: CharacterSettings) -> Sequence[str]:
+        """What is doubtful about a character.
+
+        Raises:
+            InputError: It cannot be used, or its map is not for it.
+        """
+        error, doubts = self._findings[settings.file, settings.map]
+        if error is not None:
+            raise error
+        return doubts
+
+    def _look_at(self, settings: CharacterSettings) -> None:
+        wanted = (settings.file, settings.map)
+        if wanted in self._findings:
+            return
+        try:
+            self._findings[wanted] = None, self._doubts(settings)
+        except KeymarkError as error:
+            self._findings[wanted] = error, ()
+        except Exception as error:
+            if self._debug:
+                raise
+            what = describe_unexpected(error)
+            sentence = f"{settings.file.path}: the check failed unexpectedly ({what}); --debug shows where"
+            self._findings[wanted] = InputError(sentence), ()
+
+    def _doubts(self, settings: CharacterSettings) -> Sequence[str]:
+        file = settings.file.path
+        if importlib.util.find_spec("bpy") is None:
+            regular_file_size(file, "a character file")
+            map_digests(settings.map, library_folders())
+            return (f"{file}: the character is not looked at, which needs Blender",)
+        with opened_character(settings.file, settings.map, self._debug) as (_, opened):
+            doubts = (*opened.imported.notes, *opened.chosen.doubts)
+        return tuple(doubt if str(file) in doubt else f"{file}: {doubt}" for doubt in doubts)

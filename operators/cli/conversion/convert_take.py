@@ -1,42 +1,104 @@
-"""Conversion of one take into one complete folder of results; running it again gives the same result."""
+"""Files of an earlier result that a person has changed since; they are kept under another name."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.errors import InputError
 from ....core.estimate.reconstruct import check_method
+from ....core.files.commit import backup_name
+from ....core.files.control_characters import real_path
+from ....core.files.digest import content_digest
+from ....core.files.json_file import read_json, write_json
 from ....core.files.output_folder import output_folder
-from ....core.files.paths import real_path
-from ....core.library.library import Library
-from ....core.library.library_file import library_digest
 from ....core.pipeline.found_keyframes import find_and_reconstruct, take_to_convert
 from ....core.pipeline.result import Conversion, conversion_record
+from ....core.prior.library import Library, library_digest
 from ....core.progress import run
-from ....core.report.body_outlines import performer_contours
+from ....core.report.overlay_sheet import performer_contours
 from ....core.report.pictures import EARLIER_PICTURES, PICTURES, write_pictures
-from ....core.retarget.maps.choose_map import map_digests
+from ....core.retarget.maps.map_registry import map_digests
 from ....core.retarget.retarget_record import RECORD_FILE as RETARGET
 from ....core.retarget.retarget_record import RetargetRecord
-from ....core.review.compare_keypoints import compare_keypoints
+from ....core.review.frame_evidence import compare_keypoints
 from ....core.take.conversion_digest import conversion_digest
+from ....core.take.conversion_record import RECORD_FILE, find_record, is_up_to_date, write_record
 from ....core.take.conversion_record import RECORD_FILE as RECORD
-from ....core.take.conversion_record import find_record, is_up_to_date, write_record
-from ....core.take.conversion_settings import ConversionSettings
+from ....core.take.conversion_settings import METHODS, ConversionSettings
 from ....core.take.description import Description
 from ....core.take.keyframe_file import write_keyframes
-from ....core.take.methods import METHODS
-from ....core.take.motion import Motion
-from ....core.take.motion_file import write_motion
+from ....core.take.motion import Motion, write_motion
 from ....core.take.take import Take
 from ..console import Console
 from ..library_search_path import library_folders, requested_libraries
-from ..usage import require_blender
-from ..version import version
+from ..parser import require_blender, version
 from .blender_files import BLEND, BVH, refuse_unsupported_paths, write_blender_files
-from .changed_files import AS_MADE, changed_files, kept_note, write_made_digests
 from .character_result import CHARACTER_BLEND, CHARACTER_PICTURE, opened_character, write_character_result
+
+AS_MADE = ".as_made.json"
+"""File with the SHA-256 of files as they were made, beside the results. It has those whose bytes differ from
+run to run though their content does not, so that the record itself is always the same."""
+LARGEST_BYTES = 2**16
+RECORDS = (RECORD_FILE, RETARGET)
+"""Files that nobody edits."""
+
+
+def changed_files(
+    output: Path,
+    staging_folder: Path,
+    names: Iterable[str],
+    editable: Collection[str],
+    recorded: Mapping[str, str],
+) -> dict[str, str]:
+    """Files of a result that are no longer as they were made, though new ones are about to replace them.
+
+    Args:
+        output: Folder of the result.
+        staging_folder: Folder of the new files.
+        names: Files that the new result replaces or removes, as paths in the folder. Of those in `editable`
+            only the ones that are made anew are replaced.
+        editable: Files that belong to a person where no record says that a conversion has made them.
+        recorded: Digests of the files that the folder's record lists; empty where there is none.
+
+    Returns:
+        The names under which these files are to be kept, by their present names.
+
+    Raises:
+        InputError: A file cannot be read.
+    """
+    try:
+        made = {**recorded, **read_json(output / AS_MADE, LARGEST_BYTES)} if recorded else {}
+    except InputError:
+        made = {}
+    kept = {}
+    for name in names:
+        old, new = output / name, staging_folder / name
+        replaced = new.is_file() or (name in made and name not in editable)
+        if name in RECORDS or not replaced or not old.is_file() or not (name in made or name in editable):
+            continue
+        digest = content_digest(old)
+        if digest != made.get(name) and not (new.is_file() and content_digest(new) == digest):
+            kept[name] = backup_name(old).relative_to(output).as_posix()
+    return kept
+
+
+def write_made_digests(staging_folder: Path, names: Iterable[str]) -> None:
+    """Record the digests of files as they were made, by which a later conversion notices changes.
+
+    Raises:
+        ConversionError: The record cannot be written.
+    """
+    write_json(staging_folder / AS_MADE, {name: content_digest(staging_folder / name) for name in names})
+
+
+def kept_note(name: str, other: str) -> str:
+    """The note on a file that is kept under another name."""
+    return f"{name} was changed after Keymark had made it and is kept as {other}"
+
+
+# --- Conversion of one take into one complete folder of results
+
 
 MOTION, REPORT, KEYFRAMES = "motion.json", "report", "keyframes.json"
 RESULT_FILES = (

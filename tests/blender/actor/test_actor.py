@@ -4,8 +4,8 @@ import bpy
 import numpy as np
 import pytest
 from _posed import posture_of
+from keymark.core.body.body_volume import hip_height_m, standing_height_m
 from keymark.core.body.human import HUMAN
-from keymark.core.body.standing_posture import hip_height_m, standing_height_m
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.actor_lengths import read_body

@@ -11,7 +11,7 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.shell.keyed_frames import keyframes_of
 from keymark.operators.shell.takes import active_take, has_lost_actor, present_actor
-from keymark.operators.takes.next_step import next_step
+from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 FRAME = 7
@@ -92,7 +92,7 @@ def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.t
 
 def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:
     """No other armatures, and no actor that was deleted and is kept by another take."""
-    from keymark.operators.takes.take_properties import _is_actor
+    from keymark.operators.takes.properties import _is_actor
 
     take = active_take(opened)
     rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))

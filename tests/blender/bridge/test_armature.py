@@ -7,10 +7,10 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
+from keymark.operators.bridge.actor_bones import recolor_earlier
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
-from keymark.operators.bridge.bone_colors import recolor_earlier
-from keymark.operators.overlays.style import SIDES
+from keymark.operators.overlays.drawing import SIDES
 from mathutils import Matrix
 
 

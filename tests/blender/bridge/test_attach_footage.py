@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
 from keymark.core.take.take import Take
-from keymark.operators.bridge.attach_footage import attach_footage
-from keymark.operators.bridge.camera_from_scene import read_camera
-from keymark.operators.bridge.footage import Footage
+from keymark.operators.bridge.camera_placement import read_camera
+from keymark.operators.bridge.footage import Footage, attach_footage
 from keymark.operators.bridge.footage_camera import clip_lens, is_startup_camera, set_clip_lens, solved_camera
 from keymark.operators.bridge.footage_to_scene import load_footage
 

@@ -3,11 +3,9 @@
 import bpy
 import numpy as np
 import pytest
-from keymark.core.body.extremities import extremity_names
 from keymark.core.body.human import HUMAN
-from keymark.core.body.kinematics import Body
+from keymark.core.body.kinematics import Body, extremity_names, segment_motion
 from keymark.core.body.posture import Posture
-from keymark.core.body.segment_motion import segment_motion
 from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.progress import run
 from keymark.core.take.motion import Motion

@@ -9,7 +9,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
 from keymark.core.take.take import Take
-from keymark.operators.bridge.camera_from_scene import read_camera
+from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.bridge.footage import Footage
 from keymark.operators.bridge.footage_to_scene import load_footage, show_footage
 from mathutils import Vector
@@ -76,7 +76,7 @@ def test_any_sensor_fit_is_read(
     camera_object.data.sensor_height = 20.0
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = size
-    from keymark.operators.bridge import camera_from_scene
+    from keymark.operators.bridge import camera_placement as camera_from_scene
 
     sensor = camera_from_scene._horizontal_sensor(camera_object.data, *size)
     read = replace(

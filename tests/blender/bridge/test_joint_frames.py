@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.body.rotations import exponential, hinge, logarithm
-from keymark.operators.bridge.joint_frames import nearest_hinges
+from keymark.operators.bridge.rotation_modes import nearest_hinges
 
 X, Y = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
 ANGLES = st.floats(-np.pi + 1e-6, np.pi - 1e-6)

@@ -14,11 +14,17 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.core.files.json_file import parse_json
-from keymark.core.library.library import Library, LibraryMotion, LibraryPosture, MotionStep
-from keymark.core.library.library_file import read_library, write_library
+from keymark.core.prior.library import (
+    Library,
+    LibraryMotion,
+    LibraryPosture,
+    MotionStep,
+    read_library,
+    write_library,
+)
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.library import pose_assets
-from keymark.operators.bridge.library.library_blend import read_library_blend, write_library_blend
+from keymark.operators.bridge.library.library_file import read_library_blend, write_library_blend
 from keymark.operators.bridge.library.pose_assets import (
     HEADER,
     POSTURE,

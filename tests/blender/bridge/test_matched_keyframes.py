@@ -16,17 +16,19 @@ from keymark.core.take.take_file import read_take, write_take
 from keymark.operators.bridge import single_frame_fit
 from keymark.operators.bridge.actions import existing_channelbag
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose
-from keymark.operators.bridge.matched_keyframes import (
+from keymark.operators.bridge.keyframes import (
+    keyed_frames,
+    read_keyframes,
     remove_keyframes,
+    store_pose,
     take_over,
     untouched_frames,
     write_matched,
 )
 from keymark.operators.bridge.pose import read_posture
 from keymark.operators.bridge.take_from_scene import read_scene_take
-from keymark.operators.keypoints.evidence import scene_evidence
-from keymark.operators.matching.matches import known_matches
+from keymark.operators.follow.evidence import scene_evidence
+from keymark.operators.keyframes.found_keyframes import known_matches
 from keymark.operators.shell.keyed_frames import (
     invalidate_keyed_frames,
     keyframes_of,

@@ -7,8 +7,8 @@ import bpy
 import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library, LibraryPosture
-from keymark.operators.bridge.library.library_blend import read_library_blend
+from keymark.core.prior.library import Library, LibraryPosture
+from keymark.operators.bridge.library.library_file import read_library_blend
 from keymark.operators.bridge.library.pose_assets import add_assets
 
 RandomPosture = Callable[[int], Posture]

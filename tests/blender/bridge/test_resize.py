@@ -10,10 +10,9 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.operators.bridge.actor_lengths import read_body
+from keymark.operators.bridge.actor_lengths import read_body, set_lengths
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.pose import read_posture, write_posture
-from keymark.operators.bridge.resize import set_lengths
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ import bpy
 import pytest
 from _rigify import run_script
 from keymark.operators.bridge.character import rigify_human
-from keymark.operators.character import add_rigify_human
+from keymark.operators.character import add_character as add_rigify_human
 from keymark.operators.character.requirements import recognized
 from keymark.operators.shell.takes import active_take
 

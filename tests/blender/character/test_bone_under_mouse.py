@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from keymark.operators.character.bone_under_mouse import is_visible, nearest_segment
+from keymark.operators.character.pick_bone import is_visible, nearest_segment
 
 ENDS = np.array([[[0.0, 0.0], [100.0, 0.0]], [[0.0, 50.0], [100.0, 50.0]], [[50.0, 0.0], [50.0, 0.0]]])
 """Two bones across, and one seen along its length."""

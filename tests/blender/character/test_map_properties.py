@@ -5,13 +5,12 @@ from pathlib import Path
 import bpy
 import pytest
 from _character_maps import full_map
-from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
-from keymark.core.retarget.maps.character_map_file import read_character_map
+from keymark.core.retarget.character import LIMBS, ROLES
+from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones, read_character_map
 from keymark.core.retarget.maps.presets import SHIPPED, read_preset
 from keymark.core.retarget.options import RetargetOptions
-from keymark.core.retarget.roles import LIMBS, ROLES
+from keymark.operators.character.figures import options_of
 from keymark.operators.character.map_conversion import map_of, show_map
-from keymark.operators.character.options import options_of
 from keymark.operators.shell.takes import active_take
 
 RIGIFY = read_preset(SHIPPED / "rigify.json").character_map
@@ -167,7 +166,7 @@ def test_a_map_in_the_library_folder_is_suggested(
     character: bpy.types.PropertyGroup, rig: bpy.types.Object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where its bones are those of the armature; one click then uses it."""
-    monkeypatch.setattr("keymark.operators.library.user_folder.own_folder", lambda: tmp_path)
+    monkeypatch.setattr("keymark.operators.library.library_files.own_folder", lambda: tmp_path)
     role(character, "hand.L").bones[0].bone = "finger.L"
     character.character_map.title = "My Hero"
     bpy.ops.keymark.save_map(filepath=str(tmp_path / "hero.json"))

@@ -16,7 +16,7 @@ from _libraries import small_library
 from _shoot import write_shoot
 from _synthetic_take import true_postures, write_json, write_keypoints
 from keymark.core.files.json_file import read_json
-from keymark.core.library.library_file import write_library
+from keymark.core.prior.library import write_library
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.library_search_path import VARIABLE
@@ -251,7 +251,7 @@ def test_workers_end_when_their_batch_does(shoot: Path, tmp_path: Path) -> None:
     assert b"ready" in worker.stdout.readline()
     from keymark.core.shoot.discovery import find_takes
     from keymark.core.take.conversion_settings import NO_SETTINGS
-    from keymark.operators.cli.batch.protocol import Job
+    from keymark.operators.cli.batch.worker_process import Job
 
     take = find_takes(shoot).takes[0]
     worker.stdout.close()

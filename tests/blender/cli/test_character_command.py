@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from _characters import plain_character, plain_map
 from _command_line import one_line, tree
-from keymark.core.retarget.maps.character_map_file import read_character_map, write_character_map
-from keymark.core.retarget.roles import REQUIRED
+from keymark.core.retarget.character import REQUIRED
+from keymark.core.retarget.maps.character_map import read_character_map, write_character_map
 from keymark.operators.cli.main import main
 
 Out = pytest.CaptureFixture[str]

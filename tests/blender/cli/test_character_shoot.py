@@ -12,7 +12,7 @@ from _characters import plain_character, plain_map
 from _command_line import one_line, tree
 from _results import is_whole
 from _shoot import write_shoot
-from keymark.core.retarget.maps.character_map_file import write_character_map
+from keymark.core.retarget.maps.character_map import write_character_map
 from keymark.core.retarget.retarget_record import read_retarget_record
 from keymark.core.take.conversion_record import read_record
 from keymark.operators.bridge.actions import curve_digest

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from _libraries import small_library
-from keymark.core.library.library_file import write_library
+from keymark.core.prior.library import write_library
 from keymark.operators.bridge.assets.catalogs import NAME
 from keymark.operators.cli.main import main
 

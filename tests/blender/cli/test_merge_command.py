@@ -13,8 +13,7 @@ from keymark.core.body.kinematics import Body
 from keymark.core.files.digest import content_digest
 from keymark.core.shoot.outcomes import Failure, write_failure
 from keymark.core.take.conversion_record import ConversionRecord, write_record
-from keymark.core.take.motion import Motion
-from keymark.core.take.motion_file import write_motion
+from keymark.core.take.motion import Motion, write_motion
 from keymark.operators.bridge.actions import assign_action
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.assets.catalogs import NAME as CATALOGS

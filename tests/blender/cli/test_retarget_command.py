@@ -9,8 +9,8 @@ import bpy
 import numpy as np
 import pytest
 from _command_line import one_line, tree
+from keymark.core.retarget.character import REQUIRED
 from keymark.core.retarget.retarget_record import read_retarget_record
-from keymark.core.retarget.roles import REQUIRED
 from keymark.operators.bridge.actions import curve_digest
 from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.cli.main import main
@@ -216,7 +216,7 @@ def test_a_failure_leaves_the_folder_as_it_was(
 ) -> None:
     """Half a file never replaces a whole one."""
     from keymark.core.errors import ConversionError
-    from keymark.operators.bridge.character import character_files
+    from keymark.operators.bridge.character import import_character as character_files
 
     assert retarget() == 0
     before = tree(output.parent)

@@ -17,9 +17,9 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.assets.catalogs import NAME, ensure_catalog
 from keymark.operators.bridge.export_formats import FORMATS
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.shell.messages import warn_if_outdated
+from keymark.operators.shell.base_operator import warn_if_outdated
 from keymark.operators.shell.takes import active_take, add_take
-from keymark.operators.takes.next_step import next_step
+from keymark.operators.takes.panel import next_step
 
 ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 

@@ -3,12 +3,11 @@
 import bpy
 import numpy as np
 import pytest
-from keymark.core.footage.camera_placement import CameraPlacement, heading_rad
+from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
 from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import fixed_reason
-from keymark.operators.shell.placement_guess import placement_is_guess
-from keymark.operators.shell.takes import active_take
-from keymark.operators.takes.next_step import next_step
+from keymark.operators.shell.takes import active_take, placement_is_guess
+from keymark.operators.takes.panel import next_step
 from mathutils import Euler
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.camera_placement import CameraPlacement
+from keymark.core.footage.camera_fields import CameraPlacement
 from keymark.core.take.take import Take
 from keymark.operators.footage.drawn_lines import (
     ACROSS,
@@ -20,8 +20,7 @@ from keymark.operators.footage.drawn_lines import (
     store_lines,
 )
 from keymark.operators.footage.take_footage import lens_is_guess
-from keymark.operators.shell.placement_guess import placement_is_guess
-from keymark.operators.shell.takes import active_take
+from keymark.operators.shell.takes import active_take, placement_is_guess
 
 pytestmark = pytest.mark.usefixtures("registered")
 SIZE = (160, 120)

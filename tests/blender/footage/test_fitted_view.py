@@ -1,6 +1,6 @@
 """Which views of the footage may be fitted beside a sidebar again."""
 
-from keymark.operators.footage.fitted_view import is_same, may_move
+from keymark.operators.footage.camera_view import is_same, may_move
 
 
 def test_a_view_that_a_person_has_moved_stays() -> None:

@@ -12,8 +12,7 @@ from keymark.core.take.take import Take
 from keymark.operators.footage.load_footage import KEYMARK_OT_load_footage
 from keymark.operators.footage.take_footage import lens_is_guess
 from keymark.operators.shell.takes import active_take
-from keymark.operators.takes.file_handlers import KEYMARK_FH_footage, KEYMARK_FH_take
-from keymark.operators.takes.open_take import KEYMARK_OT_open_take
+from keymark.operators.takes.open_take import KEYMARK_FH_footage, KEYMARK_FH_take, KEYMARK_OT_open_take
 
 pytestmark = pytest.mark.usefixtures("registered")
 

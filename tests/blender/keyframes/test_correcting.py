@@ -11,11 +11,11 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.posing.turned import Facing, facing_of
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.joint_places import joint_places
 from keymark.operators.bridge.keyframes import keyed_frames
+from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.keyframes.corrections import camera_now
-from keymark.operators.keyframes.limb_selection import selected_limbs
+from keymark.operators.keyframes.flip_ways import selected_limbs
 from keymark.operators.shell.keyed_frames import posed_frames
 from keymark.operators.shell.takes import active_take
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from _posed import posture_of
 from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
-from keymark.operators.shell.found_frames import offered_at
-from keymark.operators.shell.keyed_frames import posed_frames
+from keymark.operators.shell.keyed_frames import offered_at, posed_frames
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")

@@ -14,7 +14,7 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
-from keymark.operators.keypoints.evidence import scene_evidence
+from keymark.operators.follow.evidence import scene_evidence
 from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of

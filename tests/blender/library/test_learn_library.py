@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.library.library_file import read_library
-from keymark.core.library.posture_shape import shape_vectors
+from keymark.core.prior.library import read_library
+from keymark.core.prior.motion_playback import shape_vectors
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.library import user_folder
+from keymark.operators.library import library_files as user_folder
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50

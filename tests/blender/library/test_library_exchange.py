@@ -8,20 +8,20 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.soles import lower_sole_m
-from keymark.core.library.library import Library, LibraryPosture
-from keymark.core.library.library_file import read_library, write_library
-from keymark.core.library.registry import registered_libraries
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.library import Library, LibraryPosture, read_library, write_library
+from keymark.core.prior.registry import registered_libraries
 from keymark.operators.bridge.actions import new_channelbag
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.keyframes import write_keyframes
-from keymark.operators.bridge.library.library_blend import read_library_blend
+from keymark.operators.bridge.library.library_file import read_library_blend
 from keymark.operators.bridge.library.pose_assets import add_assets
 from keymark.operators.bridge.posture_curves import write_posture_curves
-from keymark.operators.library import registry, registry_files, user_folder
+from keymark.operators.library import library_files as user_folder
+from keymark.operators.library import registry, registry_files
 from keymark.operators.library.registry_files import load_registered
 from keymark.operators.shell.takes import add_take
 

@@ -8,8 +8,8 @@ import gpu
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.segmentation.region_outlines import mask_outlines
-from keymark.operators.markers.mask_previews import ColorMask, Preview
+from keymark.core.footage.segmentation.regions import mask_outlines
+from keymark.operators.follow.mask_previews import ColorMask, Preview
 from keymark.operators.overlays import drawing
 from keymark.operators.overlays import mask as mask_overlay
 from keymark.operators.shell.footage_view import FootageView

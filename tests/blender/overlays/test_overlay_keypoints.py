@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from _review import made_up_keypoints, made_up_review
 from keymark.core.review.review import Review
-from keymark.operators.keypoints.frame_keypoints import FrameKeypoints
-from keymark.operators.overlays import keypoints as keypoint_overlay
+from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion
-from keymark.operators.overlays.clip_editor import ClipView
+from keymark.operators.overlays import motion as keypoint_overlay
+from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Style
 from keymark.operators.overlays.keypoint_marks import (
     all_sources,
     compared_marks,
     not_yet_compared,
     seen_marks,
 )
+from keymark.operators.overlays.mask import Label, Stroke
 from keymark.operators.overlays.outlines import predicted_contours
-from keymark.operators.overlays.picture import Label, Stroke
-from keymark.operators.overlays.style import SOURCES, THROWN_OUT, Style
+from keymark.operators.overlays.registry import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 
@@ -146,11 +146,11 @@ def test_keypoints_are_drawn_before_there_is_a_motion(registered: None) -> None:
     """With a legend of their sources; a small figure has small marks."""
     settings = bpy.context.scene.keymark.overlays
     seen = (seen_by("a detector", **{"head": (80.0, 10.0), "ankle.L": (82.0, 100.0)}),)
-    items = keypoint_overlay.picture(context_of(), seen, FOOTAGE, settings)
+    items = keypoint_overlay.picture_keypoints(context_of(), seen, FOOTAGE, settings)
     assert centers(items[0]) == pytest.approx(FOOTAGE.to_region(seen[0].pixel[0]))
     assert [item.words for item in items if isinstance(item, Label)] == ["Keypoint of a detector"]
     far = (seen_by("a detector", **{"head": (80.0, 50.0), "ankle.L": (82.0, 60.0)}),)
-    small = keypoint_overlay.picture(context_of(), far, FOOTAGE, settings)[0]
+    small = keypoint_overlay.picture_keypoints(context_of(), far, FOOTAGE, settings)[0]
     assert np.ptp(small.segments[0], axis=0).max() < np.ptp(items[0].segments[0], axis=0).max()
     nobody = (FrameKeypoints("a detector", ("head",), np.full((1, 1, 2), np.nan), np.zeros((1, 1))),)
-    assert len(keypoint_overlay.picture(context_of(), nobody, FOOTAGE, settings)[0].segments) == 0
+    assert len(keypoint_overlay.picture_keypoints(context_of(), nobody, FOOTAGE, settings)[0].segments) == 0

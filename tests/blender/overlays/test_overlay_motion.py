@@ -10,13 +10,12 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review.review import Review
 from keymark.operators.overlays import motion
-from keymark.operators.overlays.clip_editor import ClipView
+from keymark.operators.overlays.drawing import SMALLEST, Style, body_scale
 from keymark.operators.overlays.legend import Sample, corner, legend
-from keymark.operators.overlays.paths import paths, window
-from keymark.operators.overlays.picture import Fill, Label, Stroke, merged
-from keymark.operators.overlays.skeleton import skeleton
-from keymark.operators.overlays.style import SMALLEST, Style, body_scale
-from keymark.operators.overlays.viewport import world_view
+from keymark.operators.overlays.mask import Fill, Label, Stroke, merged
+from keymark.operators.overlays.motion import skeleton
+from keymark.operators.overlays.outlines import paths, window
+from keymark.operators.overlays.registry import ClipView, world_view
 from keymark.operators.shell import results, takes
 from keymark.operators.shell.footage_view import FootageView
 from mathutils import Matrix, Vector

@@ -9,9 +9,20 @@ from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.take.take import Take
-from keymark.operators.overlays.picture import Fill, Label, Stroke
-from keymark.operators.overlays.timeline import MODES, ROOMY, SLIM, Timeline, picture, relative
-from keymark.operators.overlays.timeline_figures import confidence_color, graph, in_view, joined, strip
+from keymark.operators.overlays.mask import Fill, Label, Stroke
+from keymark.operators.overlays.timeline import (
+    MODES,
+    ROOMY,
+    SLIM,
+    Timeline,
+    confidence_color,
+    graph,
+    in_view,
+    joined,
+    picture,
+    relative,
+    strip,
+)
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import keep_reading, keep_review, keep_speed
 from keymark.operators.shell.takes import active_take

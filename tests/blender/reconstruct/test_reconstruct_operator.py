@@ -22,7 +22,7 @@ def take(tiny_take: Take, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Property
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Grows by one whenever markers are looked for in a clip."""
-    from keymark.core.footage import read_clip
+    from keymark.core.footage import reading as read_clip
 
     counted: list[int] = []
     original = read_clip.detect_markers

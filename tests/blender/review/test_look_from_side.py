@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from keymark.operators.review.look_from_side import look_from_side
+from keymark.operators.review.weak_frames import look_from_side
 from keymark.operators.shell.takes import active_take
 from mathutils import Matrix, Quaternion, Vector
 

@@ -6,7 +6,7 @@ import bpy
 import pytest
 from keymark.core.errors import InputError
 from keymark.operators.shell.base_operator import BaseOperator
-from keymark.operators.shell.cancel_on_esc import cancel_click, cancel_job
+from keymark.operators.shell.job_operator import cancel_click, cancel_job
 
 CONTEXT = SimpleNamespace()
 

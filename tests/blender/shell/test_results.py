@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import keymark
 import pytest
-from keymark.core.files.array_cache import ArrayCache
+from keymark.core.files.digest import ArrayCache
 from keymark.core.footage.reading import Reading
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage

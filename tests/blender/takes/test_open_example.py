@@ -10,8 +10,8 @@ from keymark.core.take import examples
 from keymark.core.take.examples import COPIED, SHIPPED
 from keymark.operators.shell.keyed_frames import posed_frames
 from keymark.operators.shell.takes import active_take
-from keymark.operators.takes import open_example
-from keymark.operators.takes.next_step import next_step
+from keymark.operators.takes import open_take as open_example
+from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 

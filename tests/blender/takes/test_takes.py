@@ -9,7 +9,7 @@ import pytest
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import write_take
 from keymark.operators.shell.takes import active_take, unique_name
-from keymark.operators.takes.next_step import next_step
+from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 

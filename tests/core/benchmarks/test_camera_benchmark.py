@@ -14,8 +14,8 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import camera_room  # noqa: E402
 from camera import LINES, PERFORMER, PUT, cameras_of, seen_through  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
+from keymark.core.footage.camera_fields import CameraPlacement  # noqa: E402
 from keymark.core.footage.camera_fit import HEIGHT, LENS, TILT  # noqa: E402
-from keymark.core.footage.camera_placement import CameraPlacement  # noqa: E402
 from trials import Trial, read_trial  # noqa: E402
 
 

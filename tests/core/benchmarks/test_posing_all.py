@@ -14,9 +14,9 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import posing_all as bench  # noqa: E402
 from keymark.core.body.human import HUMAN  # noqa: E402
-from keymark.core.library.library_file import read_library  # noqa: E402
 from keymark.core.posing.candidates import Candidate, MatchedFrame  # noqa: E402
 from keymark.core.posing.found_poses import FoundPoses  # noqa: E402
+from keymark.core.prior.library import read_library  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from trials import Trial, read_unposed  # noqa: E402
 

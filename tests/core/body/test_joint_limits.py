@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.body.human import HUMAN
-from keymark.core.body.joint_limits import joint_limits_deg
+from keymark.core.body.human import HUMAN, joint_limits_deg
 from keymark.core.body.mirror import mirrored
 from keymark.core.body.posture import Posture
 

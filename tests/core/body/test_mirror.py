@@ -6,11 +6,11 @@ from _libraries import random_posture
 from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import sole_places
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.mirror import MIRROR, mirrored, mirrored_actor, other_side
 from keymark.core.body.posture import Posture
-from keymark.core.body.soles import sole_places
 
 
 @given(st.integers(0, 2**32 - 1))

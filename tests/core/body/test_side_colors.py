@@ -3,8 +3,7 @@
 import colorsys
 
 import pytest
-from keymark.core.body.human import HUMAN
-from keymark.core.body.side_colors import LIGHT, SHADED, STRONG, side_of
+from keymark.core.body.human import HUMAN, LIGHT, SHADED, STRONG, side_of
 from keymark.core.report import canvas
 
 SAME_HUE = 0.06

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import sole_heights_m, sole_places, standing_posture
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.soles import sole_heights_m, sole_places
-from keymark.core.body.standing_posture import standing_posture
 
 BODY = Body(Actor.from_stature(1.8))
 

@@ -13,7 +13,7 @@ from keymark.operators.cli.batch import worker_pool
 from keymark.operators.cli.batch.batch_progress import BatchProgress
 from keymark.operators.cli.commands import batch as command
 from keymark.operators.cli.main import main
-from keymark.operators.cli.usage import program_name
+from keymark.operators.cli.parser import program_name
 
 STAND_IN = Path(__file__).resolve().parents[2] / "_stand_in_worker.py"
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 from _outcomes import RECORD
+from keymark.core.shoot.discovery import Shoot, ShootTake
 from keymark.core.shoot.outcomes import Failure, Outcome, Status, read_failures, write_failure
-from keymark.core.shoot.shoot import Shoot, ShootTake
 from keymark.core.take.conversion_record import write_record
-from keymark.operators.cli.batch import batch_outcomes
-from keymark.operators.cli.batch.batch_outcomes import BatchOutcomes
+from keymark.operators.cli.batch import outcomes as batch_outcomes
+from keymark.operators.cli.batch.outcomes import BatchOutcomes
 from keymark.operators.cli.console import Console
 
 

@@ -18,8 +18,8 @@ from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.estimate.reconstruct import METHODS
 from keymark.core.report.pictures import EARLIER_PICTURES
-from keymark.core.take.motion_file import read_motion
-from keymark.operators.cli import usage
+from keymark.core.take.motion import read_motion
+from keymark.operators.cli import parser as usage
 from keymark.operators.cli.commands import SUMMARIES
 from keymark.operators.cli.commands import convert as convert_arguments
 from keymark.operators.cli.conversion import convert_take

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from _command_line import one_line
 from _synthetic_take import true_postures, write_json, write_keypoints, write_synthetic_take
-from keymark.core.take.motion_file import read_motion
+from keymark.core.take.motion import read_motion
 from keymark.operators.cli.main import main
 
 FRAMES = 16

@@ -10,10 +10,10 @@ import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.errors import ConversionError
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take import examples
-from keymark.core.take.motion_file import read_motion
+from keymark.core.take.motion import read_motion
 from keymark.core.take.take_file import read_take
 from keymark.operators.cli.commands import demo
 from keymark.operators.cli.main import main

@@ -21,7 +21,7 @@ FRAMES = 8
 @pytest.fixture(autouse=True)
 def network(monkeypatch: pytest.MonkeyPatch) -> None:
     """One that sees somebody in the middle of every picture."""
-    monkeypatch.setattr("keymark.operators.cli.use_cases.detect.PoseNetwork", MiddleNetwork)
+    monkeypatch.setattr("keymark.operators.cli.commands.detect.PoseNetwork", MiddleNetwork)
 
 
 @pytest.fixture

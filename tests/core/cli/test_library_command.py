@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 from _libraries import small_library
 from _synthetic_take import BODY, true_postures
-from keymark.core.library.library_file import read_library, write_library
-from keymark.core.take.motion import Motion
-from keymark.core.take.motion_file import write_motion
+from keymark.core.prior.library import read_library, write_library
+from keymark.core.take.motion import Motion, write_motion
 from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures, write_json, write_synthetic_take
-from keymark.core.library.learning import LibraryMetadata, learn_library
-from keymark.core.library.library_file import library_digest, read_library, write_library
 from keymark.core.pipeline import found_keyframes
 from keymark.core.posing.candidates import Candidate, MatchedFrame
 from keymark.core.posing.found_poses import FoundPoses
+from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.prior.library import library_digest, read_library, write_library
 from keymark.core.take.conversion_record import read_record
-from keymark.core.take.motion_file import read_motion
+from keymark.core.take.motion import read_motion
 from keymark.operators.cli import library_search_path
 from keymark.operators.cli.main import main
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from _outcomes import FILES, RECORD, converted, failed, waiting
 from keymark.core.errors import ConversionError
+from keymark.core.shoot.discovery import Shoot
 from keymark.core.shoot.outcomes import Outcome, Status
-from keymark.core.shoot.shoot import Shoot
-from keymark.operators.cli.batch.summary import LINES, PAGE, write_summary
+from keymark.operators.cli.batch.outcomes import LINES, PAGE, write_summary
 
 
 def outcomes(output: Path) -> list[Outcome]:

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from _scene import CAMERA, SEGMENTS, film
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import standing_height_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import standing_height_m, standing_posture
 from keymark.core.estimate.actor_measure import MEASURED, MeasuredActor, measure_standing
+from keymark.core.evidence.keypoints import KeypointModel
+from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.observation.keypoints import KeypointModel
-from keymark.core.observation.regions import MarkerPlacement, RegionModel
 
 PLACE = np.array([0.2, 0.3, 0.0])
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.estimate.block_banded import BlockBanded
-from keymark.core.estimate.terms.quadratic import QuadraticBuilder
+from keymark.core.estimate.terms.term import QuadraticBuilder
 
 SIZE = 4
 

@@ -12,8 +12,7 @@ from keymark.core.estimate.contour_evidence import learn_contours
 from keymark.core.estimate.terms.contours import ContourTerm
 from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview, run
 
 

@@ -11,13 +11,10 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.body.skeleton import Joint, JointKind, PrincipalPoint, Segment, Skeleton
 from keymark.core.errors import InputError
-from keymark.core.estimate.filter_options import FilterOptions
 from keymark.core.estimate.fuzzy import Memberships
-from keymark.core.estimate.kalman import FilterResult, FuzzyKalmanFilter, State, filter_clip
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.observation import depths
-from keymark.core.observation.line_ends import (
+from keymark.core.estimate.kalman import FilterOptions, FilterResult, FuzzyKalmanFilter, State, filter_clip
+from keymark.core.evidence import keypoints as depths
+from keymark.core.evidence.line_ends import (
     ANGLE,
     LOG_RATIO,
     LineEnds,
@@ -26,6 +23,8 @@ from keymark.core.observation.line_ends import (
     observed_characteristics,
     residual,
 )
+from keymark.core.footage.camera import Camera
+from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 
 See = Callable[..., RegionTracks]

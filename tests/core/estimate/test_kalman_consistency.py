@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from _consistency import chi_square_average, normalized_squared
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.filter_options import FilterOptions
-from keymark.core.estimate.kalman import FuzzyKalmanFilter
-from keymark.core.observation import depths
-from keymark.core.observation.line_ends import LineEnds
+from keymark.core.estimate.kalman import FilterOptions, FuzzyKalmanFilter
+from keymark.core.evidence import keypoints as depths
+from keymark.core.evidence.line_ends import LineEnds
 
 RUNS, FRAMES = 12, 14
 KEYFRAMES = (0, 5, 9, 13)

@@ -7,10 +7,10 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes
-from keymark.core.estimate.posing_error import posing_covariance, velocities
+from keymark.core.estimate.keyframe_rows import posing_covariance, velocities
 from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
+from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.observation.regions import MarkerPlacement, RegionModel
 from keymark.core.progress import run
 
 FRAMES = 90

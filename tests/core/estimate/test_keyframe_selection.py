@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 from _scene import BODY, MODEL, exercise, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_selection import select_keyframes
-from keymark.core.footage.keypoints.body_points import mirrored_point
-from keymark.core.footage.keypoints.keypoints import Keypoints
+from keymark.core.estimate.keyframe_trust import select_keyframes
+from keymark.core.evidence.regions import RegionModel
+from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.library.several_libraries import COMPOSED
-from keymark.core.observation.regions import RegionModel
 from keymark.core.prior.keyframes import Keyframe, Matched
+from keymark.core.prior.texts import COMPOSED
 
 FRAMES, FPS = 91, 30.0
 TRUTH = exercise(FRAMES)

@@ -10,18 +10,16 @@ from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.block_banded import BlockBanded
-from keymark.core.estimate.keypoint_fit import observed_joints
-from keymark.core.estimate.keypoint_notes import keypoint_notes
-from keymark.core.estimate.side_swaps import doubted_at_changes, exchanged_back, find_swaps
-from keymark.core.estimate.terms.drift import add_drift, drift, drift_cost
+from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
+from keymark.core.estimate.keypoint_trust import doubted_at_changes, exchanged_back, find_swaps
+from keymark.core.estimate.terms.motion import add_drift, drift, drift_cost
 from keymark.core.estimate.terms.term import NormalEquations
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
+from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.observation.keypoints import KeypointModel
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 
 FRAMES = 90

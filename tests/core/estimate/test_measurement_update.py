@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from keymark.core.estimate.measurement_update import normalized_innovation_squared, update
+from keymark.core.estimate.kalman import normalized_innovation_squared, update
 
 ILL_CONDITIONED = (
     np.diag([1e8, 1e-10, 1.0]),

@@ -9,8 +9,8 @@ import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import ClipProblem
-from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.motion_size import (
+from keymark.core.estimate.clip_state import ClipState, Window, windows
+from keymark.core.estimate.refinement import (
     LARGEST_OF_ALL,
     LARGEST_PER_GAP_S,
     USUAL_SIZE,
@@ -19,9 +19,7 @@ from keymark.core.estimate.motion_size import (
 )
 from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
-from keymark.core.estimate.windows import Window, windows
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 
 FRAMES, EVERY = 61, 15

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, film
-from keymark.core.body.heading import yawed_in_place
-from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import hip_height_m, standing_height_m, standing_posture
+from keymark.core.body.body_volume import hip_height_m, standing_height_m, standing_posture
+from keymark.core.body.posture import Posture, yawed_in_place
 from keymark.core.errors import InputError
 from keymark.core.estimate.performer_placement import ground_place, place_standing
 from keymark.core.footage.camera import Camera
@@ -48,7 +47,7 @@ def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
     camera = looking_down(0.5, (0.0, -3.5, 2.9))
     true = standing_posture(BODY)
     near = standing_posture(BODY, np.array([0.0, -0.35, 0.2]))  # what the same body too near looks like
-    from keymark.core.observation.regions import MarkerPlacement, RegionModel
+    from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 
     model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([near]), model=model), SEGMENTS)
@@ -71,7 +70,7 @@ def test_a_ground_elsewhere_is_left_alone() -> None:
     """A performer on a stage of two meters is not pulled to the floor."""
     camera = looking_down(0.3, (0.0, -4.0, 4.3))
     true = standing_posture(BODY, np.array([0.0, 0.0, 2.0]))
-    from keymark.core.observation.regions import MarkerPlacement, RegionModel
+    from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 
     model = RegionModel(BODY, camera, tuple(MarkerPlacement.usual(name) for name in SEGMENTS))
     found = place_standing(BODY, camera, 0, film(Posture.stack([true]), model=model), SEGMENTS)

@@ -12,7 +12,7 @@ import pytest
 from _synthetic_take import BODY, SIZE, true_postures, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.estimate.reconstruct import METHODS, Reconstruction, reconstruct
-from keymark.core.prior.interpolation import interpolate_linearly
+from keymark.core.prior.keyframes import interpolate_linearly
 from keymark.core.progress import Progress, run
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take.take import Take

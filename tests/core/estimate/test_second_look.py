@@ -7,13 +7,12 @@ import numpy as np
 from _filmed import FRAMES, POSED, TRUTH, photograph
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.seen_tracks import seen_tracks
+from keymark.core.estimate.second_look import seen_tracks
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.ignored_regions import IgnoredPixels, IgnoredRegion
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 
 MARKER = SEGMENTS.index("forearm.R")

@@ -8,11 +8,8 @@ from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
-from keymark.core.estimate.terms.belief import BeliefTerm
-from keymark.core.estimate.terms.depths import DepthTerm
-from keymark.core.estimate.terms.ground import GroundTerm
-from keymark.core.estimate.terms.joint_limits import LimitTerm
-from keymark.core.estimate.terms.quadratic import QuadraticBuilder
+from keymark.core.estimate.terms.contact import GroundTerm, StillnessTerm
+from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from keymark.core.estimate.terms.regions import (
     FEATURES,
     ObservedRegions,
@@ -21,12 +18,10 @@ from keymark.core.estimate.terms.regions import (
     feature_rows,
     missing_variance,
 )
-from keymark.core.estimate.terms.smoothness import SmoothnessTerm
-from keymark.core.estimate.terms.stillness import StillnessTerm
-from keymark.core.estimate.terms.term import NormalEquations, Term, total_cost
+from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
+from keymark.core.evidence import keypoints as depths
 from keymark.core.numerics.robust import student_weight
-from keymark.core.observation import depths
-from keymark.core.prior.process_noise import process_noise_factor
+from keymark.core.prior.frame_prior import process_noise_factor
 
 FRAMES = 6
 DOFS = HUMAN.dof_count

@@ -6,13 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
-from keymark.core.body.heading import yawed_at
-from keymark.core.body.posture import Posture
+from keymark.core.body.posture import Posture, yawed_at
 from keymark.core.estimate.turn_choice import doubted_turns
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
 
 FRAMES, EVERY = 76, 15

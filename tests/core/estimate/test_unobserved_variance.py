@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.estimate.unobserved_variance import GRACE_S, unobserved_variance
+from keymark.core.estimate.match_error import GRACE_S, unobserved_variance
 
 SEGMENTS = ("trunk", "forearm.L", "shin.L")
 TIME_S = np.arange(90) / 30.0

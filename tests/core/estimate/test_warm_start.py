@@ -16,8 +16,7 @@ from keymark.core.estimate.whole_clip import (
 )
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import Preview
 
 FRAMES, EVERY, MOVED = 360, 6, 31

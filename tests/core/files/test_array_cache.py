@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from keymark.core.errors import ConversionError
-from keymark.core.files.array_cache import ArrayCache
+from keymark.core.files.digest import ArrayCache
 from keymark.core.files.file_lock import file_lock
 
 ARRAYS = {

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
-from keymark.core.files.fields import Fields
-from keymark.core.files.inherited_fields import ALTERNATIVES, InheritedFields, child_location
+from keymark.core.files.fields import ALTERNATIVES, Fields, InheritedFields, child_location
 from keymark.core.files.kinds import Number
 from keymark.core.files.records import Record, read_record
 

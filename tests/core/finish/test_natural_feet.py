@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 from _scene import BODY
-from keymark.core.body.extremities import RIGID, Extremities
-from keymark.core.body.heading import turned_and_shifted
+from keymark.core.body.body_volume import sole_places
+from keymark.core.body.kinematics import RIGID, Extremities
 from keymark.core.body.mirror import mirrored, mirrored_actor
-from keymark.core.body.posture import Posture
+from keymark.core.body.posture import Posture, turned_and_shifted
 from keymark.core.body.rotations import logarithm
-from keymark.core.body.soles import sole_places
-from keymark.core.finish.foot_pitch import TOES_DOWN_RAD, TOES_UP_RAD
-from keymark.core.finish.foot_turns import HANGING_RAD
-from keymark.core.finish.natural_extremities import natural_extremities
+from keymark.core.finish.foot_ground import TOES_DOWN_RAD, TOES_UP_RAD
+from keymark.core.finish.natural_extremities import HANGING_RAD, natural_extremities
 
 FPS = 30.0
 NAMES = BODY.skeleton.dof_names

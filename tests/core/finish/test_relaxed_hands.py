@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 from _scene import BODY
-from keymark.core.body.extremities import segment_ends
+from keymark.core.body.body_volume import standing_posture
+from keymark.core.body.kinematics import segment_ends
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import logarithm
-from keymark.core.body.standing_posture import standing_posture
-from keymark.core.finish.hand_turns import CURL_RAD, DROOP_RAD, THICKNESS_M
-from keymark.core.finish.natural_extremities import natural_extremities
+from keymark.core.finish.natural_extremities import CURL_RAD, DROOP_RAD, THICKNESS_M, natural_extremities
 
 NAMES = BODY.skeleton.dof_names
 FRAMES = 12

@@ -6,10 +6,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from keymark.core.footage.clips.album import Album
+from keymark.core.footage.clips.album import Album, watch_clip
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.frame_checks import FrameChecks
-from keymark.core.footage.clips.watched_clip import watch_clip
 
 FRAMES = 4
 

@@ -1,7 +1,7 @@
 """Colors along limbs."""
 
 import numpy as np
-from keymark.core.footage.band_colors import BANDS, BandColors, band_cells, learn_band_colors
+from keymark.core.footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
 
 SLEEVE, SKIN = np.array([180, 60, 40], dtype=np.uint8), np.array([120, 150, 210], dtype=np.uint8)
 

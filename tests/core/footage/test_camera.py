@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.camera_placement import CameraPlacement
+from keymark.core.footage.camera_fields import CameraPlacement
 
 DISTORTIONS = [(0.0, 0.0, 0.0), (-0.12, 0.03, -0.004), (0.2, 0.05, 0.01)]
 

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
-from keymark.core.footage.camera import Camera
+from keymark.core.footage.camera import Camera, default_camera_pose
 from keymark.core.footage.camera_evidence import CLICK_STD_PX, CameraEvidence, Uprights
+from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
 from keymark.core.footage.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, CameraFit, fit_camera
-from keymark.core.footage.camera_placement import CameraPlacement, heading_rad
-from keymark.core.footage.default_camera import default_camera_pose
 
 SIZE = (1280, 720)
 STATURE_M = 1.75

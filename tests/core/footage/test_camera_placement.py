@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.camera_placement import CameraPlacement, heading_rad
+from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -9,12 +9,10 @@ import cv2
 import numpy as np
 import pytest
 from _boot import ROOT
-from keymark.core.footage.clip_times import MOST_CLIPS, clip_times
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.video_file import VideoFile
-from keymark.core.footage.marker_style import MarkerStyle
-from keymark.core.footage.read_clip import read_clip
-from keymark.core.footage.reading_key import reading_key
+from keymark.core.footage.reading import MOST_CLIPS, clip_times, read_clip, reading_key
+from keymark.core.footage.region_tracks import MarkerStyle
 from keymark.core.progress import run
 
 DEMO = ROOT / "presets" / "demo" / "aerobic"

@@ -6,8 +6,7 @@ from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.default_camera import default_camera_pose, guess_lens
+from keymark.core.footage.camera import Camera, default_camera_pose, guess_lens
 
 SIZES = [(1080, 1920), (2160, 3840), (640, 480), (320, 240), (1920, 1080), (1440, 1080), (720, 720)]
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.camera_placement import CameraPlacement
-from keymark.core.footage.floor_grid import floor_grid
+from keymark.core.footage.camera_evidence import floor_grid
+from keymark.core.footage.camera_fields import CameraPlacement
 
 SIZE = (640, 480)
 

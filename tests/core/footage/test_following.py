@@ -7,12 +7,10 @@ from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, m
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import ExpectedRegions
-from keymark.core.footage.segmentation.matting import coverage
-from keymark.core.footage.segmentation.search_windows import boxes_to_measure
-from keymark.core.footage.segmentation.window_atlas import NO_COLOR, Window, pack_windows
+from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
+from keymark.core.footage.segmentation.moments import coverage
+from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, boxes_to_measure, pack_windows
 from keymark.core.footage.segmentation.working_image import halvings, measuring_image, searching_factor
 
 STRETCH = 9

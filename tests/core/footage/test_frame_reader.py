@@ -6,8 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import Drawn
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.frame_reader import FrameReader
+from keymark.core.footage.clips.clip import Clip, FrameReader
 
 FPS = 30.0
 

@@ -7,17 +7,13 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import BLUE, RED, SIZE, STYLES, Ellipse, clip_of, draw, finish, moving, path, with_panel
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.clip_samples import sample_clip
+from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.ignored_regions import IGNORED, IgnoredPixels, IgnoredRegion
 from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.markers import track_markers
-from keymark.core.footage.read_clip import read_clip
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.reading_key import reading_key
+from keymark.core.footage.markers import regions_of_frame, track_markers
+from keymark.core.footage.reading import Reading, read_clip, reading_key
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.footage.segmentation.regions import color_masks
-from keymark.core.footage.single_frame_regions import regions_of_frame
 from keymark.core.progress import run
 
 OVER = (14.0, 144.0, 96.0, 226.0)

@@ -8,7 +8,7 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.footage.clips import image_sequence
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.image_file import read_image
+from keymark.core.footage.clips.image_sequence import read_image
 
 
 def png(width: int, height: int) -> bytes:

@@ -8,15 +8,12 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.clip_samples import sample_clip
+from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
-from keymark.core.footage.marker_style import MarkerStyle
-from keymark.core.footage.marker_warnings import Likeness, marker_warnings
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import ExpectedRegions
-from keymark.core.footage.segmentation.region_outlines import mask_outlines
-from keymark.core.footage.segmentation.regions import color_masks
+from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
+from keymark.core.footage.segmentation.regions import color_masks, mask_outlines
+from keymark.core.footage.still_areas import Likeness, marker_warnings
 
 Result = TypeVar("Result")
 GREEN = (40, 220, 60)

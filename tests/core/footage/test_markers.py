@@ -12,9 +12,8 @@ from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, 
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.colors.color_learning import learn_colors
-from keymark.core.footage.marker_style import MarkerStyle
 from keymark.core.footage.markers import track_markers
-from keymark.core.footage.region_tracks import ExpectedRegions, RegionTracks
+from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
 
 
 def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:

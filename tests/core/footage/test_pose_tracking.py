@@ -11,7 +11,7 @@ from _fake_network import SHAPE, FakeNetwork, draw_people
 from keymark.core.arrays import Image
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.keypoints.people import People
+from keymark.core.footage.keypoints.keypoints import People
 from keymark.core.footage.pose_tracking import STRETCH, find_people
 from keymark.core.progress import Progress, run
 

@@ -10,8 +10,7 @@ import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.footage.clips import clip as clip_module
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.reading_arrays import reading_arrays, reading_from_arrays
+from keymark.core.footage.reading import Reading, reading_arrays, reading_from_arrays
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage

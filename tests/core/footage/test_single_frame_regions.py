@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from _drawn_clip import STYLES, clip_of, draw, finish, moving
 from keymark.core.errors import InputError
-from keymark.core.footage.markers import track_markers
-from keymark.core.footage.single_frame_regions import regions_of_frame
+from keymark.core.footage.markers import regions_of_frame, track_markers
 
 
 def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:

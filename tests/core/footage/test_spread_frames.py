@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from _footage import encode, write_numbered_take
 from keymark.core.errors import InputError
-from keymark.core.footage.clips import spread_frames as glancing
-from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips import clip as glancing
+from keymark.core.footage.clips.clip import Clip, sample_spread_frames
 from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
-from keymark.core.footage.clips.packets import quickly_found, read_packets
-from keymark.core.footage.clips.spread_frames import sample_spread_frames
+from keymark.core.footage.clips.container import quickly_found, read_packets
 from keymark.core.progress import run
 
 SIZE = (64, 48)

@@ -3,15 +3,14 @@
 import numpy as np
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import standing_posture
-from keymark.core.footage.camera import Camera
+from keymark.core.footage.camera import Camera, default_camera_pose
 from keymark.core.footage.camera_evidence import CameraEvidence
+from keymark.core.footage.camera_fields import CameraPlacement
 from keymark.core.footage.camera_fit import LENS, fit_camera
-from keymark.core.footage.camera_placement import CameraPlacement
-from keymark.core.footage.default_camera import default_camera_pose
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.standing_moments import standing_keypoints
 

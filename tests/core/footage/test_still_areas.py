@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from _drawn_clip import BLUE, PANEL, RED, STYLES, Ellipse, clip_of, draw, moving, with_panel
-from keymark.core.footage.clips.clip_samples import sample_clip
+from keymark.core.footage.clips.clip import sample_clip
 from keymark.core.footage.ignored_regions import IgnoredRegion
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
-from keymark.core.footage.marker_style import MarkerStyle
+from keymark.core.footage.region_tracks import MarkerStyle
 from keymark.core.footage.still_areas import places
 from keymark.core.progress import run
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 from _synthetic_take import COLORS, drawn_frames, true_postures
-from keymark.core.footage.colors.color_space import chromaticity
+from keymark.core.footage.colors.color_model import chromaticity
 from keymark.core.footage.colors.strong_colors import StrongColor, strong_colors
 
 

@@ -1,8 +1,8 @@
 """Names of motion tracks, as people give them."""
 
 import pytest
-from keymark.core.footage.keypoints.body_points import BODY_POINTS
-from keymark.core.footage.keypoints.track_names import named_point
+from keymark.core.footage.keypoints.keypoints import BODY_POINTS
+from keymark.core.footage.keypoints.layouts import named_point
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from _synthetic_take import write_synthetic_take
-from keymark.core.take.character_settings import CHARACTER_ENDINGS, CharacterFields, CharacterOptions
+from keymark.core.take.conversion_settings import CHARACTER_ENDINGS, CharacterFields, CharacterOptions
 from keymark.core.take.description import describe
 from keymark.operators.cli.commands.character import CHARACTER
 from keymark.operators.cli.commands.retarget import RETARGET

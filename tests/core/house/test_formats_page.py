@@ -6,23 +6,20 @@ from pathlib import Path
 
 import pytest
 from keymark.core import MOST_PIXELS
-from keymark.core.body import posture_fields
+from keymark.core.body import posture as posture_fields
 from keymark.core.files import json_file, safe_path
-from keymark.core.footage import camera_fields, ignored_region_fields
+from keymark.core.footage import camera_fields
+from keymark.core.footage import ignored_regions as ignored_region_fields
 from keymark.core.footage.clips import image_sequence
 from keymark.core.footage.keypoints import frame_folder, keypoint_file
-from keymark.core.library import library_file
+from keymark.core.prior import library as library_file
 from keymark.core.retarget import retarget_record
-from keymark.core.retarget.maps import character_map_file
-from keymark.core.shoot import discovery, shoot
-from keymark.core.take import (
-    conversion_record,
-    conversion_settings,
-    keyframe_file,
-    motion_file,
-    shoot_file,
-    take_file,
-)
+from keymark.core.retarget.maps import character_map as character_map_file
+from keymark.core.shoot import discovery
+from keymark.core.shoot import discovery as shoot
+from keymark.core.take import conversion_record, conversion_settings, keyframe_file, take_file
+from keymark.core.take import description as shoot_file
+from keymark.core.take import motion as motion_file
 
 MIB = 2**20
 LIMITS = {

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from keymark.core.footage.keypoints import detected_frames, frame_folder, frame_numbers, keypoint_file
-from keymark.core.footage.keypoints.body_points import BODY_POINTS
+from keymark.core.footage.keypoints import detected_frames, frame_folder, keypoint_file
+from keymark.core.footage.keypoints import frame_folder as frame_numbers
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
+from keymark.core.footage.keypoints.keypoints import BODY_POINTS
 from keymark.core.footage.keypoints.layouts import LAYOUTS
 
 MIB = 2**20

@@ -74,7 +74,7 @@ def test_fields_come_from_the_nearest_file(folder: Path) -> None:
 def test_the_table_names_every_field(page: str) -> None:
     """Those of `shoot.json` by name, and no other ones as its own."""
     from keymark.core.shoot.discovery import KNOWN_FIELDS as LISTED
-    from keymark.core.take.shoot_file import KNOWN_FIELDS
+    from keymark.core.take.description import KNOWN_FIELDS
 
     fields = re.findall(r"^\| `([\w$]+)` \|", page, flags=re.MULTILINE)
     assert set(fields) == {*KNOWN_FIELDS, *LISTED} - {"take"}

@@ -3,10 +3,15 @@
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
-from keymark.core.numerics.least_squares import Equations, levenberg_marquardt
-from keymark.core.numerics.robust import multivariate_cost, multivariate_weight, student_cost, student_weight
-from keymark.core.numerics.smoothing import columns_at, gaussian, usual_step, weighted_median
-from keymark.core.numerics.vectors import across, unit
+from keymark.core.numerics.robust import (
+    Equations,
+    levenberg_marquardt,
+    multivariate_cost,
+    multivariate_weight,
+    student_cost,
+    student_weight,
+)
+from keymark.core.numerics.vectors import across, columns_at, gaussian, unit, usual_step, weighted_median
 from scipy.optimize import least_squares
 from scipy.stats import multivariate_t, t
 

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-from keymark.core.library.library import Library
-from keymark.core.library.library_file import read_library
+from keymark.core.prior.library import Library, read_library
 
 
 @pytest.fixture(scope="package")

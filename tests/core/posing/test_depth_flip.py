@@ -17,14 +17,12 @@ from _corrections import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.arrays import Array
-from keymark.core.body.human import HUMAN
-from keymark.core.body.limbs import LIMBS, TRUNK
+from keymark.core.body.body_volume import standing_posture
+from keymark.core.body.human import HUMAN, LIMBS, TRUNK
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import standing_posture
 from keymark.core.footage.camera import Camera
 from keymark.core.posing.depth_flip import FLIPPABLE, FlippedPart, flipped
-from keymark.core.posing.limb_chain import limb_chain, limb_excess_rad
-from keymark.core.posing.limb_in_sight import DISTINCT_M, sight_lines, ways_in_sight
+from keymark.core.posing.limb_chain import DISTINCT_M, limb_chain, limb_excess_rad, sight_lines, ways_in_sight
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))
 SEEDS = st.integers(0, 2**32 - 1)

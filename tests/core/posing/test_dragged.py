@@ -14,11 +14,10 @@ from _corrections import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from keymark.core.body.human import HUMAN
-from keymark.core.body.limbs import TRUNK, limb_of
+from keymark.core.body.body_volume import standing_posture
+from keymark.core.body.human import HUMAN, TRUNK, limb_of
 from keymark.core.body.posture import Posture
 from keymark.core.body.rotations import hinge
-from keymark.core.body.standing_posture import standing_posture
 from keymark.core.posing.dragged import dragged
 
 SEEDS = st.integers(0, 2**32 - 1)

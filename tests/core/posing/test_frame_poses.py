@@ -7,25 +7,23 @@ from functools import cache
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
-from keymark.core.body.heading import yawed_at
+from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
-from keymark.core.body.posture import Posture
-from keymark.core.body.soles import lower_sole_m
+from keymark.core.body.posture import Posture, yawed_at
 from keymark.core.errors import InputError
 from keymark.core.estimate.keyframe_evidence import uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.terms.keypoints import ObservedKeypoints
+from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.library.library import Library
-from keymark.core.library.registry import SHIPPED, find_libraries
-from keymark.core.library.several_libraries import EVERY_LIBRARY
-from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.posing.frame_poses import FramePoses, find_frame_poses
-from keymark.core.posing.frame_search import knowledge
-from keymark.core.posing.frame_shown import FrameShown
+from keymark.core.posing.frame_search import FrameShown, knowledge
 from keymark.core.prior.frame_prior import prior_from_keyframes
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.library import Library
+from keymark.core.prior.registry import SHIPPED, find_libraries
+from keymark.core.prior.texts import EVERY_LIBRARY
 
 TURNS = {"front": 0.0, "left": 90.0, "behind": 180.0, "right": -90.0}
 NAMES = tuple(point.name for point in BODY.skeleton.points)

@@ -5,10 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from _performed import BODY, camera, filmed, performed
-from keymark.core.body.heading import yawed_at
-from keymark.core.body.limbs import LIMBS
-from keymark.core.library.library import Library
-from keymark.core.library.library_file import read_library
+from keymark.core.body.human import LIMBS
+from keymark.core.body.posture import yawed_at
 from keymark.core.posing.library_motion import nearest_libraries, part_beliefs
 from keymark.core.posing.part_features import (
     HEADINGS,
@@ -19,6 +17,7 @@ from keymark.core.posing.part_features import (
 )
 from keymark.core.posing.part_pools import part_pools
 from keymark.core.posing.posing_input import posing_input
+from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
 
 HEADING = np.radians(30.0)

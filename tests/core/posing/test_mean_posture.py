@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _performed import BODY, camera, filmed, performed
-from keymark.core.body.human import HUMAN
-from keymark.core.body.limbs import LIMBS
+from keymark.core.body.human import HUMAN, LIMBS
 from keymark.core.body.posture import Posture
-from keymark.core.library.library import Library
+from keymark.core.posing.compose_clip import mean_postures
 from keymark.core.posing.composed_path import ComposedPath
 from keymark.core.posing.composed_states import FrameStates
-from keymark.core.posing.mean_posture import mean_postures
 from keymark.core.posing.part_features import (
     HEADINGS,
     StanceFeatures,
@@ -20,6 +18,7 @@ from keymark.core.posing.part_features import (
 )
 from keymark.core.posing.part_pools import PartPools, part_pools
 from keymark.core.posing.posing_input import posing_input
+from keymark.core.prior.library import Library
 
 ARM = "arm.L"
 STANCE, HIPS = 3, np.array([0.2, 0.1, 0.9])

@@ -7,14 +7,13 @@ import pytest
 from _performed import BODY, FRAMES, camera, errors_m, filmed, performed
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
+from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.body_points import mirrored_point
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.library.library import Library
-from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.posing.pose_clip import pose_clip
+from keymark.core.prior.library import Library
 from keymark.core.progress import run
 from keymark.core.take.take import Take
 

@@ -9,15 +9,14 @@ import pytest
 from _performed import BODY, FRAMES, camera, filmed, performed
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.evidence.keypoints import KeypointModel
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.library.library import Library
-from keymark.core.library.library_file import read_library
-from keymark.core.observation.keypoints import KeypointModel
 from keymark.core.posing.found_poses import FoundPoses, with_found
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
 from keymark.core.take.take import Take
 

@@ -5,10 +5,10 @@ import pytest
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.library.library_file import read_library
-from keymark.core.library.registry import SHIPPED
 from keymark.core.posing.posing_input import PosedFrames
 from keymark.core.prior.keyframes import Keyframe, Matched
+from keymark.core.prior.library import read_library
+from keymark.core.prior.registry import SHIPPED
 
 BODY = Body(Actor.from_stature(1.7))
 

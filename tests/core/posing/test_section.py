@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 from _synthetic_take import true_postures, write_synthetic_take
-from keymark.core.posing.section import Section, section_around, take_around
+from keymark.core.posing.turned import Section, section_around, take_around
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

@@ -12,10 +12,10 @@ from _corrections import (
     points,
     segment_lengths,
 )
+from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.human import HUMAN
 from keymark.core.body.mirror import other_side
 from keymark.core.body.posture import Posture
-from keymark.core.body.standing_posture import standing_posture
 from keymark.core.posing.turned import Facing, Sides, facing_of, turned
 
 FRONT = camera_at(np.array([0.0, -4.0, 1.2]))

@@ -6,8 +6,7 @@ from keymark.core.arrays import Array
 from keymark.core.footage.clips.album import Album
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.evidence_speed import EvidenceSpeed, evidence_speed
-from keymark.core.prior.marker_speed import marker_speed
+from keymark.core.prior.keyframe_proposals import EvidenceSpeed, evidence_speed, marker_speed
 from keymark.core.progress import run
 
 FRAMES, FPS = 90, 30.0

@@ -7,8 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.prior.interpolation import interpolate, interpolate_linearly
-from keymark.core.prior.keyframes import Keyframe
+from keymark.core.prior.keyframes import Keyframe, interpolate, interpolate_linearly
 
 INDICES = (2, 9, 20, 26, 40)
 FRAMES = 44

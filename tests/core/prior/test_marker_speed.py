@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.marker_speed import marker_speed
+from keymark.core.prior.keyframe_proposals import marker_speed
 
 FPS = 25.0
 

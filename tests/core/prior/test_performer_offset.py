@@ -3,9 +3,8 @@
 import numpy as np
 from _scene import exercise
 from keymark.core.body.posture import Posture
-from keymark.core.library.several_libraries import COMPOSED
-from keymark.core.prior.keyframes import Keyframe, Matched
-from keymark.core.prior.performer_offset import with_offset
+from keymark.core.prior.keyframes import Keyframe, Matched, with_offset
+from keymark.core.prior.texts import COMPOSED
 
 FPS = 30.0
 TRUTH = exercise(91)

@@ -4,7 +4,7 @@ import numpy as np
 from _scene import exercise
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.prior.process_noise import NATURAL_SHARE, process_noise_factor
+from keymark.core.prior.frame_prior import NATURAL_SHARE, process_noise_factor
 
 FRAMES = np.array([0, 12, 24, 36, 48])
 

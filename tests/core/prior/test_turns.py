@@ -2,11 +2,8 @@
 
 import numpy as np
 from _scene import BODY, exercise
-from keymark.core.body.heading import headings_rad, yawed_at
-from keymark.core.body.posture import Posture
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Keyframe
-from keymark.core.prior.turns import heading_steps_rad, with_turns
+from keymark.core.body.posture import Posture, headings_rad, yawed_at
+from keymark.core.prior.keyframes import Keyframe, heading_steps_rad, interpolate, with_turns
 
 KEYFRAMES = np.array([5, 15, 30, 40])
 FRAMES = 48

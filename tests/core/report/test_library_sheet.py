@@ -5,14 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _libraries import ACTOR, small_library
+from keymark.core.body.body_volume import sole_heights_m, standing_posture
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.core.body.soles import sole_heights_m
-from keymark.core.body.standing_posture import standing_posture
 from keymark.core.report.canvas import LEFT, RIGHT
-from keymark.core.report.library_sheet import CAPTION, CELL, COLUMNS, HEADER, library_sheet
-from keymark.core.report.mannequin import View, draw_mannequin, mannequin
-from keymark.core.report.posture_picture import SIZE, posture_picture
+from keymark.core.report.mannequin import (
+    CAPTION,
+    CELL,
+    COLUMNS,
+    HEADER,
+    SIZE,
+    View,
+    draw_mannequin,
+    library_sheet,
+    mannequin,
+    posture_picture,
+)
 
 BODY = Body(ACTOR)
 STANDING = standing_posture(BODY)

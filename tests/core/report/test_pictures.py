@@ -8,16 +8,19 @@ import numpy as np
 import pytest
 from _review import made_up_keypoints
 from _synthetic_take import BODY, CAMERA, SIZE, true_postures, write_synthetic_take
+from keymark.core.evidence.contours import ContourModel
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.observation.contours import ContourModel
-from keymark.core.report.body_outlines import OUTLINE
 from keymark.core.report.canvas import INK, LEFT, RIGHT, Canvas, write_png
-from keymark.core.report.contact_sheet import evenly_spaced_frames
-from keymark.core.report.keypoint_marks import SOURCE_COLORS, THROWN_OUT
-from keymark.core.report.overlay_sheet import CELL_WIDTH, overlay_sheet
-from keymark.core.report.pictures import PICTURES, write_pictures
-from keymark.core.report.side_sheet import side_sheet
+from keymark.core.report.overlay_sheet import (
+    CELL_WIDTH,
+    OUTLINE,
+    SOURCE_COLORS,
+    THROWN_OUT,
+    evenly_spaced_frames,
+    overlay_sheet,
+)
+from keymark.core.report.pictures import PICTURES, side_sheet, write_pictures
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

@@ -12,13 +12,11 @@ from _outcomes import RECORD, converted, failed, waiting
 from _page import Page
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from keymark.core.report.summary.html_text import LONGEST, duration, percent, visible
-from keymark.core.report.summary.page import summary_page
-from keymark.core.report.summary.style_and_script import STYLE
-from keymark.core.report.summary.verdict import Verdict, sections, verdict
+from keymark.core.report.summary.page import STYLE, summary_page
+from keymark.core.report.summary.row import LONGEST, Verdict, duration, percent, sections, verdict, visible
 from keymark.core.shoot.outcomes import Outcome, Status
 from keymark.core.take.conversion_record import ConversionRecord
-from keymark.core.take.used_evidence import UsedEvidence, UsedKeypoints
+from keymark.core.take.evidence_kinds import UsedEvidence, UsedKeypoints
 
 OUTPUT = Path("results").absolute()
 LETTERS = st.characters(exclude_categories=(), exclude_characters="/")

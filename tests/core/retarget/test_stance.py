@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _characters import plain_character, plain_map
-from keymark.core.body.heading import yaw_rotation
+from keymark.core.body.posture import yaw_rotation
 from keymark.core.body.rotations import exponential
 from keymark.core.retarget.character import Character
+from keymark.core.retarget.character_motion import find_stance
 from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.stance import find_stance
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 90.0, 180.0, 35.0, -120.0])

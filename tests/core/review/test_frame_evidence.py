@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _review import made_up_keypoints
-from keymark.core.footage.keypoints.body_points import BODY_POINTS
+from keymark.core.footage.keypoints.keypoints import BODY_POINTS
 from keymark.core.review.compared_keypoints import ComparedKeypoints, part_of
-from keymark.core.review.contour_sight import ContourSight
-from keymark.core.review.frame_evidence import MarkerSight, believed_misfits, frame_evidence
+from keymark.core.review.frame_evidence import ContourSight, MarkerSight, believed_misfits, frame_evidence
 from keymark.core.review.weak_frames import FrameEvidence
 
 FRAMES = 6

@@ -7,13 +7,11 @@ import pytest
 from _review import made_up_review
 from _synthetic_take import write_synthetic_take
 from keymark.core.estimate.reconstruct import METHODS, reconstruct
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
 from keymark.core.progress import run
 from keymark.core.review.compared_keypoints import ComparedKeypoints
-from keymark.core.review.contour_sight import contour_sight
+from keymark.core.review.frame_evidence import contour_sight, used_evidence
 from keymark.core.review.review import Review, review
-from keymark.core.review.used_evidence import used_evidence
 from keymark.core.take.evidence import with_evidence
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take

@@ -11,7 +11,7 @@ import pytest
 from _synthetic_take import BODY, CAMERA, named, true_postures, write_json
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import interpolate
 from keymark.core.review.score import read_truth, score_points
 from keymark.core.take.take_file import read_take
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from _panelled_take import PANEL, SLEEVE, panelled_take
 from keymark.core.progress import run
-from keymark.core.shoot.check.findings import Findings
+from keymark.core.shoot.check.evidence_check import Findings
 from keymark.core.shoot.check.footage_check import check_footage
 from keymark.core.take.clip_check import open_clip
 from keymark.core.take.read_footage import read_footage

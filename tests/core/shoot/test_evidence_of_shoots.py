@@ -15,7 +15,7 @@ from keymark.core.take.conversion_settings import NO_SETTINGS, ConversionSetting
 from keymark.core.take.description import Description, describe, effective_settings
 from keymark.core.take.evidence import evidence_of
 from keymark.core.take.take_file import read_described, read_take
-from keymark.operators.cli.batch.protocol import Job
+from keymark.operators.cli.batch.worker_process import Job
 
 FRAMES = 8
 

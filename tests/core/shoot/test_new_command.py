@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from _shoot import shoot_fields, write_frames, write_shoot
 from _synthetic_take import BODY, drawn_frames, true_postures, write_keyframes, write_keypoints
-from keymark.core.take.motion_file import read_motion
+from keymark.core.take.motion import read_motion
 from keymark.operators.cli.main import main
 
 FRAMES = 8

@@ -6,8 +6,8 @@ import pytest
 from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.retarget.options import LimbKeys, Placement, RootMotion
-from keymark.core.take import character_words
-from keymark.core.take.character_settings import CharacterFile, CharacterOptions
+from keymark.core.take import conversion_settings as character_words
+from keymark.core.take.conversion_settings import CharacterFile, CharacterOptions
 from keymark.core.take.description import describe
 
 

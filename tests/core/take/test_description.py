@@ -10,8 +10,13 @@ from _shoot import write_shoot
 from _synthetic_take import write_json, write_synthetic_take
 from keymark.core.errors import InputError
 from keymark.core.take.conversion_settings import ConversionSettings
-from keymark.core.take.description import Description, describe, effective_settings
-from keymark.core.take.shoot_file import find_shoot_files, shoot_fields
+from keymark.core.take.description import (
+    Description,
+    describe,
+    effective_settings,
+    find_shoot_files,
+    shoot_fields,
+)
 from keymark.core.take.take_file import read_take
 
 FRAMES = 5

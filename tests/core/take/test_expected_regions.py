@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
-from keymark.core.prior.interpolation import interpolate
+from keymark.core.prior.keyframes import interpolate
 from keymark.core.take.read_footage import average_model, expected_regions
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

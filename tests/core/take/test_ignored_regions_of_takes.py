@@ -10,8 +10,7 @@ import pytest
 from _shoot import write_shoot
 from _synthetic_take import SIZE, write_json, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.footage.ignored_region_fields import MOST_POINTS, MOST_REGIONS
-from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.core.footage.ignored_regions import MOST_POINTS, MOST_REGIONS, IgnoredRegion
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take_file import read_take, write_take

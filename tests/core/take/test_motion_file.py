@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, true_postures
 from keymark.core.errors import ConversionError, InputError
-from keymark.core.take.motion import Motion
-from keymark.core.take.motion_file import read_motion, write_motion
+from keymark.core.take.motion import Motion, read_motion, write_motion
 
 FRAMES = 10
 

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 from _synthetic_take import write_synthetic_take
 from keymark.core.arrays import Array
-from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.keypoints.people import People, SeenPeople
+from keymark.core.footage.keypoints.keypoints import Keypoints, People, SeenPeople
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.interpolation import interpolate
-from keymark.core.prior.keyframes import Matched
+from keymark.core.prior.keyframes import Matched, interpolate
 from keymark.core.take.performer_keypoints import performer_keypoints
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take

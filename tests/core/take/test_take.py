@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from _synthetic_take import BODY, SIZE, named, true_postures, write_json, write_synthetic_take
 from keymark.core.errors import InputError
-from keymark.core.take.clip_check import check_frame_count, open_clip
-from keymark.core.take.clip_notes import rate_note
+from keymark.core.take.clip_check import check_frame_count, open_clip, rate_note
 from keymark.core.take.take_file import read_take, write_take
 
 FRAMES = 24

@@ -22,7 +22,7 @@ TILT_DEGREES, HEIGHT_M = 3.0, 0.2
 
 def find_camera(person: Person) -> Steps[None]:
     """Lines are asked for before markers, drawn, forgotten by Esc, taken by Enter, and undone by one step."""
-    step = keymark("operators.takes.next_step").next_step
+    step = keymark("operators.takes.panel").next_step
     expect("camera" in step(person.take), f"after loading, the next step is '{step(person.take)}'")
     yield from person.changes_nothing("forgetting lines", lambda: _draw(person, "ESC"))
     yield from person.undoable("finding the camera", lambda: _draw(person, "RET"))
@@ -51,7 +51,7 @@ def _draw(person: Person, key: str) -> Steps[None]:
 def _lines(person: Person) -> list[NDArray[np.float64]]:
     """Ends (2, 2) of five lines in the footage [px] that lie about the performer as the person knows."""
     known = person.known
-    heading = keymark("core.footage.camera_placement").heading_rad(known.camera.matrix_world)
+    heading = keymark("core.footage.camera_fields").heading_rad(known.camera.matrix_world)
     ahead = np.array([-np.sin(heading), np.cos(heading), 0.0])
     right, up = np.array([ahead[1], -ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     foot = known.keyframes[0].posture.translation * [1.0, 1.0, 0.0]
@@ -92,7 +92,7 @@ def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _expect_near(person: Person) -> None:
-    placement = keymark("core.footage.camera_placement").CameraPlacement
+    placement = keymark("core.footage.camera_fields").CameraPlacement
     known, take = placement.of(person.known.camera.matrix_world), person.take
     apart = np.degrees(take.camera_tilt - known.tilt_rad), take.camera_height - known.height_m
     expect(

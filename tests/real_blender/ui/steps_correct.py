@@ -43,14 +43,14 @@ def go_to_keyframe(person: Person) -> Steps[None]:
 
 def place(person: Person, joint: str) -> np.ndarray:
     """Where a joint is in the world [m]."""
-    places = keymark("operators.bridge.joint_places").joint_places(person.take.armature)
+    places = keymark("operators.bridge.object_space").joint_places(person.take.armature)
     return np.array(places[keymark("core.body.human").HUMAN.point_names.index(joint)])
 
 
 def seen(person: Person, joint: str) -> tuple[float, float]:
     """Where the viewport shows it, in the window [px]."""
     region = person.hands.region("VIEW_3D", "WINDOW")
-    view = keymark("operators.shell.view_under_mouse").WorldInRegion(region, region.data)
+    view = keymark("operators.shell.footage_clicks").WorldInRegion(region, region.data)
     x, y = view.position(place(person, joint))
     return region.x + x, region.y + y
 

@@ -25,7 +25,7 @@ LIMBS = {"elbow.L": "wrist.L", "elbow.R": "wrist.R", "knee.L": "ankle.L", "knee.
 
 def doubtful(person: Person) -> Steps[None]:
     """Go from one doubtful frame to the next, and decide each."""
-    found = keymark("operators.shell.found_frames")
+    found = keymark("operators.shell.keyed_frames")
     before = found.count_found(person.take)[1]
     for number in range(MOST_FRAMES):
         waiting = found.doubtful_matches(person.take)
@@ -63,7 +63,7 @@ def _decide(person: Person) -> Steps[None]:
     if len(done) == 1:
         yield from hands.click_button("keymark.accept_match")
     print(f"Frame {frame}: {', '.join(done)}", flush=True)
-    now = keymark("operators.shell.found_frames").doubtful_matches(person.take)
+    now = keymark("operators.shell.keyed_frames").doubtful_matches(person.take)
     decided = all(round(person.take.matching.matches[index].frame) != frame for index in now)
     expect(decided, f"frame {frame} is doubtful still")
 
@@ -114,12 +114,12 @@ def _seen(person: Person) -> NDArray[np.float64]:
 
 def _shown(person: Person) -> NDArray[np.float64]:
     """Where the actor's are."""
-    return np.array(keymark("operators.bridge.joint_places").joint_places(person.take.armature))
+    return np.array(keymark("operators.bridge.object_space").joint_places(person.take.armature))
 
 
 def _points(person: Person, candidate: Any) -> NDArray[np.float64]:
     """Where a candidate's are."""
-    posture = keymark("operators.bridge.candidate_posture").candidate_posture(candidate)
+    posture = keymark("operators.bridge.keyframes").candidate_posture(candidate)
     points: NDArray[np.float64] = person.known.body.points(person.known.body.pose(posture))
     return points
 

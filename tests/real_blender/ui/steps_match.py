@@ -40,7 +40,7 @@ def pose_all(person: Person) -> Steps[None]:
 
 def choose(person: Person) -> Steps[None]:
     """Look at a doubtful frame from the side, take another candidate, and think better of it."""
-    count, doubtful = keymark("operators.shell.found_frames").count_found(person.take)
+    count, doubtful = keymark("operators.shell.keyed_frames").count_found(person.take)
     command, words = "keymark.jump_to_match", ("direction='NEXT'", "only_doubtful=False")
     if doubtful:
         words = ("only_doubtful=True",)
@@ -55,7 +55,7 @@ def choose(person: Person) -> Steps[None]:
         yield from person.look("replaced")
         yield from _take(person, 0)
     yield from person.hands.click_button("keymark.look_from_side")
-    left = keymark("operators.shell.found_frames").count_found(person.take)[0]
+    left = keymark("operators.shell.keyed_frames").count_found(person.take)[0]
     expect(left == count, f"of {count} found keyframes {left} are left")
 
 

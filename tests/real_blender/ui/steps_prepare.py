@@ -162,9 +162,9 @@ def _pick(person: Person, count: int, key: str = "") -> Steps[None]:
 def expect_asked(person: Person, number: int) -> None:
     """Expect that one of the performer's markers is asked for, with whose left or right it is."""
     segment = person.known.markers[number].segment
-    request = keymark("operators.shell.footage_request").shown_request()
+    request = keymark("operators.shell.footage_view").shown_request()
     expect(request is not None, "nothing is asked for")
-    title = keymark("operators.markers.properties").segment_title(segment)
+    title = keymark("operators.follow.marker_properties").segment_title(segment)
     expect(title in request.title, f"{request.title!r} is asked for, not {title}")
     side = {"L": "own left", "R": "own right"}.get(segment[-1], "")
     expect(side in request.detail, f"the request for {segment} says {request.detail!r}")

@@ -6,7 +6,7 @@ The pace is a class's of 128 beats a minute; an exercise takes one, two or four 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced_over
 from ..composing import Composer

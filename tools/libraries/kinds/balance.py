@@ -6,7 +6,7 @@ Where one leg carries it is the right; mirrored it is the left.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced_over
 from ..composing import Composer

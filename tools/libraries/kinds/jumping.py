@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from .. import hops
 from ..balance import balanced, flight, mass_of, thrown

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from .. import easy_kicks
 from ..balance import balanced

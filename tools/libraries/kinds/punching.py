@@ -5,7 +5,7 @@ Mirrored, the right hand leads.
 
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced_over
 from ..boxer import LEAD, REAR, boxing, fist, lead_pivot, rear_pivot

@@ -5,7 +5,7 @@ Where one hand reaches it is the right; mirrored it is the left.
 
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import BEFORE_ANKLE_M, balanced_over
 from ..composing import Composer

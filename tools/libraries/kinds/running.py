@@ -1,6 +1,6 @@
 """Jogging, running, jogging on a belt and on the spot."""
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..composing import Composer
 from ..moment import Moment

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced_over
 from ..composing import Composer

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from keymark.core.body.rotations import hinge
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced
 from ..composing import Composer

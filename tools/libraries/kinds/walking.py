@@ -1,6 +1,6 @@
 """Walking at three speeds and with quiet arms, starting and stopping, and on the spot."""
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import balanced
 from ..composing import Composer

@@ -3,7 +3,7 @@
 Where one hand waves it is the right; mirrored it is the left.
 """
 
-from keymark.core.library.library import Library
+from keymark.core.prior.library import Library
 
 from ..balance import BEFORE_ANKLE_M, balanced_over
 from ..composing import Composer

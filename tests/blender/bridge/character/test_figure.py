@@ -6,10 +6,9 @@ import pytest
 from _armatures import build_character
 from _characters import plain_character, plain_map
 from keymark.core.report.canvas import LEFT, RIGHT
-from keymark.core.report.character_figure import SKIN
+from keymark.core.report.mannequin import SKIN
 from keymark.core.retarget.figure_lines import figure_lines
-from keymark.operators.bridge.character.figure import character_figure
-from keymark.operators.bridge.character.picture import character_picture
+from keymark.operators.bridge.character.figure import character_figure, character_picture
 
 RED = (0.8, 0.05, 0.05, 1.0)
 

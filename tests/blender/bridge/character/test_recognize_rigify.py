@@ -9,8 +9,8 @@ from _characters import renamed
 from _rigify import run_script
 from keymark.core.errors import InputError
 from keymark.core.retarget.character import Character
+from keymark.core.retarget.character_motion import find_stance
 from keymark.core.retarget.recognition.recognize import Recognition, recognize
-from keymark.core.retarget.stance import find_stance
 from keymark.operators.bridge.character.read_character import read_character
 
 PEOPLE = ("human", "basic_human")

@@ -9,7 +9,7 @@ import pytest
 from _armatures import build_character
 from _characters import plain_character, plain_map
 from _performances import performance, stepping
-from keymark.core.body.segment_motion import SegmentMotion
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.errors import InputError
 from keymark.core.finish.hermite import Spline
 from keymark.core.progress import run

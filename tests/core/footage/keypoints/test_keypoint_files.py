@@ -25,8 +25,8 @@ from _keypoints import (
 from keymark.core.arrays import Array
 from keymark.core.errors import InputError
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints, write_keypoints
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople
 from keymark.core.footage.keypoints.layouts import Layout
-from keymark.core.footage.keypoints.people import People, SeenPeople
 
 
 def read(path: Path, frames: int | None = FRAMES, size: tuple[int, int] = SIZE, **more: Any) -> People:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.footage.keypoints.body_points import BODY_POINTS, mirrored_point
+from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
 from keymark.core.footage.keypoints.layouts import LAYOUTS, OWN, layout_of, own_layout
 
 SPOTS = {

@@ -1,11 +1,10 @@
 """The principal points as keypoints of any layout and of several sources show them."""
 
 import numpy as np
-from keymark.core.body.human import HUMAN
-from keymark.core.body.limbs import TRUNK, limb_of
+from keymark.core.body.human import HUMAN, TRUNK, limb_of
 from keymark.core.body.skeleton import SIDES
 from keymark.core.footage.keypoints.keypoints import Keypoints
-from keymark.core.footage.keypoints.principal_keypoints import performer_size_px, principal_keypoints
+from keymark.core.footage.keypoints.performer import performer_size_px, principal_keypoints
 
 HEAD, WRIST = HUMAN.point_names.index("head"), HUMAN.point_names.index("wrist.L")
 

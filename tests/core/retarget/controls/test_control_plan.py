@@ -15,16 +15,18 @@ from keymark.core.retarget.controls.control_plan import (
     planned_controls,
 )
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
-from keymark.core.retarget.controls.control_stages import FollowingControls, control_stages
 from keymark.core.retarget.controls.control_targets import PoleSetting, pole_offset, pole_poses
-from keymark.core.retarget.controls.held_points import HeldPoint, PointKind, held_points
 from keymark.core.retarget.controls.point_tolerances import (
     SHOWN_REST_M,
     SWITCH_M,
+    HeldPoint,
+    PointKind,
     ToleranceRules,
+    held_points,
     pole_tolerance_m,
     reach_tolerance_m,
 )
+from keymark.core.retarget.controls.stages import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
 

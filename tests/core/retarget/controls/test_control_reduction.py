@@ -8,7 +8,7 @@ import pytest
 from _characters import plain_character, plain_map
 from _controls import control_motion, quaternion_values, with_ik
 from _performances import performance, stepping
-from keymark.core.body.segment_motion import SegmentMotion
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.finish.hermite import Spline
 from keymark.core.finish.rig import rotation_matrices
 from keymark.core.progress import run
@@ -21,9 +21,9 @@ from keymark.core.retarget.controls.control_channels import (
 )
 from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
 from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
-from keymark.core.retarget.controls.control_reduction import reduce_controls
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
+from keymark.core.retarget.controls.stages import reduce_controls
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.core.retarget.solve.solve_motion import solve_motion
 

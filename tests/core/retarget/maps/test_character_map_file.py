@@ -12,14 +12,15 @@ from _characters import plain_character, plain_map
 from _fuzz import FUZZ, changed
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
-from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
-from keymark.core.retarget.maps.character_map_file import (
+from keymark.core.retarget.maps.character_map import (
     LARGEST_BYTES,
+    CharacterMap,
+    RoleBones,
     map_digest,
     read_character_map,
     write_character_map,
 )
-from keymark.core.retarget.maps.map_check import check_map, missing_bones
+from keymark.core.retarget.maps.map_registry import check_map, missing_bones
 
 MAP = full_map()
 VALID = MAP.to_json()

@@ -4,11 +4,11 @@ import re
 from pathlib import Path
 
 import pytest
-from keymark.core.library.texts import LONGEST_NAME
-from keymark.core.retarget.maps import character_map, character_map_file
-from keymark.core.retarget.maps.character_map import CharacterMap
-from keymark.core.retarget.maps.character_map_file import read_character_map, write_character_map
-from keymark.core.retarget.roles import LIMBS, ROLES, SOURCES
+from keymark.core.prior.texts import LONGEST_NAME
+from keymark.core.retarget.character import LIMBS, ROLES, SOURCES
+from keymark.core.retarget.maps import character_map
+from keymark.core.retarget.maps import character_map as character_map_file
+from keymark.core.retarget.maps.character_map import CharacterMap, read_character_map, write_character_map
 
 
 @pytest.fixture(scope="module")

@@ -8,9 +8,9 @@ from _character_maps import full_map
 from _characters import plain_character, plain_map
 from _libraries import small_library
 from keymark.core.errors import InputError
-from keymark.core.library.library_file import write_library
-from keymark.core.library.registry import registered_libraries
-from keymark.core.retarget.maps.character_map_file import write_character_map
+from keymark.core.prior.library import write_library
+from keymark.core.prior.registry import registered_libraries
+from keymark.core.retarget.maps.character_map import write_character_map
 from keymark.core.retarget.maps.map_registry import find_map, map_for, map_path, registered_maps
 
 PLAIN = plain_map(plain_character())

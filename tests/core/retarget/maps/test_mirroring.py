@@ -7,10 +7,9 @@ import pytest
 from _characters import plain_character, plain_map, renamed
 from keymark.core.arrays import Array
 from keymark.core.body.rotations import hinge
-from keymark.core.retarget.character import Character, CharacterBone
+from keymark.core.retarget.character import ROLES, Character, CharacterBone
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Switch
 from keymark.core.retarget.maps.mirroring import mirrored_map
-from keymark.core.retarget.roles import ROLES
 
 LEFT = tuple(role for role in ROLES if role.endswith(".L"))
 RIGHT = tuple(role for role in ROLES if role.endswith(".R"))

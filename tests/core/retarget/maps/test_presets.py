@@ -10,9 +10,8 @@ import pytest
 from _characters import plain_character
 from _conventions import convention_names
 from keymark.core.errors import InputError
-from keymark.core.retarget.character import Character
+from keymark.core.retarget.character import REQUIRED, Character
 from keymark.core.retarget.maps.presets import SHIPPED, find_preset, preset_from_json, shipped_presets
-from keymark.core.retarget.roles import REQUIRED
 
 PRESETS = shipped_presets()
 VALID: dict[str, Any] = {

@@ -10,13 +10,12 @@ from _characters import plain_character, plain_map, renamed, shared_characters
 from _conventions import CONVENTIONS, PRESET_OF, convention_names
 from _varied import Varied, build, nameless, varied
 from keymark.core.arrays import Array
-from keymark.core.body.heading import yaw_rotation
+from keymark.core.body.posture import yaw_rotation
 from keymark.core.errors import InputError
-from keymark.core.retarget.character import Character
+from keymark.core.retarget.character import ROLES, Character
+from keymark.core.retarget.character_motion import find_stance
+from keymark.core.retarget.recognition.facing import find_root
 from keymark.core.retarget.recognition.recognize import Recognition, recognize
-from keymark.core.retarget.recognition.root_bone import find_root
-from keymark.core.retarget.roles import ROLES
-from keymark.core.retarget.stance import find_stance
 
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 TRUTH = {

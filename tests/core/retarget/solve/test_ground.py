@@ -2,9 +2,9 @@
 
 import numpy as np
 from _performances import performance, stepping, steps
+from keymark.core.body.kinematics import SegmentMotion
 from keymark.core.body.posture import Posture
-from keymark.core.body.segment_motion import SegmentMotion
-from keymark.core.retarget.solve.ground import find_ground
+from keymark.core.retarget.solve.foot_shape import find_ground
 
 
 def raised(*heights_m: float) -> SegmentMotion:

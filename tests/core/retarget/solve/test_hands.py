@@ -6,10 +6,9 @@ from _characters import plain_character, plain_map
 from _performances import joints, performance, shaped, solved, source_joints, steps, with_hands
 from keymark.core.arrays import Array
 from keymark.core.body.actor import Actor
-from keymark.core.body.kinematics import Body
+from keymark.core.body.kinematics import Body, SegmentMotion
 from keymark.core.body.posture import Posture
 from keymark.core.body.posture_fit import fit_posture
-from keymark.core.body.segment_motion import SegmentMotion
 from keymark.core.retarget.character_motion import CharacterMotion
 from keymark.core.retarget.options import RetargetOptions
 

@@ -17,10 +17,8 @@ from _performances import (
     steps_elsewhere,
 )
 from keymark.core.arrays import Array
-from keymark.core.body.extremities import RIGID
-from keymark.core.body.heading import yaw_rotation
-from keymark.core.body.posture import Posture
-from keymark.core.body.segment_motion import segment_motion
+from keymark.core.body.kinematics import RIGID, segment_motion
+from keymark.core.body.posture import Posture, yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.finish.natural_extremities import natural_extremities
 from keymark.core.retarget.character import Character

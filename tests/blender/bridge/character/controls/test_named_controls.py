@@ -10,9 +10,8 @@ from _performances import performance, stepping
 from keymark.core.progress import run
 from keymark.core.retarget.maps.character_map import CharacterMap, IkControls, Setting, Switch
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
-from keymark.operators.bridge.character.complete_map import complete_map
 from keymark.operators.bridge.character.read_character import read_character
-from keymark.operators.bridge.character.retarget import retarget
+from keymark.operators.bridge.character.retarget import complete_map, retarget
 
 
 def with_controls(known: CharacterMap) -> CharacterMap:

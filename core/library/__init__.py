@@ -1,1 +1,0 @@
-"""Keyframe libraries: named postures with their order and timing, as files to share."""

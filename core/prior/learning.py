@@ -1,0 +1,197 @@
+"""Learning a library from a finished motion: its postures at distinct frames, spread over shape and time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array, IndexArray
+from ..body.kinematics import Body
+from ..body.posture import Posture, headings_rad, turned_and_shifted, yaw_rotation
+from ..errors import InputError
+from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
+from .motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
+from .texts import LONGEST_NAME, identifier_from
+
+FEWEST, MOST = 10, 40
+"""Default bounds of the number of postures."""
+DISTINCT_M = 0.06
+"""Postures are added until every frame is this near to one of them in shape."""
+TIME_SHARE = 0.5
+"""Weight of even coverage in time relative to distance in shape."""
+STILL_M = 0.01
+"""Largest change in shape of a motion that counts as standing still."""
+SLOW_M_S = 0.15
+"""Vertical speed of the lower ankle below which its foot rests on the floor."""
+LIFTED_M = 0.08
+"""Height of a foot above the other from which it counts as lifted."""
+DECIMALS_S = 3
+
+
+@dataclass(frozen=True)
+class LibraryMetadata:
+    """Title, author and license of a library that is made."""
+
+    title: str
+    author: str
+    license: str = "LicenseRef-Proprietary"
+    """SPDX expression; by default all rights are reserved."""
+    identifier: str = ""
+    """By default derived from the title."""
+
+
+def learn_library(
+    body: Body, posture: Posture, time_s: Array, about: LibraryMetadata, count: int | None = None
+) -> Library:
+    """Turn a finished motion into a library of one motion.
+
+    A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
+
+    Args:
+        body: The performer; the library keeps the proportions.
+        posture: A batch of F postures.
+        time_s: (F,) rising times [s].
+        about: Title, author and license.
+        count: Number of postures; by default as many as are distinct, from 10 to 40.
+
+    Raises:
+        InputError: The motion has fewer frames than the postures asked for, or stands still.
+    """
+    frames = len(time_s)
+    fewest = 2 if count is None else count
+    if count is not None and not 2 <= count <= 1000:
+        raise InputError(f"the count of postures is {count}; 2 to 1000 are valid")
+    if frames < fewest:
+        raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest} frames")
+    shape = shape_vectors(body, posture)
+    if np.linalg.norm(shape - shape[0], axis=1).max() < STILL_M:
+        raise InputError("the motion stands still; a library needs postures that differ")
+    posture = on_floor(body, posture, time_s)
+    period_s = find_period_s(shape, time_s)
+    travel: Travel = (0.0, 0.0, 0.0)
+    if period_s is None:
+        duration_s = float(time_s[-1] - time_s[0])
+        time_s = time_s - time_s[0]
+    else:
+        cycle = average_cycle(body, posture, time_s, period_s)
+        posture, time_s, duration_s, travel = cycle.posture, cycle.time_s, cycle.duration_s, cycle.travel
+    turn = -_straight_ahead(posture)
+    shift = turned_and_shifted(posture[:1], turn, np.zeros(3)).translation[0] * [-1.0, -1.0, 0.0]
+    posture = turned_and_shifted(posture, turn, shift)
+    chosen = spread_frames(
+        shape_vectors(body, posture), time_s, duration_s, count, cyclic=period_s is not None
+    )
+    names = numbered_names(about.title, len(chosen))
+    tags = _tags(body, posture[chosen])
+    motion = LibraryMotion(
+        name=about.title,
+        steps=tuple(
+            MotionStep(name, round(float(time_s[frame]), DECIMALS_S))
+            for name, frame in zip(names, chosen, strict=True)
+        ),
+        duration_s=round(duration_s, DECIMALS_S),
+        cyclic=period_s is not None,
+        travel=_turned_travel(travel, turn, shift),
+    )
+    return Library(
+        identifier=about.identifier or identifier_from(about.title),
+        title=about.title,
+        version=1,
+        author=about.author,
+        license=about.license,
+        actor=body.actor,
+        postures=tuple(
+            LibraryPosture(name, posture[int(frame)], tag)
+            for name, frame, tag in zip(names, chosen, tags, strict=True)
+        ),
+        motions=(motion,),
+    )
+
+
+def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
+    """Shift a motion of F frames at times (F,) [s] so that its floor, where the lower foot rests, is at 0."""
+    lower = ankle_heights(body, posture).min(axis=-1)
+    slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
+    floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
+    return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
+
+
+def spread_frames(
+    shape: Array, time_s: Array, duration_s: float, count: int | None, *, cyclic: bool
+) -> IndexArray:
+    """Frames spread over shape and time by farthest point sampling.
+
+    Args:
+        shape: (F, N) the body's shape in each frame [m].
+        time_s: (F,) times from 0, rising [s].
+        duration_s: Duration of the motion [s].
+        count: Number of frames; by default as many as are distinct, from 10 to 40.
+        cyclic: Whether the first frame follows the last; else both are chosen.
+
+    Returns:
+        (K,) frames, rising.
+    """
+    wanted = min(len(shape), MOST if count is None else count)
+    pace = _typical_change(shape, time_s, duration_s)  # [m] in a tenth of the motion
+    chosen: list[int] = []
+    nearest = np.full(len(shape), np.inf)
+    nearest_shape = np.full(len(shape), np.inf)
+
+    def choose(frame: int) -> None:
+        chosen.append(frame)
+        apart = np.linalg.norm(shape - shape[frame], axis=1)
+        later = np.abs(time_s - time_s[frame])
+        if cyclic:
+            later = np.minimum(later, duration_s - later)
+        in_time = TIME_SHARE * pace * later / (0.1 * duration_s)
+        np.minimum(nearest, np.hypot(apart, in_time), out=nearest)
+        np.minimum(nearest_shape, apart, out=nearest_shape)
+
+    choose(0)
+    if not cyclic:
+        choose(len(shape) - 1)
+    while len(chosen) < wanted:
+        enough = count is None and len(chosen) >= FEWEST and nearest_shape.max() < DISTINCT_M
+        if enough:
+            break
+        choose(int(nearest.argmax()))
+    return np.array(sorted(chosen), dtype=np.intp)
+
+
+def _typical_change(shape: Array, time_s: Array, duration_s: float) -> float:
+    """Mean change of the shape in a tenth of the motion [m]."""
+    step = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
+    step = min(step, len(shape) - 1)
+    return float(np.linalg.norm(shape[step:] - shape[:-step], axis=1).mean())
+
+
+def _straight_ahead(posture: Posture) -> float:
+    """The heading that counts as straight ahead [rad]: the mean, or the first where headings go all round."""
+    heading = headings_rad(posture)
+    x, y = np.sin(heading).mean(), np.cos(heading).mean()
+    return float(np.arctan2(x, y)) if np.hypot(x, y) > 0.5 else float(heading[0])
+
+
+def _turned_travel(
+    travel: tuple[float, float, float], turn: float, shift: Array
+) -> tuple[float, float, float]:
+    """A cycle's travel in the world, converted for postures that were turned and shifted."""
+    x, y, heading = travel
+    step = yaw_rotation(turn) @ np.array([x, y, 0.0])
+    onward = step + shift - yaw_rotation(heading) @ shift
+    return float(onward[0]), float(onward[1]), heading
+
+
+def numbered_names(title: str, count: int) -> list[str]:
+    """Names of postures that begin with their library's title."""
+    digits = len(str(count))
+    stem = title[: LONGEST_NAME - 1 - digits].rstrip()
+    return [f"{stem} {number:0{digits}}" for number in range(1, count + 1)]
+
+
+def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
+    """Tags of each posture: the lifted foot, if any."""
+    left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
+    words = np.select(
+        [left - right > LIFTED_M, right - left > LIFTED_M], ["left foot up", "right foot up"], ""
+    )
+    return [(str(word),) if word else () for word in words]

@@ -1,0 +1,252 @@
+"""Findings of a check: problems and warnings, collected so that one does not hide the next."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import KeymarkError
+from ...footage.keypoints.keypoints import Keypoints, People, mirrored_point
+from ...prior.keyframes import interpolate
+from ...take.clip_check import check_frame_count, check_in_front
+from ...take.performer_keypoints import performer_keypoints
+from ...take.take import Take
+
+
+class Findings:
+    """Sentences on a take: problems stop its conversion, warnings are what is likely to go wrong."""
+
+    def __init__(self) -> None:
+        self._problems: dict[str, None] = {}
+        self._warnings: dict[str, None] = {}
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Reasons why it would not convert."""
+        return tuple(self._problems)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is likely to go wrong."""
+        return tuple(self._warnings)
+
+    def problem(self, *sentences: str) -> None:
+        """Add problems; the same sentence is kept once."""
+        self._problems.update(dict.fromkeys(sentences))
+
+    def warn(self, *sentences: str) -> None:
+        """Add warnings; the same sentence is kept once."""
+        self._warnings.update(dict.fromkeys(sentences))
+
+    @contextmanager
+    def catching(self) -> Iterator[None]:
+        """Turn an error raised inside into a problem."""
+        try:
+            yield
+        except KeymarkError as error:
+            self.problem(str(error))
+
+
+# --- The check of a take's keyframes
+
+
+LONGEST_GAP_S = 1.0
+"""Longest gap between keyframes without a warning where none are found in it: ten in 100 frames are usual."""
+FEWEST_IN_PICTURE = 0.5
+"""Share of a keyframe's points that must lie in the picture."""
+MOST_NAMED = 3
+
+
+def check_keyframes(take: Take, frames: int, others_found: bool, findings: Findings) -> None:
+    """Check keyframes that could be read."""
+    _check_fit(take, findings)
+    with findings.catching():
+        check_frame_count(take, frames)  # first: a moving camera may lack the poses of keyframes
+        check_in_front(take)
+    if findings.problems or not take.keyframes:
+        return
+    if not others_found:
+        _check_gaps(take, frames, findings)
+    _check_picture(take, findings)
+
+
+def _check_fit(take: Take, findings: Findings) -> None:
+    if len(take.notes) <= MOST_NAMED:
+        findings.warn(*take.notes)
+        return
+    residual = [keyframe.residual_m for keyframe in take.keyframes]
+    findings.warn(
+        f"the points of {len(take.notes)} of {len(take.keyframes)} keyframes are up to "
+        f"{100 * max(residual):.0f} cm on average from any posture of this actor; check the actor's "
+        "lengths, and whether these are the performer's own keyframes"
+    )
+
+
+def _check_gaps(take: Take, frames: int, findings: Findings) -> None:
+    ends = [0, *(index for index in take.keyframe_indices if index < frames), frames - 1]
+    gaps = np.diff(ends)
+    longest = int(np.argmax(gaps))
+    seconds = gaps[longest] / take.fps
+    if seconds > LONGEST_GAP_S:
+        first, last = ends[longest] + take.frame_start, ends[longest + 1] + take.frame_start
+        findings.warn(
+            f"{len(take.keyframes)} keyframes for {frames} frames are few: from frame {first} to "
+            f"{last}, {seconds:.1f} s, there is none; pose more, or let --keyframes auto find the "
+            "others"
+        )
+
+
+def _check_picture(take: Take, findings: Findings) -> None:
+    width, height = take.camera.resolution
+    outside = []
+    for keyframe in take.keyframes:
+        points = take.body.points(take.body.pose(keyframe.posture))
+        x, y = np.moveaxis(take.camera.project(points, keyframe.index)[0], -1, 0)
+        inside = (x >= 0.0) & (x <= width) & (y >= 0.0) & (y <= height)
+        if inside.mean() < FEWEST_IN_PICTURE:
+            outside.append(keyframe.index + take.frame_start)
+    if outside:
+        findings.warn(
+            f"through this camera {_frames(outside)} would be seen outside the picture for the most "
+            "part; check where the camera stands and its lens"
+        )
+
+
+def _frames(frames: Sequence[int]) -> str:
+    named = ", ".join(str(frame) for frame in frames[:MOST_NAMED])
+    more = f" and {len(frames) - MOST_NAMED} more" if len(frames) > MOST_NAMED else ""
+    return f"keyframe {named}" if len(frames) == 1 else f"the keyframes {named}{more}"
+
+
+# --- The check of a take's keypoints
+
+
+LARGEST_ERROR = 0.1
+"""Median distance of keypoints from posed joints that is still one of the same person, as a share of the
+performer's height in the picture: detectors place hips and shoulders up to half as far from the joint."""
+USUAL_ERROR = 0.03
+"""The same where nothing is wrong: the detector's error and that of posing."""
+MUCH_BETTER = 0.5
+"""Share of an unusual error that another reading of the file must leave to be named."""
+MOST_SHIFTED_S = 0.5
+"""Longest delay that is looked for; with a longer one the movement may be another that looks alike."""
+FEWEST_FRAMES = 0.5
+"""Share of the frames in which the performer must be seen for no warning."""
+
+
+@dataclass(frozen=True)
+class KeypointReadout:
+    """What one file of keypoints holds."""
+
+    file: str
+    """Its name."""
+    source: str
+    """What saw them."""
+    points: int
+    """Number of body points."""
+    seen_frames: float
+    """Share of the frames in which the performer is seen."""
+    seen_points: float
+    """Share of the points seen in those frames."""
+    people: int
+    """Largest number of people in a frame."""
+    depth_hints: bool
+    error_px: float | None
+    """Median distance of the joints from those of posed keyframes; None without any to compare."""
+
+
+def check_keypoints(take: Take, frames: int, findings: Findings) -> tuple[KeypointReadout, ...]:
+    """Check every file of a take's keypoints."""
+    readouts = []
+    for people in take.keypoints:
+        findings.warn(*people.notes)
+        readouts.append(_readout(replace(take, keypoints=(people,), frame_count=frames), people, findings))
+    return tuple(readouts)
+
+
+def _readout(take: Take, people: People, findings: Findings) -> KeypointReadout:
+    """Check one file, the only one of the take."""
+    name = Path(people.file).name or people.source
+    prior = interpolate(take.keyframes, take.frame_count or 0) if len(take.keyframes) > 1 else None
+    performer = performer_keypoints(take, prior)
+    # One person all along is compared even where the keyframes have somebody else perform.
+    compared = performer if people.most_people > 1 else performer_keypoints(replace(take, keyframes=()), None)
+    error = _check_agreement(take, compared, name, findings)
+    found = performer.seen.any(axis=1)
+    share = float(found.mean())
+    if share < FEWEST_FRAMES:
+        findings.warn(
+            f"{name}: the performer is seen in {share:.0%} of the frames only; a keyframe in each gap helps"
+        )
+    if people.most_people > 1 and not take.keyframes and not people.by_hand:
+        findings.warn(
+            f"{name}: shows up to {people.most_people} people, and no keyframe says which of them "
+            "performs; the largest who is there longest is taken"
+        )
+    return KeypointReadout(
+        file=name,
+        source=people.source,
+        points=len(people.names),
+        seen_frames=share,
+        seen_points=float(performer.seen[found].mean()) if found.any() else 0.0,
+        people=people.most_people,
+        depth_hints=performer.has_hints,
+        error_px=error,
+    )
+
+
+def _check_agreement(take: Take, performer: Keypoints, name: str, findings: Findings) -> float | None:
+    """Median distance from the posed joints [px]; warns where it is too large, and says of what it looks."""
+    posed, height_px = _posed_joints(take)
+    plain = _error(performer, posed, 0, str)
+    if plain is None or plain <= USUAL_ERROR * height_px:
+        return plain
+    reach = round(MOST_SHIFTED_S * take.fps)
+    readings = {"left and right seem to be exchanged": _error(performer, posed, 0, mirrored_point)}
+    for shift in (step for step in range(-reach, reach + 1) if step):
+        when = "late" if shift > 0 else "early"
+        readings[f"they seem to be {abs(shift)} frames {when}"] = _error(performer, posed, shift, str)
+    known = {words: error for words, error in readings.items() if error is not None}
+    best = min(known, key=lambda words: known[words], default=None)
+    explained = best is not None and known[best] < MUCH_BETTER * plain
+    if explained or plain > LARGEST_ERROR * height_px:
+        findings.warn(
+            f"{name}: its joints lie {plain:.0f} px from those of the posed keyframes, where the "
+            f"performer is {height_px:.0f} px tall; "
+            f"{(best if explained else 'check that they are of this clip and this person')}"
+        )
+    return plain
+
+
+def _posed_joints(take: Take) -> tuple[dict[int, dict[str, Array]], float]:
+    """The joints (2,) [px] of each posed keyframe by its index, and the performer's usual height [px]."""
+    joints, heights = {}, []
+    for keyframe in take.keyframes:
+        if keyframe.matched is not None:
+            continue
+        points = take.body.points(take.body.pose(keyframe.posture))
+        pixel, _ = take.camera.project(points, keyframe.index)
+        joints[keyframe.index] = dict(zip(take.body.skeleton.point_names, pixel, strict=True))
+        depth = float(np.median(take.camera.depth(points, keyframe.index)))
+        heights.append(take.camera.focal_px * take.body.actor.stature_m / max(depth, 0.1))
+    return joints, float(np.median(heights)) if heights else 0.0
+
+
+def _error(
+    performer: Keypoints, posed: dict[int, dict[str, Array]], shift: int, name_of: Callable[[str], str]
+) -> float | None:
+    """Median distance [px] of the joints seen so many frames after the keyframes, under these names."""
+    distances = []
+    for index, joints in posed.items():
+        if not 0 <= index + shift < performer.frame_count:
+            continue
+        for column, name in enumerate(performer.names):
+            if name_of(name) in joints:
+                distances.append(
+                    np.linalg.norm(performer.pixel[index + shift, column] - joints[name_of(name)])
+                )
+    known = np.array(distances)[np.isfinite(distances)] if distances else np.zeros(0)
+    return float(np.median(known)) if len(known) else None

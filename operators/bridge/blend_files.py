@@ -1,0 +1,117 @@
+"""A scene for the time being: what the running Blender has open is not touched."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import ConversionError, InputError
+from ...core.files.control_characters import regular_file_size
+
+
+@contextmanager
+def own_scene(name: str) -> Iterator[bpy.types.Scene]:
+    """A scene for the time being; it and everything made or loaded meanwhile is removed again."""
+    before = {block.as_pointer() for block in bpy.data.user_map()}
+    scene = bpy.data.scenes.new(name)
+    try:
+        yield scene
+    finally:
+        bpy.data.scenes.remove(scene)
+        made = [block for block in bpy.data.user_map() if block.as_pointer() not in before]
+        bpy.data.batch_remove(made)
+
+
+@contextmanager
+def showing_scene(scene: bpy.types.Scene) -> Iterator[None]:
+    """Let a scene be the one that operators work in; then the one before is again."""
+    window = bpy.context.window
+    if window is None:  # a Blender without any window: operators find the scene in the context alone
+        with bpy.context.temp_override(scene=scene, view_layer=scene.view_layers[0]):
+            yield
+        return
+    before = window.scene
+    window.scene = scene
+    try:
+        yield
+    finally:
+        window.scene = before
+
+
+# --- .blend files from strangers, looked at before Blender opens them
+
+
+BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
+"""First bytes of .blend files: plain, Zstandard and gzip."""
+
+
+def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None:
+    """Refuse a file that is no .blend, or too large for what it should hold.
+
+    Args:
+        path: The file.
+        what: What it holds, with its article, for the sentence.
+        largest_bytes: A larger one is refused.
+
+    Raises:
+        InputError: It is missing, no regular file, no .blend, or too large.
+    """
+    size = regular_file_size(path, "a .blend")
+    try:
+        with path.open("rb") as file:
+            magic = file.read(8)
+    except OSError as error:
+        raise InputError(
+            f"{path}: cannot be read ({(error.strerror or error)}); it must be a .blend"
+        ) from error
+    if largest_bytes is not None and size > largest_bytes:
+        raise InputError(
+            f"{path}: has {size / 2**20:.0f} MiB; a .blend of {what} has at most {largest_bytes >> 20} MiB"
+        )
+    if not magic.startswith(BLEND_MAGIC):
+        raise InputError(f"{path}: is no .blend; it must be a file that Blender saved")
+
+
+# --- .blend files
+
+
+def write_blend(
+    path: Path,
+    blocks: set[bpy.types.ID],
+    data: bpy.types.BlendData | None = None,
+    named: Path | None = None,
+    **options: object,
+) -> None:
+    """Write datablocks and all that they use into a compressed .blend.
+
+    Args:
+        path: The file.
+        blocks: The datablocks.
+        data: Where they are; by default in the open file.
+        named: The file's name in sentences, where it will have another.
+        options: More for `bpy.data.libraries.write`.
+
+    Raises:
+        ConversionError: Blender could not write the file, or not all of it.
+    """
+    where = named or path
+    try:
+        (data or bpy.data).libraries.write(str(path), blocks, compress=True, **options)
+    except (RuntimeError, OSError) as error:
+        raise ConversionError(f"{where}: Blender could not write the file ({one_line(error)})") from error
+    names = {block.name for block in blocks}
+    try:
+        with bpy.data.libraries.load(str(path)) as (found, _):
+            there = {name for kind in dir(found) for name in getattr(found, kind)}
+    except (RuntimeError, OSError) as error:
+        raise ConversionError(
+            f"{where}: Blender could not write the whole file ({one_line(error)}); the disk may be full"
+        ) from error
+    if not names <= there:
+        raise ConversionError(f"{where}: Blender has left out {', '.join(sorted(names - there))}")
+
+
+def one_line(error: Exception) -> str:
+    """What Blender says of a failure, short enough for a sentence."""
+    return " ".join(str(error).split())[:200]

@@ -1,0 +1,164 @@
+"""Data paths of custom properties of pose bones."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ....core.arrays import Array
+from ....core.retarget.controls.control_plan import limb_keys
+from ....core.retarget.maps.character_map import CharacterMap, Switch
+from ....core.retarget.options import LimbKeys, RetargetOptions
+from ..object_space import evaluated
+from ..scene_frames import showing_action
+
+
+def property_path(bone: str, name: str) -> str:
+    """Data path of a pose bone's custom property."""
+    bone, name = bpy.utils.escape_identifier(bone), bpy.utils.escape_identifier(name)
+    return f'pose.bones["{bone}"]["{name}"]'
+
+
+# --- Pose a character for a moment, and leave no trace
+
+
+Property = tuple[str, str]
+"""Name of a pose bone, and of one of its custom properties."""
+Value = float | int | bool
+OBJECT_CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
+
+
+@contextmanager
+def posing(
+    armature_object: bpy.types.Object,
+    properties: Sequence[Property] = (),
+    action: bpy.types.Action | None = None,
+) -> Iterator[None]:
+    """Let a pose be changed, or an Action be shown; afterwards all is as it was, to the last bit.
+
+    Args:
+        armature_object: The character.
+        properties: Custom properties that may be changed as well.
+        action: The Action to show meanwhile; none by default.
+    """
+    had_data, data = armature_object.animation_data is not None, armature_object.animation_data_create()
+    with_strips, bones = data.use_nla, armature_object.pose.bones
+    values = {(bone, name): bones[bone][name] for bone, name in properties}
+    channels = {name: tuple(getattr(armature_object, name)) for name in OBJECT_CHANNELS}
+    try:
+        with showing_action(armature_object, action):
+            data.use_nla = False
+            yield
+    finally:
+        for (bone, name), value in values.items():
+            bones[bone][name] = value
+        for name, channel in channels.items():
+            setattr(armature_object, name, channel)
+        data.use_nla = with_strips
+        if not had_data:
+            armature_object.animation_data_clear()
+        armature_object.update_tag()
+        evaluated(armature_object)
+
+
+def set_properties(armature_object: bpy.types.Object, values: Mapping[Property, Value]) -> None:
+    """Set custom properties of pose bones, each in the type that it has."""
+    for (bone, name), value in values.items():
+        held = armature_object.pose.bones[bone]
+        held[name] = type(held[name])(value)
+    armature_object.update_tag()  # what only drivers read is not evaluated again otherwise
+
+
+def set_channels(armature_object: bpy.types.Object, channels: Mapping[str, Array]) -> None:
+    """Pose bones by their own rotation and location (4, 4), in the rotation modes they have; scale is one."""
+    for name, matrix in channels.items():
+        armature_object.pose.bones[name].matrix_basis = Matrix(matrix)
+
+
+def read_poses(armature_object: bpy.types.Object, names: Sequence[str]) -> tuple[Array, Array]:
+    """The bones' own channels and their poses in the armature's space, as evaluated now: (N, 4, 4) each."""
+    bones = evaluated(armature_object).pose.bones
+    channels: list[Any] = [bones[name].matrix_basis for name in names]
+    poses: list[Any] = [bones[name].matrix for name in names]
+    return np.array(channels, dtype=np.float64), np.array(poses, dtype=np.float64)
+
+
+# --- Custom properties that a motion keys on a character
+
+
+def shown_properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, Value]:
+    """The settings, and the switches as the options want the limbs to be shown."""
+    values = _settings(character_map)
+    for limb, switch in _switches(character_map):
+        in_fk = limb_keys(character_map, options, limb) is LimbKeys.FK
+        values[switch.bone, switch.property] = switch.fk if in_fk else switch.ik
+    return values
+
+
+def fk_shown(character_map: CharacterMap) -> dict[Property, Value]:
+    """The settings, and all switches to FK."""
+    values = _settings(character_map)
+    return values | {(switch.bone, switch.property): switch.fk for _, switch in _switches(character_map)}
+
+
+def fk_properties(character_map: CharacterMap, options: RetargetOptions) -> dict[Property, Value]:
+    """The switches that show FK of the limbs that are keyed in both."""
+    return {
+        (switch.bone, switch.property): switch.fk
+        for limb, switch in _switches(character_map)
+        if limb_keys(character_map, options, limb) is LimbKeys.BOTH
+    }
+
+
+def _settings(character_map: CharacterMap) -> dict[Property, Value]:
+    return {(setting.bone, setting.property): setting.value for setting in character_map.settings}
+
+
+def _switches(character_map: CharacterMap) -> Iterator[tuple[str, Switch]]:
+    for limb, controls in character_map.ik.items():
+        if controls.switch is not None:
+            yield limb, controls.switch
+
+
+# --- What moves bones beside their keys
+
+
+BONE_PATH = re.compile(r'^pose\.bones\["((?:[^"\\]|\\.)*)"\]')
+CONSTRAINT_PATH = re.compile(BONE_PATH.pattern + r'\.constraints\["((?:[^"\\]|\\.)*)"\]')
+
+
+def active_constraints(bone: bpy.types.PoseBone) -> list[bpy.types.Constraint]:
+    """The constraints of a bone that move it, or may do so once their influence is driven."""
+    valid = [constraint for constraint in bone.constraints if constraint.is_valid]
+    if all(constraint.influence > 0.0 and not constraint.mute for constraint in valid):
+        return valid
+    driven = {
+        tuple(map(bpy.utils.unescape_identifier, found.groups()))
+        for driver in drivers(bone.id_data)
+        if (found := CONSTRAINT_PATH.match(driver.data_path))
+    }
+    return [one for one in valid if (one.influence > 0.0 and not one.mute) or (bone.name, one.name) in driven]
+
+
+def constraint_bones(armature_object: bpy.types.Object, constraint: bpy.types.Constraint) -> Iterator[str]:
+    """Names of the armature's own bones that a constraint looks at."""
+    targets = constraint.targets if constraint.type == "ARMATURE" else [constraint]
+    for target in targets:
+        if getattr(target, "target", None) == armature_object and target.subtarget:
+            yield target.subtarget
+
+
+def drivers(armature_object: bpy.types.Object) -> list[bpy.types.FCurve]:
+    """The drivers of an armature object that work."""
+    data = armature_object.animation_data
+    return [] if data is None else [curve for curve in data.drivers if not curve.mute]
+
+
+def driven_bone(path: str) -> str | None:
+    """The bone whose property a data path names."""
+    found = BONE_PATH.match(path)
+    return bpy.utils.unescape_identifier(found[1]) if found else None

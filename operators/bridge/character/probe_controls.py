@@ -1,0 +1,221 @@
+"""Find out how a character's controls act: pose them at random for a moment, and see what moves what."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ....core.arrays import Array
+from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
+from ....core.retarget.controls.control_plan import ControlKind, PlannedControl, limb_bones
+from ....core.retarget.controls.control_spaces import (
+    NOTHING,
+    ControlSpace,
+    PosedControls,
+    chosen,
+    find_spaces,
+    rigid_offset,
+)
+from ....core.retarget.controls.control_targets import SHORTEST_POLE, PoleSetting, pole_offset
+from ....core.retarget.maps.character_map import CharacterMap
+from .controls import (
+    active_constraints,
+    driven_bone,
+    drivers,
+    fk_shown,
+    posing,
+    read_poses,
+    set_channels,
+    set_properties,
+)
+from .write_retargeted import ONE, scaled_bones
+
+SEED = 4
+STILL, MOVED = 3, 4
+"""Poses at random, without and with locations."""
+TURN_RAD = 0.4
+"""Standard deviation of random turns about each axis."""
+MOVE_SHARE = 0.1
+"""Standard deviation of random locations, in sizes of the character."""
+DISPLACED = 1e-5
+"""Location of a control that counts as one, in sizes of the character."""
+FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
+"""Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
+STRAIGHT = 0.005
+"""A limb whose joints span less than this, in squares of its length, is straight and shows no plane."""
+NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
+"""Turn, and distance in sizes, by which a bone may fail to follow its control before a note is made."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProbedControls:
+    """A character's controls, and how the bones with roles follow them."""
+
+    controls: tuple[Control, ...]
+    """Those that turn or carry others first."""
+    offsets: Mapping[str, Array]
+    """(4, 4) by control the pose of its bone in its own axes."""
+    poles: Mapping[str, PoleSetting]
+    """By pole where it belongs."""
+    size: float
+    """The character's, in the armature's units."""
+    notes: tuple[str, ...]
+
+
+def probe_controls(
+    armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
+) -> ProbedControls:
+    """How the planned controls act; afterwards everything is as it was.
+
+    Args:
+        armature_object: A character that `require_character` accepts.
+        character_map: Its map; settings and switches are set as the motion will have them.
+        planned: The controls.
+    """
+    size = character_size(armature_object, character_map)
+    notes: list[str] = []
+    in_fk = fk_shown(character_map)
+    bones = armature_object.pose.bones
+    displaced = {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
+    with posing(armature_object, list(in_fk)):
+        set_properties(armature_object, in_fk)
+        for name in scaled_bones(armature_object, [plan.name for plan in planned]):
+            bones[name].scale = ONE
+        posed, followed = _posed_at_random(armature_object, planned, size)
+    kept = _steady(armature_object, planned, find_spaces(posed), notes)
+    posed, followed = chosen(posed, kept), followed[:, kept]
+    planned = [planned[index] for index in kept]
+    controls = ordered_controls(
+        [
+            Control(
+                plan,
+                bones[plan.name].rotation_mode,
+                space,
+                turns=plan.kind is not ControlKind.POLE,
+                displaced=plan.name in displaced,
+            )
+            for plan, space in zip(planned, find_spaces(posed), strict=True)
+        ]
+    )
+    offsets = _offsets(armature_object, posed, followed, planned, size, notes)
+    poles = {
+        plan.name: _pole_setting(armature_object, limb_bones(character_map, str(plan.limb)), plan.name)
+        for plan in planned
+        if plan.kind is ControlKind.POLE
+    }
+    placed = tuple(_placed(armature_object, control, controls, size) for control in controls)
+    return ProbedControls(placed, offsets, poles, size, tuple(notes))
+
+
+def character_size(armature_object: bpy.types.Object, character_map: CharacterMap) -> float:
+    """Largest extent of the bones with roles at rest, in the armature's units."""
+    bones = armature_object.data.bones
+    names = [name for role in character_map.roles for name in character_map.bones(role)]
+    heads = np.array([bones[name].head_local for name in names], dtype=np.float64)
+    return float(np.ptp(heads, axis=0).max())
+
+
+def _posed_at_random(
+    armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
+) -> tuple[PosedControls, Array]:
+    """The controls as posed at random, the same in every run, and poses (S, C, 4, 4) of their bones."""
+    rng = np.random.default_rng(SEED)
+    names, count = [plan.name for plan in planned], len(planned)
+    channels, shown = [], []
+    for sample in range(STILL + MOVED):
+        matrices = np.tile(np.eye(4), (count, 1, 1))
+        turns = rng.normal(0.0, TURN_RAD, (count, 3))
+        if count:
+            matrices[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
+        if sample >= STILL:
+            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (count, 3))
+        set_channels(armature_object, dict(zip(names, matrices, strict=True)))
+        own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
+        channels.append(own[:count])
+        shown.append(poses)
+    both = np.array(shown)
+    return PosedControls(np.array(channels), both[:, :count], STILL), both[:, count:]
+
+
+def _rests(armature_object: bpy.types.Object, names: Sequence[str]) -> Array:
+    """(N, 4, 4) poses of bones at rest."""
+    bones = armature_object.data.bones
+    return np.array([bones[name].matrix_local for name in names], dtype=np.float64)
+
+
+def _offsets(
+    armature_object: bpy.types.Object,
+    posed: PosedControls,
+    bones: Array,
+    planned: Sequence[PlannedControl],
+    size: float,
+    notes: list[str],
+) -> dict[str, Array]:
+    """How bones follow their controls: in FK as seen, in IK as at rest; sentences on others are added."""
+    offsets = {}
+    for index, plan in enumerate(planned):
+        control, bone = _rests(armature_object, [plan.name, plan.bone])
+        offsets[plan.name] = np.linalg.inv(control) @ bone
+        if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
+            continue
+        # Locations of other controls may stretch what lies between: only the first poses count.
+        offset, turn_rad, distance = rigid_offset(
+            posed.poses[: posed.still, index], bones[: posed.still, index]
+        )
+        if turn_rad <= FOLLOWS_RAD and distance <= FOLLOWS * size:
+            offsets[plan.name] = offset
+        if turn_rad > NOTICEABLE_RAD or distance > NOTICEABLE * size:
+            notes.append(
+                f"Bone '{plan.bone}' does not follow its control '{plan.name}' rigidly; its poses may be off"
+            )
+    return offsets
+
+
+def _pole_setting(armature_object: bpy.types.Object, limb: Sequence[str], name: str) -> PoleSetting:
+    """Where a limb's pole belongs: as far and in the direction that it lies at rest."""
+    root, middle, end, pole = _rests(armature_object, [*limb, name])[:, :3, 3]
+    length = float(np.linalg.norm(middle - root) + np.linalg.norm(end - middle))
+    distance = float(np.linalg.norm(pole - middle))
+    bent = float(np.linalg.norm(np.cross(middle - root, end - root))) > STRAIGHT * length**2
+    offset_rad = pole_offset(root, middle, end, pole) if bent else 0.0
+    return PoleSetting(distance if distance > SHORTEST_POLE * length else 0.5 * length, offset_rad)
+
+
+def _steady(
+    armature_object: bpy.types.Object,
+    planned: Sequence[PlannedControl],
+    spaces: Sequence[ControlSpace],
+    notes: list[str],
+) -> list[int]:
+    """Indices of the controls whose rotations act in a space of their own, or that constraints keep from it.
+
+    The others are carried by something that moves and is not keyed, so that no key would show as it should;
+    sentences on them are added.
+    """
+    driven = {driven_bone(driver.data_path) for driver in drivers(armature_object)}
+    kept = []
+    for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
+        own = plan.name in driven or active_constraints(armature_object.pose.bones[plan.name])
+        if plan.kind is ControlKind.POLE or own or space.residual_rad < NOTICEABLE_RAD:
+            kept.append(index)
+        else:
+            notes.append(
+                f"Bone '{plan.name}' hangs on something that moves by itself, such as inverse "
+                "kinematics, and is not keyed; name its control in the character map"
+            )
+    return kept
+
+
+def _placed(
+    armature_object: bpy.types.Object, control: Control, controls: Sequence[Control], size: float
+) -> Control:
+    """A control that random poses did not place: where it rests on what turns it, else where it is."""
+    space = control.space
+    if control.plan.kind in ALWAYS_MOVED or space.is_placed(size):
+        return control
+    if space.turner != NOTHING and space.residual_rad < NOTICEABLE_RAD:
+        turner, own = _rests(armature_object, [controls[space.turner].name, control.name])
+        return replace(control, space=space.placed_by_turner((np.linalg.inv(turner) @ own)[:3, 3]))
+    return replace(control, space=replace(space, axes=np.zeros((3, 3))))

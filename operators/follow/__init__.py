@@ -1,0 +1,17 @@
+"""Step 2, what to follow: colored markers, keypoints, tracks, clicked points, contours; the panels."""
+
+PROPERTIES = ("marker_properties", "keypoint_properties")
+MODULES = (
+    "marker_list",
+    "check_markers",
+    "pick_marker_color",
+    "pick_markers",
+    "ignore_region",
+    "marker_panel",
+    "detect_keypoints",
+    "load_keypoints",
+    "click_points",
+    "tracks",
+    "camera_from_lines",
+    "keypoint_panel",
+)

@@ -1,0 +1,277 @@
+"""Moments in which a take's keypoints show the performer upright, to find the camera by."""
+
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+
+from ...core.errors import InputError, KeymarkError
+from ..footage.drawn_lines import (
+    CLICKED_PX,
+    HEIGHT,
+    NEAR_PX,
+    Drawing,
+    DrawnLine,
+    Pixel,
+    evidence_of,
+    read_lines,
+    show,
+    store_lines,
+)
+from ..footage.found_camera import fit_take, values, write_fit
+from ..footage.properties import KINDS, still_camera
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import FootageView, view_of_footage_under
+from ..shell.job_operator import cancel_click
+from ..shell.requirements import camera, footage, idle
+from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
+from .evidence import has_keypoints, scene_evidence
+
+if TYPE_CHECKING:
+    from ...core.footage.camera_evidence import Uprights
+    from ...core.footage.camera_fit import CameraFit
+
+
+FEWEST = 2
+"""Moments without which nothing is told."""
+
+
+def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
+    """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
+    from ...core.body.actor import Actor
+    from ...core.body.kinematics import Body
+    from ...core.footage.camera_evidence import Uprights
+    from ...core.footage.region_tracks import RegionTracks
+    from ...core.footage.standing_moments import standing_keypoints
+    from ..bridge.take_from_scene import keypoints_without_keyframes
+
+    if not has_keypoints(take):
+        return Uprights.none()
+    with suppress(InputError):
+        source = footage_of(take.id_data, take)
+        time_s = np.arange(source.clip.frame_duration) / source.rate
+        tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
+        keypoints = keypoints_without_keyframes(source, scene_evidence(take), tracks, stature_m)
+        found = standing_keypoints(keypoints, Body(Actor.from_stature(stature_m)), source.rate)
+        if len(found) >= FEWEST:
+            return found
+    return Uprights.none()
+
+
+# --- Find the camera from lines that are drawn over the footage, and from the performer at several places
+
+
+DONE = {"RET", "NUMPAD_ENTER"}
+REMOVE = {"X", "DEL"}
+BACK = "BACK_SPACE"
+REQUESTS = {
+    "VERTICAL": "Draw along something plumb: a door frame, the corner of a wall",
+    "LEVEL": "Draw lines on the floor or a wall that are level and parallel to each other",
+    "ACROSS": "Draw a level line at right angles to those",
+    "HEIGHT": "Draw from between the performer's feet to the top of the head, or type another known height",
+}
+PERFORMER_REQUEST = "Click on the floor between the feet, then on the top of the head; type the body height"
+WALK_REQUEST = (
+    "Keypoints show the camera; Enter takes it, or click on the floor between the feet, then on the head"
+)
+KEYS = "{request}   |   Tab: Other Lines   |   X: Remove   |   Enter: Take   |   Esc: Cancel"
+
+
+class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
+    """Find the camera from lines that you draw over the picture; the floor's grid shows the result"""
+
+    bl_idname = "keymark.camera_from_lines"
+    bl_label = "Camera from Lines"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, still_camera, idle)
+
+    kind: bpy.props.EnumProperty(
+        name="Begin with", description="The lines that are drawn first", items=KINDS, options={"SKIP_SAVE"}
+    )
+
+    _drawing: Any = None
+    _upright: Any = None
+    """Body height, and moments in which keypoints show somebody of that height upright."""
+    _place: tuple[int, int] = (0, 0)
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Describe the button by the lines it begins with."""
+        if properties.kind == HEIGHT:
+            return (
+                "Find the camera from the performer: click on the floor between the feet, then on the "
+                "top of the head, where the performer stands upright; in other frames too, nearer and "
+                "farther away; keypoints of somebody who stands or walks do so as well"
+            )
+        return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for lines, beginning with those that were drawn before."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        of_performer = self.kind == HEIGHT
+        self._drawing = Drawing(
+            self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
+        )
+        show(self._drawing)
+        self._place = event.mouse_x, event.mouse_y
+        self._find(context)
+        context.window.cursor_modal_set("CROSSHAIR")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Draw and drag lines until Enter; Esc forgets them."""
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        self._place = event.mouse_x, event.mouse_y
+        drawing, pressed = self._drawing, event.value == "PRESS"
+        if pressed and event.type in DONE:
+            return self._finish(context)
+        if event.type == "MOUSEMOVE" or event.type == "LEFTMOUSE":
+            return self._point(context, event)
+        if pressed and event.type == "TAB":
+            drawing.next_kind()
+        elif pressed and event.type in REMOVE:
+            drawing.remove(self._distance_of_line(context))
+        elif pressed and event.type == BACK:
+            if not drawing.type("\b"):
+                drawing.remove(self._distance_of_line(context))
+        elif pressed and event.unicode and event.unicode in "0123456789.":
+            drawing.type(event.unicode)
+        else:
+            # Navigation: the animator may zoom in, or go to other frames.
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        self._find(context)
+        return {"RUNNING_MODAL"}
+
+    def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Let the mouse begin, move or end a line."""
+        drawing, view = self._drawing, self._view(context)
+        if view is None:
+            return {"PASS_THROUGH"} if event.type == "MOUSEMOVE" else {"RUNNING_MODAL"}
+        pixel = self._pixel(view)
+        if event.type == "MOUSEMOVE":
+            if drawing.held is None:
+                return {"PASS_THROUGH"}
+            drawing.move(pixel)
+        elif event.value == "PRESS":
+            drawing.press(pixel, context.scene.frame_current, self._distance(view))
+        elif event.value == "RELEASE":
+            drawing.move(pixel)
+            drawing.release(
+                lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)),
+            )
+        self._find(context)
+        return {"RUNNING_MODAL"}
+
+    def _find(self, context: bpy.types.Context) -> None:
+        """Find the camera anew, show it, and ask for the next line."""
+        drawing = self._drawing
+        drawing.fit = None
+        try:
+            drawing.fit = self._fit(active_take(context.scene), drawing.complete, drawing.stature_m)
+        except KeymarkError as error:
+            warn(self, str(error))
+        wanted = REQUESTS[drawing.kind]
+        if drawing.of_performer and drawing.kind == HEIGHT:
+            wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
+        request = KEYS.format(request=wanted)
+        context.workspace.status_text_set(request)
+        redraw_footage(context)
+
+    def _finish(self, context: bpy.types.Context) -> set[str]:
+        """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
+        take, lines = active_take(context.scene), self._drawing.complete
+        before = read_lines(take), take.stature
+        stature, found = self._drawing.stature_m, lines or self._drawing.fit is not None
+        self.cancel(context)
+        if not found and not before[0]:
+            return {"CANCELLED"}
+        store_lines(take, lines)
+        take.stature = stature
+        done = self.execute(context) if found else {"FINISHED"}
+        if "CANCELLED" in done:
+            store_lines(take, before[0])
+            take.stature = before[1]
+        return done
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and status bar; Blender calls this as well."""
+        show(None)
+        if context.window is not None:  # None while Blender closes it or opens another file
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
+            redraw_footage(context)
+        redraw_sidebars_soon()
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Find the camera from the lines that the take keeps, or the performer's keypoints, and set it.
+
+        Raises:
+            InputError: There is neither, or they say nothing of the camera.
+        """
+        take = active_take(context.scene)
+        fit = self._fit(take, read_lines(take), take.stature)
+        if fit is None:
+            raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
+        write_fit(take, fit)
+        self.report({"INFO"}, f"{values(fit)}")
+
+    def _fit(
+        self, take: bpy.types.PropertyGroup, lines: list[DrawnLine], stature_m: float
+    ) -> "CameraFit | None":
+        """The camera by lines, and by keypoints where the performer tells it; None without any."""
+        evidence = evidence_of(lines, stature_m)
+        if self.kind == HEIGHT:
+            if self._upright is None or self._upright[0] != stature_m:
+                self._upright = stature_m, standing_performer(take, stature_m)
+            evidence = replace(evidence, uprights=evidence.uprights + self._upright[1])
+        return fit_take(take, evidence) if lines or len(evidence.uprights) else None
+
+    def _view(self, context: bpy.types.Context) -> FootageView | None:
+        """The view of the footage under the mouse."""
+        return view_of_footage_under(context, active_take(context.scene), *self._place)
+
+    def _pixel(self, view: FootageView) -> Pixel:
+        """The footage pixel under the mouse, which may lie beside the picture."""
+        x, y = view.to_footage((self._place[0] - view.region.x, self._place[1] - view.region.y))
+        return float(x), float(y)
+
+    def _distance(self, view: FootageView) -> Any:
+        """Return the function that gives the distance of a pixel from the mouse."""
+        scale = NEAR_PX * _scale(bpy.context)
+        return lambda pixel: _apart(view, pixel, self._pixel(view)) / scale
+
+    def _distance_of_line(self, context: bpy.types.Context) -> Any:
+        """Return the function that gives the distance of a line from the mouse."""
+        view = self._view(context)
+        if view is None:
+            return lambda line: np.inf
+        mouse = np.array(self._place, dtype=np.float64) - (view.region.x, view.region.y)
+        scale = NEAR_PX * _scale(context)
+
+        def distance(line: DrawnLine) -> float:
+            start, end = view.to_region(np.array(line.ends))
+            along = end - start
+            share = float((mouse - start) @ along / max(float(along @ along), 1e-9))
+            nearest = start + min(max(share, 0.0), 1.0) * along
+            return float(np.linalg.norm(mouse - nearest)) / scale
+
+        return distance
+
+
+def _apart(view: FootageView, one: Pixel, other: Pixel) -> float:
+    """Distance of two pixels of the footage in the region [px]."""
+    return float(np.linalg.norm(view.to_region(one) - view.to_region(other)))
+
+
+def _scale(context: bpy.types.Context) -> float:
+    return float(context.preferences.system.ui_scale) or 1.0
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_camera_from_lines,))

@@ -1,0 +1,287 @@
+"""The points that were clicked on in the frames of a take: adding, finding and removing them."""
+
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ...core.arrays import Array
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
+from ...core.footage.keypoints.keypoints import BODY_POINTS
+from ..shell.base_operator import BaseOperator
+from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
+from ..shell.footage_view import FootageRequest, pixel_under, side_of, stop_asking
+from ..shell.job_operator import cancel_click
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
+from .evidence import keypoint_files
+from .frame_keypoints import keypoints_at
+from .tracks import body_point_items, point_title
+
+
+def clip_frame(take: bpy.types.PropertyGroup) -> int:
+    """The scene's current frame, counted from the clip's first."""
+    scene = take.id_data
+    return int(scene.frame_current - footage_of(scene, take).first_frame)
+
+
+def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
+    """The points that were clicked on in the current frame."""
+    here = clip_frame(take)
+    return [click.point for click in take.follow.clicks if click.frame == here]
+
+
+def set_click(
+    take: bpy.types.PropertyGroup, point: str, pixel: tuple[float, float], frame: int | None = None
+) -> None:
+    """Set where a point is in a frame, the current one by default, in place of an earlier click."""
+    at = clip_frame(take) if frame is None else frame
+    remove_click(take, point, at)
+    click = take.follow.clicks.add()
+    click.point, click.frame, click.pixel = point, at, pixel
+
+
+def remove_click(take: bpy.types.PropertyGroup, point: str, frame: int) -> bool:
+    """Remove the click on a point in a frame; return whether there was one."""
+    clicks = take.follow.clicks
+    found = [i for i in range(len(clicks)) if (clicks[i].point, clicks[i].frame) == (point, frame)]
+    for index in reversed(found):
+        clicks.remove(index)
+    return bool(found)
+
+
+# --- Click on points of the body in the footage, frame by frame, where no detector finds them
+
+
+KEYS = "Tab: Next Point   |   Backspace: Previous   |   Enter: Done   |   Esc: Cancel"
+
+
+class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
+    """Click on points of the body in this frame, one after another; the arrow keys go to other frames"""
+
+    bl_idname = "keymark.click_point"
+    bl_label = "Click Points"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    point: bpy.props.EnumProperty(
+        name="Body Point",
+        description="The point of the body; left and right are the performer's own",
+        items=body_point_items(),
+    )
+    pixel: bpy.props.FloatVectorProperty(
+        name="Pixel",
+        description="Where it is, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+
+    _before: Any = None
+    """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for clicks on the footage, beginning with the point that is chosen in the panel."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        self._before = take.follow.clicked_point, _all_clicks(take)
+        return self.wait_for_clicks(context)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Take clicks until Enter, or a click beside the footage; Esc takes all of them back."""
+        return self.take_event(context, event)
+
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        """The point that is chosen in the panel."""
+        point = active_take(context.scene).follow.clicked_point
+        title = f"Click on: {point_title(point)}"
+        return FootageRequest(title, side_of(point)), KEYS
+
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+        """Set the point, and ask for the next one; the same points may be clicked on in other frames."""
+        take = active_take(context.scene)
+        set_click(take, take.follow.clicked_point, pixel)
+        _choose_next(take)
+        self.ask(context)
+        return {"RUNNING_MODAL"}
+
+    def go_on(self, context: bpy.types.Context) -> None:
+        """Choose the next point that has no click in this frame."""
+        _choose_next(active_take(context.scene))
+
+    def go_back(self, context: bpy.types.Context) -> None:
+        """Choose the point before; a click on it takes the place of an earlier one."""
+        follow = active_take(context.scene).follow
+        follow.clicked_point = BODY_POINTS[BODY_POINTS.index(follow.clicked_point) - 1]
+
+    def done(self, context: bpy.types.Context) -> set[str]:
+        """Keep the clicks, as one step of undo; without any nothing has happened."""
+        take = active_take(context.scene)
+        changed = _all_clicks(take) != self._before[1]
+        self._before = None
+        self.cancel(context)
+        if not changed:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"{len(clicked_here(take))} points are clicked on in this frame")
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and clicks; Blender calls this as well."""
+        if self._before is not None:
+            follow = active_take(context.scene).follow
+            follow.clicked_point, clicks = self._before
+            follow.clicks.clear()
+            for point, frame, pixel in clicks:
+                click = follow.clicks.add()
+                click.point, click.frame, click.pixel = point, frame, pixel
+            self._before = None
+        stop_asking(context)
+        redraw_sidebars_soon()
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Set one point in the current frame.
+
+        Raises:
+            InputError: The pixel lies outside the footage.
+        """
+        take = active_take(context.scene)
+        width, height = take.clip.size
+        if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
+            x, y = self.pixel
+            raise InputError(
+                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
+            )
+        set_click(take, self.point, tuple(self.pixel))
+        redraw_footage(context)
+
+
+def _all_clicks(take: bpy.types.PropertyGroup) -> list[tuple[str, int, tuple[float, ...]]]:
+    return [(click.point, click.frame, tuple(click.pixel)) for click in take.follow.clicks]
+
+
+def _choose_next(take: bpy.types.PropertyGroup) -> None:
+    """Choose the next point in the order of the menu that was not clicked on in this frame yet."""
+    begun = BODY_POINTS.index(take.follow.clicked_point) + 1
+    done = clicked_here(take)
+    order = (*BODY_POINTS[begun:], *BODY_POINTS[:begun])
+    take.follow.clicked_point = next((point for point in order if point not in done), order[0])
+
+
+# --- Remove points that were clicked on in the current frame
+
+
+class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
+    """Remove this point in this frame, or all points that were clicked on in this frame"""
+
+    bl_idname = "keymark.remove_clicks"
+    bl_label = "Remove Clicked Points"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    point: bpy.props.StringProperty(
+        name="Body Point", description="The point to remove; empty for all", options={"SKIP_SAVE"}
+    )
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Remove them; those of other frames stay."""
+        take = active_take(context.scene)
+        here = clip_frame(take)
+        points = [self.point] if self.point else clicked_here(take)
+        removed = [point for point in points if remove_click(take, point, here)]
+        if not removed:
+            self.report({"INFO"}, "Nothing was clicked on in this frame")
+            return {"CANCELLED"}
+        redraw_footage(context)
+        return None
+
+
+# --- Click on the performer where a detector sees several people
+
+
+class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
+    """Click on the performer in a frame in which a detector sees several people; one frame is often enough"""
+
+    bl_idname = "keymark.click_performer"
+    bl_label = "Click on the Performer"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, keypoint_files, idle)
+
+    pixel: bpy.props.FloatVectorProperty(
+        name="Pixel",
+        description="Where the performer is, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for a click on the footage."""
+        if not footage_is_shown(self, context, active_take(context.scene)):
+            return {"CANCELLED"}
+        context.window.cursor_modal_set("CROSSHAIR")
+        context.workspace.status_text_set("Click on the performer   |   Esc: Cancel")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Take one click."""
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+            self.cancel(context)
+            if pixel is None:
+                return {"CANCELLED", "PASS_THROUGH"}
+            self.pixel = pixel
+            return self.execute(context)
+        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and status bar; Blender calls this as well."""
+        if context.window is not None:
+            context.window.cursor_modal_restore()
+            context.workspace.status_text_set(None)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Vouch for the seen point that is nearest to the click: points by hand are the performer's.
+
+        Raises:
+            InputError: Nobody is seen in this frame.
+        """
+        take = active_take(context.scene)
+        found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
+        if found is None:
+            raise InputError(
+                f"no detector sees anybody in frame {context.scene.frame_current}; go to one in which "
+                "the performer is seen"
+            )
+        point, pixel = found
+        set_click(take, point, pixel)
+        redraw_footage(context)
+        self.report({"INFO"}, f"The performer is known by the point {point_title(point)}")
+
+
+def nearest_point(
+    take: bpy.types.PropertyGroup, scene_frame: int, pixel: Array
+) -> tuple[str, tuple[float, float]] | None:
+    """The joint of anyone in a frame that is seen nearest to a pixel, and its place [px]; None for nobody."""
+    best: tuple[float, str, tuple[float, float]] | None = None
+    for source in keypoints_at(take, scene_frame):
+        for column, name in enumerate(source.names):
+            places = source.pixel[:, column]
+            away = np.linalg.norm(places - pixel, axis=-1)
+            if name not in HUMAN.point_names or not np.isfinite(away).any():
+                continue
+            row = int(np.nanargmin(away))
+            if best is None or away[row] < best[0]:
+                best = float(away[row]), name, (float(places[row, 0]), float(places[row, 1]))
+    return None if best is None else best[1:]
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_click_point,
+        KEYMARK_OT_remove_clicks,
+        KEYMARK_OT_click_performer,
+    )
+)

@@ -1,0 +1,302 @@
+"""The panels of keypoints, tracks and contours in step 2, in the 3D viewport and the Movie Clip editor."""
+
+import bpy
+
+from ..bridge.footage_camera import may_move
+from ..shell.base_operator import capitalized
+from ..shell.footage_view import clip_index
+from ..shell.panel import (
+    ClipFollowPanel,
+    FollowPanel,
+    RowList,
+    draw_progress,
+    draw_readout,
+    draw_sentence,
+    draw_switch,
+    property_column,
+)
+from ..shell.takes import active_take
+from .click_points import clip_frame
+from .frame_keypoints import KeypointReading, keypoint_reading, people_at
+from .keypoint_paths import keypoint_path
+from .readouts import clicked_label, contours_label, keypoints_label, seen_label, tracks_label
+from .tracks import assigned_tracks, point_of, point_title
+
+FEWEST_ROWS, MOST_ROWS = 2, 5
+
+
+class KEYMARK_UL_keypoint_files(RowList, bpy.types.UIList):
+    """Files of keypoints: a switch, the detector, and the points it sees in this frame."""
+
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one file."""
+        take = active_take(context.scene)
+        reading = keypoint_reading(take, item)
+        row = layout.row(align=True)
+        row.prop(item, "is_used", text="")
+        row.label(text=_title(item, reading), translate=False)
+        status = row.row()
+        status.alignment = "RIGHT"
+        if reading.people is None:
+            status.label(text="", icon="ERROR")
+            return
+        here = people_at(reading.people, clip_index(take))
+        status.label(text=f"{here.seen_count}/{len(here.names)}", translate=False)
+
+
+class KEYMARK_UL_tracks(bpy.types.UIList):
+    """Motion tracks of a tracking object, each with the body point that it follows."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.AnyType,
+        item: bpy.types.AnyType,
+        icon: int,
+        active_data: bpy.types.AnyType,
+        active_property: str,
+    ) -> None:
+        """Draw one track: its name, and the menu of body points."""
+        take = active_take(context.scene)
+        point = point_of(take, data.name, item.name)
+        row = layout.split(factor=0.45)
+        row.label(text=item.name, translate=False, icon="TRACKER" if point else "BLANK1")
+        text = point_title(point) if point else "Not Followed"
+        entry = row.operator_menu_enum("keymark.assign_track", "point", text=text)
+        entry.owner, entry.track = data.name, item.name
+
+
+class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
+    """Points that were clicked on in this frame; a list, so that panels keep their height in all frames."""
+
+    use_filter_show = False
+
+    def filter_items(
+        self, context: bpy.types.Context, data: bpy.types.AnyType, name: str
+    ) -> tuple[list[int], list[int]]:
+        """Show those of the current frame."""
+        here = clip_frame(active_take(context.scene))
+        return [self.bitflag_filter_item if each.frame == here else 0 for each in getattr(data, name)], []
+
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one point, and the button that removes it."""
+        row = layout.row(align=True)
+        row.label(text=point_title(item.point), icon="DOT")
+        row.operator("keymark.remove_clicks", text="", icon="X", emboss=False).point = item.point
+
+
+class Keypoints:
+    """Mixin of the panels: files of detectors, and points that are clicked on."""
+
+    layout: bpy.types.UILayout
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw the switch."""
+        draw_switch(self.layout, context, "use_keypoints")
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draw what is seen in this frame."""
+        draw_readout(self.layout, keypoints_label(active_take(context.scene)))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the files, and the points by hand."""
+        take, layout = active_take(context.scene), self.layout
+        layout.active = take.follow.use_keypoints
+        _draw_files(layout, context, take)
+        layout.separator()
+        _draw_clicks(layout, take)
+
+
+class Tracks:
+    """Mixin of the panels: motion tracks of the clip, and what they follow."""
+
+    layout: bpy.types.UILayout
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw the switch."""
+        draw_switch(self.layout, context, "use_tracks")
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draw what is seen in this frame."""
+        draw_readout(self.layout, tracks_label(active_take(context.scene)))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the tracks of each tracking object that has any."""
+        take, layout = active_take(context.scene), self.layout
+        layout.active = take.follow.use_tracks
+        objects = [each for each in take.clip.tracking.objects if len(each.tracks)] if take.clip else []
+        if not objects:
+            hint = "Track elbows, wrists, knees or ankles in the Movie Clip editor, and name the tracks"
+            draw_sentence(layout, context, hint, "INFO")
+            return
+        for each in objects:
+            if len(objects) > 1:
+                layout.label(text=each.name, translate=False)
+            rows = min(max(len(each.tracks), FEWEST_ROWS), MOST_ROWS)
+            source = (each, "tracks", take.follow, "active_track")
+            layout.template_list("KEYMARK_UL_tracks", each.name, *source, rows=rows)
+        text = (
+            "1 track is followed"
+            if len(assigned_tracks(take)) == 1
+            else f"{len(assigned_tracks(take))} tracks are followed"
+        )
+        layout.label(text=text, translate=False)
+
+
+class Contours:
+    """Mixin of the panels: whether the outline of the body can be followed."""
+
+    layout: bpy.types.UILayout
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draw the switch."""
+        draw_switch(self.layout, context, "use_contours")
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draw whether they can be followed."""
+        draw_readout(self.layout, contours_label(active_take(context.scene)))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw why they can or cannot be followed."""
+        take, layout = active_take(context.scene), self.layout
+        layout.active = take.follow.use_contours
+        if take.camera is None:
+            sentence = "Contours need the camera of the footage"
+        elif may_move(take.camera):
+            sentence = "The camera moves, so that no background stands still: they cannot be used"
+        else:
+            sentence = "The camera stands still: the body is told from the background in any clothes"
+        draw_sentence(layout, context, sentence, "INFO")
+
+
+class KEYMARK_PT_keypoints(Keypoints, FollowPanel, bpy.types.Panel):
+    """Files of keypoints, and points by hand."""
+
+    bl_label = "Keypoints"
+
+
+class KEYMARK_PT_clip_keypoints(Keypoints, ClipFollowPanel, bpy.types.Panel):
+    """The same in the Movie Clip editor."""
+
+    bl_label = "Keypoints"
+
+
+class KEYMARK_PT_tracks(Tracks, FollowPanel, bpy.types.Panel):
+    """Motion tracks of the clip."""
+
+    bl_label = "Tracks"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class KEYMARK_PT_clip_tracks(Tracks, ClipFollowPanel, bpy.types.Panel):
+    """The same in the Movie Clip editor, where tracks are made."""
+
+    bl_label = "Tracks"
+
+
+class KEYMARK_PT_contours(Contours, FollowPanel, bpy.types.Panel):
+    """The outline of the body."""
+
+    bl_label = "Contours"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class KEYMARK_PT_clip_contours(Contours, ClipFollowPanel, bpy.types.Panel):
+    """The same in the Movie Clip editor."""
+
+    bl_label = "Contours"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+def _draw_files(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the list of files and the chosen one, or the button that loads the first."""
+    follow = take.follow
+    if not draw_progress(layout, context, "keymark.detect_keypoints"):
+        layout.operator("keymark.detect_keypoints", icon="VIEWZOOM")
+    if not len(follow.files):
+        layout.operator("keymark.load_keypoints", icon="FILE_FOLDER")
+        return
+    row = layout.row()
+    source = (follow, "files", follow, "active_file")
+    row.template_list("KEYMARK_UL_keypoint_files", "", *source, rows=FEWEST_ROWS, maxrows=MOST_ROWS)
+    buttons = row.column(align=True)
+    buttons.operator("keymark.load_keypoints", text="", icon="ADD")
+    buttons.operator("keymark.remove_keypoints", text="", icon="REMOVE")
+    if follow.active_file < len(follow.files):
+        _draw_file(layout, context, take, follow.files[follow.active_file])
+
+
+def _draw_file(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    take: bpy.types.PropertyGroup,
+    entry: bpy.types.PropertyGroup,
+) -> None:
+    """Draw what the chosen file sees in this frame, or what is wrong with it."""
+    reading, path = keypoint_reading(take, entry), keypoint_path(entry)
+    if reading.people is None:
+        box = layout.box().column()
+        if reading.is_missing:
+            box.label(text="The file of keypoints is missing", icon="ERROR")
+            box.label(text=path.name, translate=False, icon="BLANK1")
+            box.operator("keymark.load_keypoints", text="Find File", icon="VIEWZOOM").replace = True
+        else:
+            draw_sentence(box, context, reading.problem, "ERROR")
+        return
+    people = reading.people
+    here = people_at(people, clip_index(take))
+    layout.label(text=seen_label(here), translate=False, icon="INFO")
+    for note in people.notes:
+        draw_sentence(layout, context, capitalized(note), "ERROR")
+    if people.most_people > 1:
+        row = layout.row(align=True)
+        text = "1 person here" if len(here.pixel) == 1 else f"{len(here.pixel)} people here"
+        row.label(text=text, translate=False, icon="COMMUNITY")
+        row.operator("keymark.click_performer", text="Click Performer")
+    if reading.has_hints:
+        layout.prop(take.follow, "use_depth_hints")
+    if reading.has_changed:
+        row = layout.row(align=True)
+        row.label(text="The file has changed", icon="FILE_REFRESH")
+        row.operator("keymark.load_keypoints", text="Reload").filepath = str(path)
+
+
+def _draw_clicks(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    """Draw the next point to click on, and those of this frame."""
+    follow, column = take.follow, property_column(layout.column())
+    column.prop(follow, "clicked_point")
+    column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
+    if not len(follow.clicks):
+        return
+    row = column.row(align=True)
+    row.label(text=clicked_label(take), translate=False, icon="CHECKMARK")
+    row.operator("keymark.remove_clicks", text="", icon="TRASH")
+    source = (follow, "clicks", follow, "active_click")
+    layout.template_list("KEYMARK_UL_clicked_points", "", *source, rows=FEWEST_ROWS, maxrows=MOST_ROWS)
+
+
+def _title(entry: bpy.types.PropertyGroup, reading: KeypointReading) -> str:
+    """What a file is called: its detector, else its name."""
+    return reading.people.source if reading.people is not None else keypoint_path(entry).name
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_UL_keypoint_files,
+        KEYMARK_UL_tracks,
+        KEYMARK_UL_clicked_points,
+        KEYMARK_PT_keypoints,
+        KEYMARK_PT_tracks,
+        KEYMARK_PT_contours,
+        KEYMARK_PT_clip_keypoints,
+        KEYMARK_PT_clip_tracks,
+        KEYMARK_PT_clip_contours,
+    )
+)

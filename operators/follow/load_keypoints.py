@@ -1,0 +1,129 @@
+"""Load keypoints that a detector has found in the clip."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.progress import run
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.file_browser import browse, chosen_path
+from ..shell.requirements import footage, idle
+from ..shell.results import reading_of
+from ..shell.takes import active_take, footage_of, redraw_footage
+from .evidence import keypoint_files, scene_evidence
+from .frame_keypoints import clear_readings
+from .keypoint_paths import add_keypoint_file
+
+if TYPE_CHECKING:
+    from ...core.footage.keypoints.keypoints import People
+
+
+class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
+    """Load points of the body that a detector has found in this clip: a file, or a folder with one a frame"""
+
+    bl_idname = "keymark.load_keypoints"
+    bl_label = "Load Keypoints"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="Keypoints of this clip: Keymark's own file or a detector's; where that writes a file a "
+        "frame, the folder or any file in it",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    replace: bpy.props.BoolProperty(
+        name="Replace",
+        description="Let it take the place of the chosen file, as of one that was moved",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the file browser, beginning beside the clip, unless a file was dropped or is loaded again."""
+        if self.filepath:
+            return self.execute(context)
+        clip = active_take(context.scene).clip
+        return browse(self, context, str(Path(bpy.path.abspath(clip.filepath)).parent))
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the keypoints and hold them against the clip, and only then add them to the take."""
+        take = active_take(context.scene)
+        path = _whole(chosen_path(self))
+        people = _read(context.scene, take, path)
+        add_keypoint_file(take, path, self.replace)
+        take.follow.use_keypoints = True
+        clear_readings()
+        redraw_footage(context)
+        for note in people.notes:
+            warn(self, note)
+        self.report(
+            {"INFO"},
+            f"Loaded {len(people.names)} points of {people.source}, in "
+            f"{sum(len(frame.pixel) > 0 for frame in people.frames)} of {len(people.frames)} frames",
+        )
+
+
+def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":
+    """Read keypoints and hold them against the clip.
+
+    Raises:
+        InputError: The clip or the file is missing or unusable, or they do not belong together.
+    """
+    from ..bridge.take_from_scene import clip_frames
+    from ..bridge.track_keypoints import read_keypoint_file
+
+    source = footage_of(scene, take)
+    frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))
+    size = source.clip.size
+    return read_keypoint_file(path, len(frames), (size[0], size[1]), source.rate, source.first_frame)
+
+
+def _whole(path: Path) -> Path:
+    """The folder of a detector that writes a file a frame, where one of its files was chosen.
+
+    Raises:
+        InputError: It is no file that can be read.
+    """
+    from ...core.files.json_file import read_json_value
+    from ...core.footage.keypoints.frame_folder import is_one_frame
+    from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
+
+    if path.is_dir():
+        return path
+    if not path.name:
+        raise InputError("filepath is empty; name the file of keypoints, or the folder with a file a frame")
+    return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
+
+
+# --- Remove a file of keypoints from a take
+
+
+class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
+    """Remove the chosen keypoints from the take; their file stays on disk"""
+
+    bl_idname = "keymark.remove_keypoints"
+    bl_label = "Remove Keypoints"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (keypoint_files, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove them; those before become the chosen ones."""
+        follow = active_take(context.scene).follow
+        index = min(follow.active_file, len(follow.files) - 1)
+        follow.files.remove(index)
+        follow.active_file = max(0, index - 1)
+        redraw_footage(context)
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_load_keypoints,
+        KEYMARK_OT_remove_keypoints,
+    )
+)

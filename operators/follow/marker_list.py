@@ -1,0 +1,145 @@
+"""New markers of a take: the segment the next one goes on, and its name."""
+
+import bpy
+
+from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import footage, idle, markers, picked_color
+from ..shell.takes import active_take, ensure_take, redraw_footage, unique_name
+from .marker_properties import SEGMENTS, clear_readouts
+from .mask_previews import preview_of, update_masks
+
+USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
+"""The five segments whose markers help most, in the order in which they are offered."""
+
+
+def next_segment(take: bpy.types.PropertyGroup) -> str | None:
+    """Return the segment to mark next; None if all have markers."""
+    marked = {marker.segment for marker in take.markers}
+    return next((segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked), None)
+
+
+def free_name(take: bpy.types.PropertyGroup, segment: str) -> str:
+    """Return a unique name for a marker: the segment's, with a number if another marker has it."""
+    return unique_name(segment, (marker.name for marker in take.markers))
+
+
+def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.PropertyGroup:
+    """Add a marker named after its segment, and make it the active one."""
+    name = free_name(take, segment)
+    marker = take.markers.add()
+    marker.segment, marker.name = segment, name
+    marker.named_after = segment
+    take.active_marker = len(take.markers) - 1
+    return marker
+
+
+# --- Remove a colored marker
+
+
+class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
+    """Remove the active marker"""
+
+    bl_idname = "keymark.remove_marker"
+    bl_label = "Remove Marker"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (markers,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove the marker; the one before it becomes active."""
+        take = active_take(context.scene)
+        index = min(take.active_marker, len(take.markers) - 1)
+        if take.markers[index].is_picked:
+            clear_readouts(take)
+        take.markers.remove(index)
+        take.active_marker = max(0, index - 1)
+
+
+# --- Show or hide the masks of the markers' colors
+
+
+class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
+    """Highlight the markers' colors over the footage, in the camera view and the Movie Clip editor"""
+
+    bl_idname = "keymark.show_masks"
+    bl_label = "Show Masks"
+    bl_options = {"REGISTER"}
+    requirements = (footage, markers, picked_color, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Toggle the masks; markers that were not checked in this session are checked first."""
+        manager = context.window_manager
+        if not manager.keymark_show_masks:
+            if preview_of(active_take(context.scene)) is None:
+                _check_markers()
+            update_masks(context.scene)
+        manager.keymark_show_masks = not manager.keymark_show_masks
+        redraw_footage(context)
+
+
+def _check_markers() -> None:
+    """Run the check of the markers, on a timer in the user interface.
+
+    Raises:
+        InputError: The markers cannot be checked.
+    """
+    try:
+        bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        raise InputError(str(error).removeprefix("Error: ").strip()) from error
+
+
+# --- Add a colored marker
+
+
+class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
+    """Add a marker on the next body part that usually wears one"""
+
+    bl_idname = "keymark.add_marker"
+    bl_label = "Add Marker"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Add the marker and make it the active one."""
+        take = ensure_take(context.scene)
+        segment = next_segment(take)
+        if segment is None:
+            self.report({"ERROR"}, "Every body part has a marker already")
+            return {"CANCELLED"}
+        append_marker(take, segment)
+        return None
+
+
+# --- Add the five usual markers
+
+
+class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
+    """Add the five markers that help most: trunk, both forearms and both shins"""
+
+    bl_idname = "keymark.add_usual_markers"
+    bl_label = "Add Usual Five"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Add the missing ones; the first of them becomes the active marker."""
+        take = ensure_take(context.scene)
+        marked = {marker.segment for marker in take.markers}
+        missing = [segment for segment in USUAL_SEGMENTS if segment not in marked]
+        if not missing:
+            self.report({"INFO"}, "Trunk, forearms and shins have markers already")
+            return {"CANCELLED"}
+        first = len(take.markers)
+        for segment in missing:
+            append_marker(take, segment)
+        take.active_marker = first
+        return None
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_remove_marker,
+        KEYMARK_OT_show_masks,
+        KEYMARK_OT_add_marker,
+        KEYMARK_OT_add_usual_markers,
+    )
+)

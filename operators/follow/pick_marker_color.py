@@ -1,0 +1,156 @@
+"""Pick a marker's color from the footage, and check at once how well the marker is found."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..shell.base_operator import reported, warn
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import ask, follow_mouse, pixel_under, stop_asking
+from ..shell.job_operator import JobOperator, cancel_click
+from ..shell.requirements import footage, idle, markers
+from ..shell.takes import active_take, footage_of, take_by_identifier
+from .ignored_regions import ignored_regions
+from .marker_styles import (
+    Rgb,
+    check_unchanged,
+    find_markers,
+    request_for,
+    set_marker_color,
+    styles_with_colors,
+    write_readouts,
+)
+from .mask_previews import show_masks, update_shown_masks
+
+if TYPE_CHECKING:
+    from ...core.footage.ignored_regions import IgnoredRegion
+    from ...core.footage.marker_check import MarkerCheck
+    from ...core.footage.region_tracks import MarkerStyle
+    from ...core.progress import Job
+
+
+@dataclass(frozen=True, eq=False)
+class Picked:
+    """Result of the job."""
+
+    take: str
+    """The take's identifier."""
+    marker: str
+    """Name of the marker that is given the color."""
+    color: Rgb
+    styles: "tuple[MarkerStyle, ...]"
+    ignored: "tuple[IgnoredRegion, ...]"
+    check: "MarkerCheck"
+
+
+class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
+    """Click on this one marker in the footage, to take its color from there and look for it in the clip"""
+
+    bl_idname = "keymark.pick_marker_color"
+    bl_label = "Pick Marker Color"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, markers, idle)
+
+    pixel: bpy.props.FloatVectorProperty(
+        name="Pixel",
+        description="Where to pick, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+    row: bpy.props.IntProperty(
+        name="Row",
+        description="Row of the marker in the list, from 0; -1 for the active one",
+        default=-1,
+        options={"SKIP_SAVE"},
+    )
+
+    _masks_before: bool | None = None
+    """Whether masks were shown before the eyedropper; None in a script, which shows none."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for a click on the footage."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        segment = self._marker(take).segment
+        context.window_manager.keymark_progress.show("", 0.0)
+        self._masks_before = show_masks(context, False)  # the footage itself is what is clicked on
+        context.window.cursor_modal_set("EYEDROPPER")
+        ask(context, request_for(segment), "Esc: Cancel")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Wait for a click on the footage, then run the job that it starts."""
+        if self._job is not None:
+            return super().modal(context, event)
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        follow_mouse(context, event)
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            return self._clicked(context, event)
+        # Navigation: the animator may zoom in on the marker or go to another frame.
+        return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+
+    def _clicked(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+        if pixel is None:
+            sentence = "That is not on the footage; click on a marker in it   |   Esc: Cancel"
+            context.workspace.status_text_set(sentence)
+            return {"RUNNING_MODAL"}
+        self.pixel = pixel
+        stop_asking(context)
+        with reported(self):
+            self.begin(context)
+            return {"RUNNING_MODAL"}
+        self.cancel(context)
+        return {"CANCELLED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Restore cursor and masks, and close the job; Blender calls this as well."""
+        stop_asking(context)
+        if self._masks_before is not None:
+            show_masks(context, self._masks_before)
+        super().cancel(context)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
+        """Return the job that reads the pixel from the clip's file and looks for its color.
+
+        The viewport's own pixel has gone through color management.
+        """
+        from ..bridge.footage_color import footage_color
+
+        take = active_take(scene)
+        source, identifier, name = footage_of(scene, take), take.identifier, self._marker(take).name
+        color = footage_color(source, self.pixel)
+        styles, ignored = styles_with_colors(take, {name: color}), ignored_regions(take)
+        check = yield from find_markers(source, styles, ignored)
+        return Picked(identifier, name, color, styles, ignored, check)
+
+    def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
+        """Give the marker its color, and store the readouts of all markers."""
+        take = take_by_identifier(scene, result.take)
+        styles = styles_with_colors(take, {result.marker: result.color})
+        check_unchanged((styles, ignored_regions(take)), (result.styles, result.ignored))
+        marker = next(marker for marker in take.markers if marker.name == result.marker)
+        set_marker_color(marker, result.color)
+        write_readouts(take, result.styles, result.check)
+        if self._masks_before is not None:  # picked by a click: its mask is shown at once
+            show_masks(bpy.context, True)
+        update_shown_masks(scene)
+        for sentence in marker.warning.splitlines():
+            warn(self, sentence)
+        self.report(
+            {"INFO"},
+            f"Marker {marker.name} has the color {result.color}, found in {marker.found} of "
+            f"{marker.sampled} frames",
+        )
+
+    def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
+        """The marker whose color is picked."""
+        row = int(take.active_marker) if self.row < 0 else self.row
+        return take.markers[min(row, len(take.markers) - 1)]
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))

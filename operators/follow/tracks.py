@@ -1,0 +1,117 @@
+"""Which of a clip's motion tracks follow which body points: as a person chose, else by the tracks' names."""
+
+import bpy
+
+from ...core.body.human import HUMAN
+from ...core.errors import InputError
+from ...core.footage.keypoints.keypoints import FACE, FEET, HANDS, SPINE
+from ...core.footage.keypoints.layouts import named_point
+from ..bridge.track_keypoints import AssignedTrack, clip_tracks
+from ..shell.base_operator import BaseOperator
+from ..shell.requirements import footage, idle
+from ..shell.takes import active_take, redraw_footage
+from .marker_properties import segment_title
+
+
+def assigned_tracks(take: bpy.types.PropertyGroup) -> tuple[AssignedTrack, ...]:
+    """The motion tracks of a take's clip that follow a body point."""
+    if take.clip is None:
+        return ()
+    chosen = _chosen(take)
+    found = []
+    for owner, track in clip_tracks(take.clip):
+        point = chosen.get((owner, track.name))
+        point = (named_point(track.name) or "") if point is None else point
+        if point:
+            found.append(AssignedTrack(owner, track.name, point))
+    return tuple(found)
+
+
+def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
+    """The body point that a motion track follows; empty for none."""
+    point = _chosen(take).get((owner, track))
+    return (named_point(track) or "") if point is None else point
+
+
+def assign(take: bpy.types.PropertyGroup, owner: str, track: str, point: str) -> None:
+    """Let a motion track follow a body point, or none where it is empty."""
+    choices = take.follow.tracks
+    for number in reversed(range(len(choices))):
+        if (choices[number].owner, choices[number].track) == (owner, track):
+            choices.remove(number)
+    if point != (named_point(track) or ""):
+        choice = choices.add()
+        choice.owner, choice.track, choice.point = owner, track, point
+
+
+def _chosen(take: bpy.types.PropertyGroup) -> dict[tuple[str, str], str]:
+    return {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
+
+
+# --- Menu of the points of the body, in columns
+
+
+Item = tuple[str, str, str]
+
+COLUMNS = (
+    ("Joints", HUMAN.point_names),
+    ("Head and Trunk", (*FACE, *SPINE)),
+    ("Hands and Feet", (*HANDS, *FEET)),
+)
+"""Heading and points of each column."""
+NO_POINT = "NONE"
+
+
+def body_point_items(without: str = "") -> list[Item]:
+    """Items of a menu of the body points.
+
+    Args:
+        without: Label of an entry for none; empty for a menu without it.
+    """
+    items: list[Item] = [(NO_POINT, without, "")] if without else []
+    for heading, points in COLUMNS:
+        items.append(("", heading, ""))
+        items += [(point, segment_title(point), "") for point in points]
+    return items
+
+
+def point_title(point: str) -> str:
+    """Label of a body point."""
+    return segment_title(point)
+
+
+# --- Assign a motion track of the clip to the body point that it follows
+
+
+class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
+    """Choose the body point that this motion track follows; tracks that are named after one need no choice"""
+
+    bl_idname = "keymark.assign_track"
+    bl_label = "Assign Track"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    owner: bpy.props.StringProperty(
+        name="Object", description="Name of the tracking object that the track belongs to"
+    )
+    track: bpy.props.StringProperty(name="Track", description="Name of the motion track")
+    point: bpy.props.EnumProperty(
+        name="Body Point",
+        description="The body point that the track follows; left and right are the performer's own",
+        items=body_point_items("No Body Point"),
+    )
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Store the choice with the take.
+
+        Raises:
+            InputError: The clip has no such track.
+        """
+        take = active_take(context.scene)
+        if (self.owner, self.track) not in {(owner, track.name) for owner, track in clip_tracks(take.clip)}:
+            raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")
+        assign(take, self.owner, self.track, "" if self.point == NO_POINT else self.point)
+        redraw_footage(context)
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_assign_track,))

@@ -1,0 +1,133 @@
+"""Panel of found keyframes: the list, the candidates of a frame, and what finding assumes."""
+
+import bpy
+
+from ...core.prior.texts import COMPOSED
+from ..shell.contradictions import contradictions_at
+from ..shell.keyed_frames import DOUBTFUL, count_found, state_of
+from ..shell.panel import RowList, TakePanel, draw_sentence
+from ..shell.takes import active_take
+from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
+
+SURE = 0.8
+"""Confidence above which a found keyframe is ticked."""
+FRAME_UNITS = 1.6
+STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
+"""Icon and words of what is no found keyframe any more."""
+
+
+class KEYMARK_UL_matches(RowList, bpy.types.UIList):
+    """Found keyframes: frame, posture and confidence."""
+
+    def draw_row(
+        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
+    ) -> None:
+        """Draw one, or that it is posed or has no key any more."""
+        take = active_take(context.scene)
+        state = state_of(take, item)
+        row = layout.row(align=True)
+        row.active = state != "GONE"
+        number = row.row()
+        number.ui_units_x = FRAME_UNITS
+        number.label(text=f"{item.frame:g}", translate=False)
+        is_found = state == "FOUND"
+        icon, words = how_sure(take, item) if is_found else STATES[state]
+        shown = item.candidate
+        named = is_found and item.library != COMPOSED  # a composed one has the name of any that it resembles
+        row.label(text=shown.name if named else words, icon=icon, translate=False)
+        if named and shown.mirrored:
+            row.label(text="", icon="MOD_MIRROR")
+        if is_found:
+            said = row.row()
+            said.ui_units_x = PERCENT_UNITS
+            said.alignment = "RIGHT"
+            said.label(text=percent(item.confidence), translate=False)
+
+
+def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> tuple[str, str]:
+    """Icon and words of a found keyframe: chosen by hand, contradicted, sure, fair or doubtful."""
+    if match.by_hand:
+        return "VIEW_PAN", "chosen"
+    if contradictions_at(take, match.frame):
+        return "ERROR", "contradicted"
+    if match.confidence < DOUBTFUL:
+        return "QUESTION", "doubtful"
+    sure = match.confidence >= SURE
+    return ("CHECKMARK", "sure") if sure else ("DOT", "likely")
+
+
+class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
+    """Found keyframes, and the choice among a frame's candidates."""
+
+    bl_label = "Found Keyframes"
+    bl_parent_id = "KEYMARK_PT_keyframes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw how sure they are, the list, the candidates, and what finding assumes."""
+        take, column = active_take(context.scene), self.column()
+        matching = take.matching
+        if len(matching.matches):
+            _draw_counts(column, context, take)
+            column.template_list(
+                "KEYMARK_UL_matches", "", matching, "matches", matching, "shown_match", rows=3, maxrows=5
+            )
+            _draw_jumps(column, take)
+            _draw_candidates(column, context, take)
+        column.prop(matching, "library")
+        column.prop(matching, "improve_neighbors")
+        column.prop(matching, "floor")
+        if matching.floor == "HEIGHT":
+            column.prop(matching, "floor_height")
+        elif matching.is_property_set("floor_found"):
+            found = column.row()
+            found.enabled = False
+            found.prop(matching, "floor_found")
+        if len(matching.matches):
+            column.operator("keymark.remove_found", icon="TRASH")
+
+
+def _draw_counts(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw how many were found, how many of them are in doubt, and the reason that was given."""
+    count, doubtful = count_found(take)
+    words = f"{count} found, none of them doubtful"
+    if doubtful:
+        words = f"{count} found, {doubtful} of them doubtful"
+    layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
+    if take.matching.reason:
+        draw_sentence(layout, context, take.matching.reason, "BLANK1")
+
+
+def _draw_jumps(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
+    row = layout.row(align=True)
+    row.operator("keymark.jump_to_match", text="", icon="PREV_KEYFRAME").direction = "PREVIOUS"
+    doubtful = count_found(take)[1]
+    going = row.row(align=True)
+    going.enabled = doubtful > 0
+    words = f"Next Doubtful ({doubtful})" if doubtful else "None Doubtful"
+    jump = going.operator("keymark.jump_to_match", text=words, translate=False)
+    jump.direction, jump.only_doubtful = "NEXT", True
+    row.operator("keymark.jump_to_match", text="", icon="NEXT_KEYFRAME").direction = "NEXT"
+
+
+def _draw_candidates(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw the candidates of the chosen frame as buttons in their figures' colors, and what can be done."""
+    matching = take.matching
+    if matching.shown_match >= len(matching.matches):
+        return
+    match = matching.matches[matching.shown_match]
+    box = layout.column(align=True)
+    draw_candidates_head(box, context, match)
+    is_found = state_of(take, match) == "FOUND"
+    draw_candidates(box, match, "keymark.replace_match", is_found)
+    row = layout.row(align=True)
+    accept = row.row(align=True)
+    accept.enabled = is_found
+    accept.operator("keymark.accept_match", icon="CHECKMARK")
+    row.operator("keymark.remove_match", icon="X")
+
+
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_UL_matches, KEYMARK_PT_found))

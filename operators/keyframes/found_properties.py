@@ -1,0 +1,209 @@
+"""Properties of finding keyframes: settings, and found keyframes with their candidates."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.body.human import HUMAN
+from ...core.prior.texts import EVERY_LIBRARY
+from ..library.registry import library_items
+from ..shell.keyed_frames import match_at
+
+if TYPE_CHECKING:
+    from ...core.prior.keyframes import Matched
+
+
+PLACE_VALUES = 6
+"""Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short."""
+FLOORS = (
+    ("AUTO", "Find from Footage", "How high the floor is follows from the performer's size in the footage"),
+    ("HEIGHT", "Known Height", "The floor that the performer stands on is this high in the scene"),
+)
+
+
+Entry = tuple[str, str, str, str, int]
+_entries: list[Entry] = []
+"""Items of the menu of libraries: Blender keeps no copy of the strings."""
+
+
+def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
+    """All of them as one entry, each registered library, and the chosen one even if it is missing."""
+    every = (EVERY_LIBRARY, "All Libraries", "Each limb may come from another library", "ASSET_MANAGER")
+    rows = [every, *(item[:4] for item in library_items(matching, context))]
+    name = matching.library_name
+    if name and all(name != row[0] for row in rows):
+        rows.append((name, name, "This library is not there any more; import it again", "ERROR"))
+    _entries[:] = [(*row, number) for number, row in enumerate(rows)]
+    return _entries
+
+
+def _library_number(matching: bpy.types.PropertyGroup) -> int:
+    names = [entry[0] for entry in _libraries(matching, None)]
+    return names.index(matching.library_name) if matching.library_name in names else 0
+
+
+def _set_library(matching: bpy.types.PropertyGroup, number: int) -> None:
+    matching.library_name = _libraries(matching, None)[number][0]
+
+
+def _shown_match(matching: bpy.types.PropertyGroup) -> int:
+    """The found keyframe of the current frame; elsewhere the one that was chosen last."""
+    scene = matching.id_data
+    take = next((take for take in scene.keymark.takes if take.matching == matching), None)
+    here = -1 if take is None else match_at(take, scene.frame_current_final)
+    return here if here >= 0 else min(matching.active_match, max(len(matching.matches) - 1, 0))
+
+
+def _choose_match(matching: bpy.types.PropertyGroup, index: int) -> None:
+    """Go to the frame of the found keyframe that was clicked in the list."""
+    matching.active_match = index
+    if index < len(matching.matches):
+        matching.matches[index].go_to(matching.id_data)
+
+
+class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
+    """A posture that a frame may show, placed in the world."""
+
+    name: bpy.props.StringProperty(name="Posture", description="The posture's name in its library")
+    mirrored: bpy.props.BoolProperty(
+        name="Mirrored", description="Whether left and right of the posture are exchanged"
+    )
+    confidence: bpy.props.FloatProperty(
+        name="Confidence",
+        description="Probability that this posture is about right",
+        subtype="FACTOR",
+        min=0.0,
+        max=1.0,
+    )
+    place: bpy.props.FloatVectorProperty(
+        name="Place", description="Location and rotation of the hips", size=PLACE_VALUES
+    )
+    turned: bpy.props.FloatProperty(
+        name="Turned",
+        description="Turn to the performer's left from the posture that was chosen first, seen from above",
+        subtype="ANGLE",
+    )
+    limbs: bpy.props.StringProperty(
+        name="Limbs",
+        description="Limbs that are elsewhere than the first candidate's, which shows what is chosen between",
+        options={"HIDDEN"},
+    )
+    turns: bpy.props.FloatVectorProperty(
+        name="Turns", description="Rotations of the joints", size=HUMAN.dof_count - PLACE_VALUES
+    )
+
+
+class KEYMARK_PG_match(bpy.types.PropertyGroup):
+    """A found keyframe with its candidates."""
+
+    frame: bpy.props.FloatProperty(name="Frame", description="The scene frame")
+    library: bpy.props.StringProperty(
+        name="Library", description="Identifier of the posture's library; composed of several"
+    )
+    candidates: bpy.props.CollectionProperty(type=KEYMARK_PG_candidate)
+    chosen: bpy.props.IntProperty(
+        name="Chosen", description="Index of the candidate that the frame has", default=0, min=0
+    )
+    by_hand: bpy.props.BoolProperty(
+        name="Chosen by Hand", description="Whether a person chose the candidate, so that it is not doubtful"
+    )
+
+    @property
+    def candidate(self) -> bpy.types.PropertyGroup:
+        """The candidate that the frame has."""
+        return self.candidates[min(self.chosen, len(self.candidates) - 1)]
+
+    @property
+    def confidence(self) -> float:
+        """Probability that the posture is about right; a person's choice counts as the best candidate."""
+        if self.by_hand:
+            return float(max(candidate.confidence for candidate in self.candidates))
+        return float(self.candidate.confidence)
+
+    @property
+    def matched(self) -> "Matched":
+        """The match as core's `Matched`."""
+        from ...core.prior.keyframes import Matched
+
+        chosen = self.candidate
+        return Matched(self.library, chosen.name, chosen.mirrored, min(max(self.confidence, 0.0), 1.0))
+
+    def go_to(self, scene: bpy.types.Scene) -> None:
+        """Go to this frame in the scene."""
+        whole = int(self.frame // 1.0)
+        scene.frame_set(whole, subframe=self.frame - whole)
+
+
+class FloorSettings:
+    """Mixin of properties: the floor that performers stand on while they are sought."""
+
+    floor: bpy.props.EnumProperty(
+        name="Floor",
+        description="Source of the floor's height, which determines the performer's distance",
+        items=FLOORS,
+    )
+    floor_height: bpy.props.FloatProperty(
+        name="Floor Height",
+        description="Height of the floor that the performer stands on",
+        subtype="DISTANCE",
+        precision=4,
+        default=0.0,
+        soft_min=-5.0,
+        soft_max=5.0,
+    )
+
+
+class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
+    """Settings and results of finding a take's keyframes."""
+
+    library_name: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of the only library to use; the numbers of menu items may change",
+        options={"HIDDEN"},
+    )
+    library: bpy.props.EnumProperty(
+        name="Library",
+        description="What is known of postures while keyframes are sought: all libraries, or one with "
+        "the performer's own motion",
+        items=_libraries,
+        get=_library_number,
+        set=_set_library,
+    )
+    improve_neighbors: bpy.props.BoolProperty(
+        name="Improve Neighbors",
+        description="When you store, accept or replace a keyframe, pose the found ones up to the next one of "
+        "yours anew, with what yours tells; what you posed or chose never changes",
+        default=True,
+    )
+    reason: bpy.props.StringProperty(
+        name="Reason", description="What was found last, and how well it explains the footage"
+    )
+    fit: bpy.props.FloatProperty(
+        name="Fit",
+        description="Share of the footage that the found poses explain; negative before any were found",
+        default=-1.0,
+        min=-1.0,
+        max=1.0,
+    )
+    floor_found: bpy.props.FloatProperty(
+        name="Floor Found",
+        description="Height of the floor that the found poses stand on",
+        subtype="DISTANCE",
+        precision=4,
+    )
+    matches: bpy.props.CollectionProperty(type=KEYMARK_PG_match)
+    active_match: bpy.props.IntProperty(
+        name="Last Chosen", description="The found keyframe that was chosen last", min=0, options={"HIDDEN"}
+    )
+    shown_match: bpy.props.IntProperty(
+        name="Found Keyframe",
+        description="The found keyframe of the current frame; choosing one goes there",
+        min=0,
+        get=_shown_match,
+        set=_choose_match,
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_candidate, KEYMARK_PG_match, KEYMARK_PG_matching)
+)

@@ -1,0 +1,161 @@
+"""Propose frames to pose, from the speed of the performer in the footage."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.progress import within
+from ..bridge.scene_frames import scene_frames
+from ..follow.evidence import scene_evidence
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.job_operator import JobOperator
+from ..shell.keyed_frames import invalidate_keyed_frames, proposed_frames, unposed_proposals
+from ..shell.notices import give_notices
+from ..shell.requirements import all_colors, footage, idle
+from ..shell.results import keep_reading, keep_speed, reading_of
+from ..shell.takes import active_take, find_take, footage_of, take_by_identifier
+
+if TYPE_CHECKING:
+    from ...core.arrays import Array
+    from ...core.footage.reading import Reading
+    from ...core.progress import Job
+
+
+READ = 0.9
+"""Share of the job at which the clip is read."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Result of the job."""
+
+    take: str
+    """The take's identifier."""
+    reading: "Reading"
+    frames: tuple[int, ...]
+    """Proposed scene frames."""
+    speed: "Array"
+    """(F,) the speed in the footage that they were chosen by [px per frame], ..."""
+    scene_frames: "Array"
+    """... at scene frames (F,)."""
+    note: str
+    """What the speed was made from where neither markers nor keypoints tell it, for people; else empty."""
+
+
+class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
+    """Follow the performer through the footage and propose the frames that are best posed"""
+
+    bl_idname = "keymark.propose_keyframes"
+    bl_label = "Propose Keyframes"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, all_colors, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Outcome]":
+        """Return the job; a clip that was read for these markers before is not read again."""
+        from ...core.footage.reading import of_same_footage, read_clip, reading_key
+        from ...core.prior.keyframe_proposals import evidence_speed, propose_keyframes
+        from ..bridge.take_from_scene import keypoints_without_keyframes
+
+        take = active_take(scene)
+        identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
+        footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
+        styles = evidence.markers
+        clip, first, rate = footage.open(), footage.first_frame, footage.rate
+        ignored = evidence.ignored_regions
+        key = reading_key(clip.path, clip.fps, styles, None, ignored)
+        if reading is None or not of_same_footage(reading.key, key):
+            job = read_clip(clip, styles, ignored=ignored)
+            reading = yield from within("Following the performer", job, 0.0, READ)
+        segments = tuple(style.segment for style in styles)
+        keypoints = keypoints_without_keyframes(footage, evidence, reading.tracks, stature)
+        moved = evidence_speed(reading.tracks, segments, keypoints, reading.album)
+        speed = yield from within("Measuring the speed", moved, READ, 1.0)
+        chosen = propose_keyframes(speed.values, count)
+        frames = scene_frames(reading.tracks.time_s, first, rate)
+        proposed = tuple(round(float(frame)) for frame in frames[chosen])
+        return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
+
+    def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
+        """Store the proposals with the take, and cache the reading for the reconstruction."""
+        take = take_by_identifier(scene, result.take)
+        keep_reading(take, result.reading)
+        keep_speed(take, result.scene_frames, result.speed)
+        take.proposals.clear()
+        for frame in result.frames:
+            take.proposals.add().frame = frame
+        self.report({"INFO"}, f"{len(result.frames)} keyframes proposed")
+        notes = [warn(self, result.note)] if result.note else []
+        give_notices(take, "keyframes", "proposals", notes)
+
+
+# --- Go to the next or the previous proposed keyframe
+
+
+def proposals(context: bpy.types.Context) -> str | None:
+    """The take has proposed keyframes."""
+    return None if proposed_frames(find_take(context.scene)) else "Propose keyframes first"
+
+
+class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
+    """Go to the next or the previous proposed keyframe"""
+
+    bl_idname = "keymark.jump_to_proposal"
+    bl_label = "Jump to Proposed Keyframe"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (proposals,)
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Direction from the current frame",
+        items=[
+            ("NEXT", "Next", "Go to the next proposed keyframe"),
+            ("PREVIOUS", "Previous", "Go to the previous proposed keyframe"),
+        ],
+    )
+    skip_posed: bpy.props.BoolProperty(
+        name="Skip Posed",
+        description="Skip proposed keyframes that are posed; after the last one comes the first",
+        default=False,
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Return the tooltip for the direction."""
+        if properties.skip_posed:
+            return "Go to the next proposed keyframe that is not posed yet"
+        if properties.direction == "NEXT":
+            return "Go to the next proposed keyframe"
+        return "Go to the previous proposed keyframe"
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Go to the frame; if there is none, stay and report it."""
+        scene, take = context.scene, find_take(context.scene)
+        invalidate_keyed_frames()
+        frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
+        if not frames:
+            self.report({"INFO"}, "All proposed keyframes are posed")
+            return {"CANCELLED"}
+        ahead = [frame for frame in frames if frame > scene.frame_current]
+        behind = [frame for frame in frames if frame < scene.frame_current]
+        if self.skip_posed:  # wraps around the ends
+            ahead, behind = ahead or frames, behind or frames
+        if self.direction == "NEXT" and ahead:
+            scene.frame_set(ahead[0])
+        elif self.direction == "PREVIOUS" and behind:
+            scene.frame_set(behind[-1])
+        elif self.direction == "NEXT":
+            self.report({"INFO"}, "There is no proposed keyframe after this frame")
+            return {"CANCELLED"}
+        else:
+            self.report({"INFO"}, "There is no proposed keyframe before this frame")
+            return {"CANCELLED"}
+        return None
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_propose_keyframes,
+        KEYMARK_OT_jump_to_proposal,
+    )
+)

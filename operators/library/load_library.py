@@ -1,0 +1,161 @@
+"""Load keyframe libraries: from a .json, or from a .blend of pose assets."""
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+from ..shell.base_operator import BaseOperator
+from ..shell.file_browser import browse, chosen_file
+from ..shell.requirements import idle, registered_library
+from ..shell.takes import refresh_asset_browsers
+from .registry import chosen_identifier, refresh
+
+if TYPE_CHECKING:
+    from ...core.prior.library import Library
+
+
+class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
+    """Load a keyframe library from a file, so that poses are found with it from now on"""
+
+    bl_idname = "keymark.import_library"
+    bl_label = "Load Library"
+    bl_options = {"REGISTER"}
+    requirements = (idle,)
+
+    filepath: bpy.props.StringProperty(
+        name="File Path",
+        description="A keyframe library: .json, or .blend with pose assets of one",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    replace: bpy.props.BoolProperty(
+        name="Replace",
+        description="Replace another library of the same identifier that is at hand",
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file, unless one was dropped."""
+        return self.execute(context) if self.filepath else browse(self, context)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the whole file first, then write its libraries into the user's folder."""
+        from ...core.prior.library import library_digest
+        from ..bridge.library.library_file import read_libraries
+        from .registry_files import find_registered, write_to_registry
+
+        libraries = read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
+        new = []
+        for library in libraries:
+            there = find_registered(library.identifier)
+            if there is None or library_digest(there) != library_digest(library):
+                new.append(library)
+                if there is not None and not self.replace:
+                    raise InputError(_conflict(library, there))
+        write_to_registry(new)
+        refresh(libraries[0].identifier)  # the list points to it
+        titles = ", ".join(f"'{library.title}'" for library in new)
+        if new:
+            self.report({"INFO"}, f"Loaded {titles}")
+        else:
+            self.report({"INFO"}, "Nothing to load: the library is at hand already")
+
+
+def _conflict(new: "Library", there: "Library") -> str:
+    return (
+        f"'{there.title}' ({there.identifier}) is there in version {there.version} by {there.author}, "
+        f"and this is version {new.version} by {new.author}; load it with Replace, or give it another "
+        "identifier"
+    )
+
+
+def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.operator(KEYMARK_OT_import_library.bl_idname, text="Keymark Keyframe Library (.json/.blend)")
+
+
+def _register_import_library() -> None:
+    """Add the operator, and an entry to File > Import."""
+    bpy.utils.register_class(KEYMARK_OT_import_library)
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
+
+
+def _unregister_import_library() -> None:
+    """Remove both."""
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
+    bpy.utils.unregister_class(KEYMARK_OT_import_library)
+
+
+# --- Refresh the registry of keyframe libraries
+
+
+class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
+    """Read the folder of your libraries again, after other programs have changed its files"""
+
+    bl_idname = "keymark.refresh_shelf"
+    bl_label = "Refresh Libraries"
+    bl_options = {"REGISTER"}
+    requirements = (idle,)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the folders."""
+        refresh()
+        count = len(context.window_manager.keymark_shelf.libraries)
+        self.report({"INFO"}, f"{count} keyframe libraries are at hand")
+
+
+# --- Bring a library into this file as pose assets
+
+
+class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
+    """Bring a library into this file as pose assets: to apply, to blend, to change, and to save again"""
+
+    bl_idname = "keymark.edit_library"
+    bl_label = "Edit as Pose Assets"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (registered_library, idle)
+
+    library: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of a library at hand; empty: the one chosen in the list",
+        options={"SKIP_SAVE"},
+    )
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Add an Action for each posture; a saved file's catalogs are named beside it."""
+        from ..bridge.assets.catalogs import catalog_file, ensure_catalog
+        from ..bridge.library.pose_assets import add_assets, assets_by_library, catalog_of
+        from .registry_files import load_registered
+
+        library = load_registered(self.library or chosen_identifier(context))
+        if library.identifier in assets_by_library(bpy.data.actions):
+            raise InputError(f"library '{library.title}' is in this file already")
+        if bpy.data.filepath:
+            file = catalog_file()
+            for catalog in dict.fromkeys(catalog_of(library, posture) for posture in library.postures):
+                ensure_catalog(file, catalog)
+        count = len(add_assets(library))
+        refresh_asset_browsers(context)
+        self.report({"INFO"}, f"'{library.title}' is in this file now: {count} pose assets")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_refresh_shelf,
+        KEYMARK_OT_edit_library,
+    )
+)
+
+
+def register() -> None:
+    """Register all of this module."""
+    _register_classes()
+    _register_import_library()
+
+
+def unregister() -> None:
+    """Take it all back."""
+    _unregister_import_library()
+    _unregister_classes()

@@ -1,0 +1,247 @@
+"""Common licenses of libraries, suggested in license fields."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.prior.texts import identifier_from
+from ..shell.base_operator import BaseOperator, warn_if_outdated
+from ..shell.requirements import actor, idle, motion
+from ..shell.takes import active_take, find_take
+from .registry import chosen_identifier, refresh
+
+if TYPE_CHECKING:
+    from ...core.prior.library import Library
+
+
+USUAL = (
+    ("CC0-1.0", "Anything, without naming anybody"),
+    ("CC-BY-4.0", "Anything, the author is named"),
+    ("CC-BY-SA-4.0", "Anything under the same terms, the author is named"),
+    ("CC-BY-NC-4.0", "Nothing commercial, the author is named"),
+    ("LicenseRef-Proprietary", "Nothing without asking"),
+)
+"""SPDX identifiers, and what they allow."""
+
+
+def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: str) -> list[tuple[str, str]]:
+    """The common licenses that contain the typed text, each with what it allows; all if none does."""
+    fitting = [each for each in USUAL if typed.lower() in each[0].lower()] or USUAL
+    return [(license, allowed) for license, allowed in fitting]
+
+
+# --- Save a keyframe library
+
+
+FORMATS = [
+    ("JSON", "Library File (.json)", "One text file, for other people's Keymark and for version control"),
+    ("BLEND", "Pose Assets (.blend)", "Pose assets for the asset browser, with their catalogs beside them"),
+]
+SUFFIXES = {"JSON": ".json", "BLEND": ".blend"}
+SOURCES = [
+    ("LIBRARY", "Chosen Library", "The library as it is at hand"),
+    ("ASSETS", "Pose Assets", "This file's pose assets of a library, and those that were made of the actor"),
+    ("KEYFRAMES", "Keyframes", "The take's keyframes, a posture each, and a motion through them"),
+]
+
+
+class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
+    """Save a keyframe library, pose assets or the take's keyframes as a library file, to keep or share it"""
+
+    bl_idname = "keymark.export_library"
+    bl_label = "Save Library"
+    bl_options = {"REGISTER"}
+    requirements = (idle,)
+
+    source: bpy.props.EnumProperty(
+        name="Postures", description="Postures of the library", items=SOURCES, options={"SKIP_SAVE"}
+    )
+    library: bpy.props.StringProperty(
+        name="Library",
+        description="Identifier of a library at hand or of pose assets; empty: the one chosen in the list",
+        options={"SKIP_SAVE"},
+    )
+    title: bpy.props.StringProperty(
+        name="Title",
+        description="Title of a new library; by default the take's name",
+        options={"SKIP_SAVE"},
+    )
+    author: bpy.props.StringProperty(name="Author", description="Author of a new library")
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
+    format: bpy.props.EnumProperty(
+        name="Format", description="Format of the file, where its name has neither suffix", items=FORMATS
+    )
+    filepath: bpy.props.StringProperty(name="File", description="File to write", subtype="FILE_PATH")
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+    filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the file, named as the library is."""
+        self.library = self.library or chosen_identifier(context)
+        name = self.library if self.source == "LIBRARY" else identifier_from(self._title(context))
+        folder = "//" if bpy.data.filepath else ""
+        self.filepath = bpy.path.abspath(folder + (name or "library") + SUFFIXES[self.format])
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def check(self, context: bpy.types.Context) -> bool:
+        """Give the file's name the suffix of the format."""
+        stem = self.filepath
+        for suffix in SUFFIXES.values():
+            stem = stem.removesuffix(suffix)
+        path = bpy.path.ensure_ext(stem, SUFFIXES[self.format])
+        changed = path != self.filepath
+        self.filepath = path
+        return changed
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the choices beside the file browser."""
+        column = self.layout.column()
+        column.prop(self, "format", expand=True)
+        column.prop(self, "source")
+        if self.source != "LIBRARY":
+            for name in ("title", "author", "license"):
+                column.prop(self, name)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Write the file."""
+        from ..bridge.assets.catalogs import asset_root
+        from ..bridge.library.library_file import write_library_file
+
+        if not self.filepath:
+            raise InputError("no file is named to save to; give filepath")
+        library = self._library(context)
+        path = Path(bpy.path.abspath(self.filepath))
+        if path.suffix.lower() not in SUFFIXES.values():  # a script's file tells its format itself
+            path = path.with_name(path.name + SUFFIXES[self.format])
+        write_library_file(path, library, asset_root(path.parent))
+        count = len(library.postures)
+        self.report({"INFO"}, f"Wrote {count} postures to {path}")
+
+    def _title(self, context: bpy.types.Context) -> str:
+        take = find_take(context.scene)
+        return self.title.strip() or (take.name if take is not None else "Postures")
+
+    def _library(self, context: bpy.types.Context) -> "Library":
+        """The library to write.
+
+        Raises:
+            InputError: There is none, or it is not complete.
+        """
+        from ...core.prior.learning import LibraryMetadata
+        from ..bridge.library.posed_library import library_of_assets, library_of_keyframes
+        from .registry_files import load_registered
+
+        wanted = self.library or chosen_identifier(context)
+        if self.source == "LIBRARY":
+            return load_registered(wanted)
+        about = LibraryMetadata(self._title(context), self.author.strip() or "Unknown", self.license.strip())
+        take = find_take(context.scene)
+        armature = take.armature if take is not None else None
+        if self.source == "ASSETS":
+            return library_of_assets(bpy.data.actions, armature, about, wanted)
+        if take is None or armature is None or take.keyframe_action is None:
+            raise InputError("the take has no keyframes; pose the actor and store some first")
+        return library_of_keyframes(context.scene, armature, take.keyframe_action, about)
+
+
+# --- Learn a keyframe library from a take's motion
+
+
+DIALOG_WIDTH = 360
+ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
+A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
+
+
+class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
+    """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
+
+    bl_idname = "keymark.learn_library"
+    bl_label = "Library from Motion"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
+
+    title: bpy.props.StringProperty(
+        name="Title", description="Title of the library; by default the take's name"
+    )
+    author: bpy.props.StringProperty(name="Author", description="Author of the library")
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
+    count: bpy.props.IntProperty(
+        name="Postures",
+        description="Number of postures in the library; 0 for 10 to 40, as many as differ",
+        default=0,
+        min=0,
+        max=1000,
+    )
+    learned_as: bpy.props.StringProperty(
+        name="Learned As",
+        description="Identifier that the library was given, by which learning again replaces it",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for title and author."""
+        take = active_take(context.scene)
+        if not self.title:
+            self.title = take.name
+        if not self.author:
+            self.author = take.finish.author
+        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draw the dialog."""
+        layout = self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        for name in ("title", "author", "license"):
+            layout.prop(self, name)
+        layout.prop(self, "count", text="Postures (0: Automatic)")
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Learn the library, and write it into the user's folder."""
+        from ...core.prior.learning import LibraryMetadata
+        from ..bridge.library.posed_library import library_from_action
+        from .registry_files import registered_identifiers, write_to_registry
+
+        take, render = active_take(context.scene), context.scene.render
+        title = self.title.strip() or take.name
+        about = LibraryMetadata(
+            title=title,
+            author=self.author.strip() or "Unknown",
+            license=self.license.strip(),
+            identifier=self.learned_as or identifier_from(title, registered_identifiers()),
+        )
+        action = take.finish.action or take.motion_action
+        frame_s = render.fps_base / render.fps
+        library = library_from_action(take.armature, action, frame_s, about, self.count or None)
+        self.learned_as = library.identifier
+        write_to_registry([library])
+        refresh(library.identifier)
+        warn_if_outdated(self, take)
+        (learned,) = library.motions
+        count, seconds = len(library.postures), learned.duration_s
+        said = A_CYCLE if learned.cyclic else ONCE
+        self.report({"INFO"}, said.format(title=title, count=count, seconds=seconds))
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_export_library,
+        KEYMARK_OT_learn_library,
+    )
+)

@@ -1,0 +1,163 @@
+"""Jump through the frames worth another keyframe, the worst first."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ...core.body.human import HUMAN
+from ..bridge.actions import assign_action
+from ..bridge.object_space import evaluated
+from ..bridge.scene_frames import at_scene_frame, showing_action
+from ..footage.camera_view import look_through, viewports
+from ..shell.base_operator import BaseOperator
+from ..shell.keyed_frames import invalidate_keyed_frames, new_keyframe_action, straighten_unposed
+from ..shell.requirements import actor, camera, idle, motion, weak_frames
+from ..shell.takes import active_take
+
+
+class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
+    """Go to a frame that is worth another keyframe"""
+
+    bl_idname = "keymark.jump_to_weak_frame"
+    bl_label = "Jump to Weak Frame"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (weak_frames,)
+
+    direction: bpy.props.EnumProperty(
+        name="Direction",
+        description="Listed frame to go to",
+        items=[
+            ("CHOSEN", "Chosen", "Go to the frame that is chosen in the list"),
+            ("NEXT", "Next", "Go to the next frame of the list, which is less weak"),
+            ("PREVIOUS", "Previous", "Go to the previous frame of the list, which is weaker"),
+        ],
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Tooltip with the direction."""
+        return {
+            "CHOSEN": "Go to the frame that is chosen in the list",
+            "NEXT": "Go to the next frame of the list; the worst comes first",
+            "PREVIOUS": "Go to the previous frame of the list; the worst comes first",
+        }[properties.direction]
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Go there; at the end of the list, stay and say so."""
+        review = active_take(context.scene).review
+        step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
+        # At first, the worst frame itself is the next one.
+        chosen = review.weak_frames[min(review.active_weak_frame, len(review.weak_frames) - 1)]
+        if self.direction == "NEXT" and abs(chosen.frame - context.scene.frame_current_final) > 1e-3:
+            step = 0
+        wanted = review.active_weak_frame + step
+        if wanted < 0:
+            self.report({"INFO"}, "This is the weakest frame")
+            return {"CANCELLED"}
+        if wanted >= len(review.weak_frames):
+            self.report({"INFO"}, "This is the last frame of the list")
+            return {"CANCELLED"}
+        review.active_weak_frame = wanted  # which goes there
+        return None
+
+
+# --- Take the reconstructed pose as a keyframe, so that the animator only corrects it
+
+
+class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
+    """Store the reconstructed pose as a keyframe and show the keyframes, so that it only needs correcting"""
+
+    bl_idname = "keymark.pose_from_motion"
+    bl_label = "Add Keyframe Here"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (actor, motion, idle)
+
+    where: bpy.props.EnumProperty(
+        name="Where",
+        description="The frame whose pose is stored",
+        items=[
+            ("CURRENT", "Current Frame", "Store the pose of the scene's current frame"),
+            ("WEAK", "Chosen Weak Frame", "Store the pose of the frame chosen in the list of weak frames"),
+        ],
+    )
+
+    def run(self, context: bpy.types.Context) -> set[str] | None:
+        """Key the motion's pose in the keyframe Action, and let that animate the actor."""
+        from ..bridge.keyframes import store_pose
+
+        scene = context.scene
+        take = active_take(scene)
+        review, frame = take.review, float(scene.frame_current_final)
+        if self.where == "WEAK":
+            if not 0 <= review.active_weak_frame < len(review.weak_frames):
+                self.report({"ERROR"}, "No weak frame is chosen; reconstruct the motion first")
+                return {"CANCELLED"}
+            frame = float(review.weak_frames[review.active_weak_frame].frame)
+        action = take.keyframe_action or new_keyframe_action(take.armature)
+        with showing_action(take.armature, take.motion_action), at_scene_frame(scene) as go_to:
+            go_to(frame)
+            straighten_unposed(take)
+            store_pose(take.armature, action, HUMAN, frame)
+        take.keyframe_action = action
+        assign_action(take.armature, action)
+        whole = int(frame // 1.0)
+        scene.frame_set(whole, subframe=frame - whole)
+        invalidate_keyed_frames()
+        self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
+        return None
+
+
+# --- Look at the actor from the footage's side, where depth shows, and back
+
+
+DISTANCE_HEIGHTS = 2.6
+"""Distance of the view from the actor, in heights of its body: all of it is seen, limbs stretched out too."""
+
+
+class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
+    """Look at the actor from the camera's right, where depth shows; once more, through the camera again"""
+
+    bl_idname = "keymark.look_from_side"
+    bl_label = "Side View"
+    bl_options = {"REGISTER"}
+    requirements = (camera, actor)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Set the context's viewport, or all of them if the context is another editor."""
+        take, own = active_take(context.scene), context.space_data
+        spaces = [own] if isinstance(own, bpy.types.SpaceView3D) else list(viewports(context.window_manager))
+        for space in spaces:
+            if space.region_3d.view_perspective != "CAMERA":
+                look_through(space, context.scene, take.camera)
+            else:
+                look_from_side(space, take.camera, take.armature)
+
+
+def look_from_side(
+    space: bpy.types.SpaceView3D, camera_object: bpy.types.Object, armature_object: bpy.types.Object
+) -> None:
+    """Let a viewport look at an actor across a camera's line of sight, the camera being on the left.
+
+    The view is level and without perspective, so that depths can be compared.
+    """
+    shown = evaluated(armature_object)
+    ends = np.array([end for bone in shown.pose.bones for end in (bone.head, bone.tail)])
+    center = shown.matrix_world @ Vector((ends.min(axis=0) + ends.max(axis=0)) / 2.0)
+    height = max(float(bone.head_local.z) for bone in shown.data.bones) * max(shown.matrix_world.to_scale())
+    right = Vector(evaluated(camera_object).matrix_world.to_3x3().col[0])
+    right.z = 0.0
+    backward, up = right.normalized(), Vector((0.0, 0.0, 1.0))
+    view = space.region_3d
+    view.view_perspective = "ORTHO"
+    view.view_location = center
+    view.view_rotation = Matrix((up.cross(backward), up, backward)).transposed().to_quaternion()
+    view.view_distance = DISTANCE_HEIGHTS * height
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_jump_to_weak_frame,
+        KEYMARK_OT_pose_from_motion,
+        KEYMARK_OT_look_from_side,
+    )
+)

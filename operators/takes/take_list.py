@@ -1,0 +1,160 @@
+"""Add a take for another performer in the same clip."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+from ...core.errors import InputError
+from ...core.progress import run
+from ..follow.evidence import scene_evidence
+from ..follow.keypoint_paths import add_keypoint_file, keypoint_path
+from ..keyframes.found_keyframes import known_matches
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.requirements import actor, footage, idle
+from ..shell.takes import active_take, add_take, find_take, footage_of
+
+
+class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
+    """Add a take for another performer in the active take's clip, with an actor and markers of their own"""
+
+    bl_idname = "keymark.add_performer"
+    bl_label = "Add Performer"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Add a take that shares clip, camera, guesses and keypoint files with the active one."""
+        scene = context.scene
+        source = active_take(scene)
+        clip, camera, guessed = source.clip, source.camera, source.guessed_lens_mm
+        placement = tuple(source.guessed_placement)
+        files = [keypoint_path(entry) for entry in source.follow.files]
+        stem = source.name.partition(" Performer ")[0]
+        number = sum(take.clip == clip for take in scene.keymark.takes) + 1
+        take = add_take(scene, f"{stem} Performer {number}")  # may move `source` in memory
+        take.guessed_lens_mm, take.guessed_placement = guessed, placement
+        take.camera, take.clip = camera, clip
+        for path in files:
+            add_keypoint_file(take, path)
+
+
+# --- Remove a take from the scene's list
+
+
+def take(context: bpy.types.Context) -> str | None:
+    """The scene has a take."""
+    return "There is no take to remove" if find_take(context.scene) is None else None
+
+
+class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
+    """Remove the active take from the list; its clip, camera, actor and Actions stay, unless deleted too"""
+
+    bl_idname = "keymark.remove_take"
+    bl_label = "Remove Take"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (take, idle)
+
+    delete_data: bpy.props.BoolProperty(
+        name="Delete Its Data",
+        description="Delete its actor, camera, clip and Actions too, its characters' included, except what "
+        "another take uses; the characters stay",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Remove the take; the one before it becomes active."""
+        settings = context.scene.keymark
+        active = active_take(context.scene)
+        index = next(i for i, each in enumerate(settings.takes) if each == active)
+        own = set(_all_data_of(active))
+        settings.takes.remove(index)
+        settings.active_take = max(0, index - 1)
+        if self.delete_data:
+            others = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
+            deleted = own.difference(*(_all_data_of(other) for other in others))
+            inner = [block.data for block in deleted if isinstance(block, bpy.types.Object)]
+            alone = [block for block in inner if block is not None and block.users == 1]
+            bpy.data.batch_remove([*deleted, *alone])
+
+
+def _all_data_of(take: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+    """Yield a take's data-blocks, and the Actions that its characters got; not the characters themselves."""
+    yield from _data_of(take)
+    for character in take.characters:
+        yield from (result.action for result in character.results if result.action is not None)
+
+
+def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
+    """Yield the data-blocks that a group of properties points to, nested groups included."""
+    for definition in group.bl_rna.properties:
+        if definition.type != "POINTER" or definition.identifier == "rna_type":
+            continue
+        value = getattr(group, definition.identifier)
+        if isinstance(value, bpy.types.PropertyGroup):
+            yield from _data_of(value)
+        elif isinstance(value, bpy.types.ID):
+            yield value
+
+
+# --- Save the active take as a folder, to convert it elsewhere
+
+
+class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
+    """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
+
+    bl_idname = "keymark.save_take"
+    bl_label = "Save Take"
+    bl_options = {"REGISTER"}
+    requirements = (footage, actor, idle)
+
+    directory: bpy.props.StringProperty(
+        name="Folder",
+        description="Where take.json, keyframes.json and the clip are written",
+        subtype="DIR_PATH",
+    )
+    filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Show the file browser."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Read the take from the scene and write the folder."""
+        from ...core.shoot.discovery import check_hides_no_take
+        from ...core.take.evidence import evidence_of
+        from ...core.take.take_file import write_take
+        from ..bridge.take_from_scene import read_scene_take
+
+        if not self.directory:
+            raise InputError("directory is empty; name the folder to save the take in")
+        scene_take = active_take(context.scene)
+        take, notes = run(
+            read_scene_take(
+                footage_of(context.scene, scene_take),
+                scene_take.armature,
+                scene_take.keyframe_action,
+                scene_evidence(scene_take),
+                known_matches(scene_take),
+            )
+        )
+        folder = Path(bpy.path.abspath(self.directory))
+        check_hides_no_take(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        has = evidence_of(take)
+        # A camera that stands still brings contours, unless the take says that they are not followed.
+        write_take(take, folder, has if has and not take.contours else None)
+        for note in notes:
+            warn(self, note)
+        self.report({"INFO"}, f"Saved the take in {folder}")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (
+        KEYMARK_OT_add_performer,
+        KEYMARK_OT_remove_take,
+        KEYMARK_OT_save_take,
+    )
+)

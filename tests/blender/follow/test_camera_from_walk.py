@@ -1,0 +1,78 @@
+"""The camera from the performer whom a detector's keypoints show upright."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import cv2
+import numpy as np
+import pytest
+from keymark.core.arrays import Array
+from keymark.core.body.body_volume import standing_posture
+from keymark.core.body.posture import Posture
+from keymark.core.footage.camera_fields import CameraPlacement
+from keymark.core.footage.keypoints.keypoint_file import write_keypoints
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
+from keymark.operators.shell.takes import active_take
+
+FRAMES = 32
+HEIGHT_M, TILT = 1.1, float(np.radians(-9.0))
+
+
+def seen_file(take: Take, points: Array, path: Path) -> Path:
+    """What a detector sees of principal points (F, 13, 3) in the take's pictures."""
+    names = take.body.skeleton.point_names
+    pixel = take.camera.project(points)[0] + np.random.default_rng(2).normal(0.0, 0.3, (*points.shape[:2], 2))
+    score, unknown = np.full((1, len(names)), 0.9), np.full((1, len(names), 3), np.nan)
+    frames = tuple(SeenPeople(places[None], score, unknown) for places in pixel)
+    write_keypoints(path, People(names, "truth", take.camera.resolution, frames), 1, take.fps)
+    return path
+
+
+def walking_file(take: Take, frames: int, path: Path) -> Path:
+    """Keypoints of someone who stands far away, then near, before a camera that looks down."""
+    places = np.where(np.arange(frames)[:, None] < frames // 2, [-0.8, 7.0, 0.0], [0.4, 3.6, 0.0])
+    posture = Posture.stack([standing_posture(take.body, place) for place in places])
+    pose = CameraPlacement(HEIGHT_M, TILT, 0.0).matrix()
+    filmed = replace(take, camera=replace(take.camera, matrix_world=pose))
+    return seen_file(filmed, take.body.points(take.body.pose(posture)), path)
+
+
+@pytest.mark.usefixtures("registered")
+def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
+    """A lens that somebody has set is kept."""
+    clip = tmp_path / "room.mp4"
+    writer = cv2.VideoWriter(
+        str(clip), cv2.VideoWriter_fourcc(*"mp4v"), plain_take.fps, plain_take.camera.resolution
+    )
+    for _ in range(FRAMES):
+        writer.write(np.full((*plain_take.camera.resolution[::-1], 3), 90, np.uint8))
+    writer.release()
+    bpy.ops.keymark.load_footage(filepath=str(clip))
+    take = active_take(bpy.context.scene)
+    take.camera.data.lens, take.stature = plain_take.camera.lens_mm, plain_take.body.actor.stature_m
+    bpy.ops.keymark.load_keypoints(filepath=str(walking_file(plain_take, FRAMES, tmp_path / "walk.json")))
+    assert bpy.ops.keymark.camera_from_lines(kind="HEIGHT") == {"FINISHED"}
+    take = active_take(bpy.context.scene)
+    assert take.camera_height == pytest.approx(HEIGHT_M, abs=0.15)
+    assert take.camera_tilt == pytest.approx(TILT, abs=np.radians(2.5))
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="VERTICAL")
+    assert take.camera.data.lens == pytest.approx(plain_take.camera.lens_mm) and take.camera_findings
+
+
+def test_who_never_stands_is_no_measure(
+    plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion
+) -> None:
+    """The camera stays as it was, with keypoints that show nobody upright as without any."""
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
+    lying = np.array(wave_motion.points)[..., [2, 1, 0]]
+    path = seen_file(plain_take, lying, plain_take.folder / "lying.json")
+    bpy.ops.keymark.load_keypoints(filepath=str(path))
+    before = active_take(plain).camera_height
+    with pytest.raises(RuntimeError, match="has no lines"):
+        bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
+    assert active_take(plain).camera_height == before

@@ -1,0 +1,292 @@
+"""Markers: adding, picking, checking, and what is drawn of them."""
+
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import bpy
+import cv2
+import numpy as np
+import pytest
+from keymark.core.errors import InputError
+from keymark.core.progress import run
+from keymark.core.take.take import Take
+from keymark.operators.follow.check_markers import KEYMARK_OT_check_markers
+from keymark.operators.follow.mask_previews import clear_previews, is_of_frame, preview_of, update_masks
+from keymark.operators.footage.take_footage import update_clip_state
+from keymark.operators.overlays.mask import free_height, tinted
+from keymark.operators.shell.takes import active_take, add_take, take_by_identifier
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
+
+
+@pytest.fixture
+def loaded(tiny_take: Take) -> bpy.types.Scene:
+    """The scene with the tiny take's clip and no marker."""
+    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
+    return bpy.context.scene
+
+
+def pixel_of(take: Take, segment: str) -> np.ndarray:
+    """The middle of a limb in the first frame [px]."""
+    ends = take.body.segment_ends(take.body.pose(take.keyframes[0].posture), segment)
+    return take.camera.project(np.mean(ends, axis=0))[0]
+
+
+def test_the_usual_five_are_added_at_once_and_only_where_missing() -> None:
+    """In an empty scene, and again after one was removed; none of them has a color yet."""
+    bpy.ops.keymark.add_usual_markers()
+    take = active_take(bpy.context.scene)
+    assert [marker.segment for marker in take.markers] == USUAL
+    assert take.active_marker == 0 and not any(marker.is_picked for marker in take.markers)
+    take.active_marker = 2
+    bpy.ops.keymark.remove_marker()
+    bpy.ops.keymark.add_usual_markers()
+    assert sorted(marker.name for marker in take.markers) == sorted(USUAL)
+    assert take.markers[take.active_marker].segment == "forearm.R"
+    assert bpy.ops.keymark.add_usual_markers() == {"CANCELLED"}
+
+
+def test_a_name_follows_its_segment_until_it_is_changed() -> None:
+    """A name of the animator's own stays."""
+    bpy.ops.keymark.add_marker()
+    (marker,) = active_take(bpy.context.scene).markers
+    marker.segment = "foot.L"
+    assert marker.name == "foot.L"
+    marker.name = "sock"
+    marker.segment = "foot.R"
+    assert marker.name == "sock"
+
+
+def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
+    opened: bpy.types.Scene, tiny_take: Take
+) -> None:
+    """The readout is of all, as another color changes what the rest are confused with."""
+    take = active_take(opened)
+    before = [tuple(marker.color) for marker in take.markers]
+    take.active_marker = 3
+    take.markers[3].color = (0.0, 0.0, 0.0)
+    bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "shin.L"))
+    assert np.abs(np.array(take.markers[3].color) - before[3]).max() < 0.15
+    assert [tuple(marker.color) for marker in take.markers if marker.name != "shin.L"] == [
+        *before[:3],
+        before[4],
+    ]
+    assert all(marker.has_readout(take) for marker in take.markers)
+
+
+def test_the_eyedropper_beside_a_row_picks_that_marker_alone(
+    opened: bpy.types.Scene, tiny_take: Take
+) -> None:
+    """Whatever row is active, and it never adds a marker: without a list there is nothing to pick."""
+    take = active_take(opened)
+    before = [tuple(marker.color) for marker in take.markers]
+    take.markers[1].color, take.active_marker = (0.0, 0.0, 0.0), 4
+    bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "forearm.L"), row=1)
+    assert np.abs(np.array(take.markers[1].color) - before[1]).max() < 0.15
+    assert tuple(take.markers[4].color) == before[4] and len(take.markers) == 5
+    take.markers.clear()
+    with pytest.raises(RuntimeError, match="Add the markers"):
+        bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "shin.L"))
+    assert not len(take.markers)
+
+
+def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
+    """Neither the color nor the list."""
+    take = active_take(opened)
+    before = [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers]
+    with pytest.raises(RuntimeError, match="lies outside the footage"):
+        bpy.ops.keymark.pick_marker_color(pixel=(-4.0, 3.0))
+    assert [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers] == before
+
+
+def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: bpy.types.Scene) -> None:
+    """One color that is nowhere, and two that are alike, are named; the rest are well."""
+    take = active_take(opened)
+    take.markers[1].color = (0.1, 0.95, 0.9)
+    take.markers[4].color = take.markers[3].color
+    assert bpy.ops.keymark.check_markers() == {"FINISHED"}
+    trunk, nowhere, right, *twins = take.markers
+    assert (nowhere.found, nowhere.area, nowhere.distinctness) == (0, 0.0, 0.0)
+    assert "matches nothing in the clip" in nowhere.warning
+    assert trunk.found == right.found == 13 and not trunk.warning
+    assert "almost the same color as shin.R" in twins[0].warning
+    assert "almost the same color as shin.L" in twins[1].warning
+
+
+def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:
+    """Another color, another name, another clip and a marker less all take it back."""
+    take = active_take(opened)
+
+    def checked() -> bool:
+        return all(marker.has_readout(take) for marker in take.markers)
+
+    assert not checked()
+    bpy.ops.keymark.check_markers()
+    assert checked()
+    take.markers[2].color = (0.2, 0.3, 0.9)
+    assert not any(marker.has_readout(take) for marker in take.markers)
+    bpy.ops.keymark.check_markers()
+    take.markers[0].name = "body"
+    assert not checked()
+    bpy.ops.keymark.check_markers()
+    bpy.ops.keymark.add_marker()
+    assert [marker.has_readout(take) for marker in take.markers] == [True] * 5 + [False]
+    bpy.ops.keymark.remove_marker()
+    assert checked()
+    bpy.ops.keymark.remove_marker()
+    assert not checked()
+    bpy.ops.keymark.check_markers()
+    take.clip = None
+    assert not checked()
+
+
+def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene, tiny_take: Take) -> None:
+    """Without any color there is nothing to check, and the tooltip says so."""
+    bpy.ops.keymark.add_usual_markers()
+    take = active_take(loaded)
+    with pytest.raises(RuntimeError, match="Pick the color of a marker first"):
+        bpy.ops.keymark.check_markers()
+    take.active_marker = 1
+    bpy.ops.keymark.pick_marker_color(pixel=pixel_of(tiny_take, "forearm.L"))
+    bpy.ops.keymark.check_markers()
+    assert [marker.has_readout(take) for marker in take.markers] == [False, True, False, False, False]
+
+
+def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny_take: Take) -> None:
+    """Each covers what the readout says and follows its marker; of other colors there are none."""
+    clear_previews()
+    take = active_take(opened)
+    assert update_masks(opened) is None
+    bpy.ops.keymark.check_markers()
+    opened.frame_set(1)
+    first = update_masks(opened).masks
+    assert [mask.label for mask in first] == USUAL and first[0].coverage.shape == (120, 160)
+    for mask, marker in zip(first, take.markers, strict=True):
+        assert float(mask.coverage.sum()) == pytest.approx(marker.area, rel=0.4)
+    arm = first[1].outlines[0].mean(axis=0)
+    assert np.linalg.norm(arm - pixel_of(tiny_take, "forearm.L")) < 6.0
+    opened.frame_set(13)
+    assert np.linalg.norm(update_masks(opened).masks[1].outlines[0].mean(axis=0) - arm) > 10.0
+    opened.frame_set(40)
+    assert update_masks(opened).masks == ()
+    take.markers[0].color = (0.9, 0.1, 0.1)
+    assert preview_of(take) is None
+
+
+def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> None:
+    """A switch: the second press hides them again; nothing of it is stored in the scene."""
+    clear_previews()
+    assert bpy.ops.keymark.show_masks() == {"FINISHED"}
+    assert bpy.context.window_manager.keymark_show_masks
+    assert len(preview_of(active_take(opened)).masks) == 5
+    bpy.ops.keymark.show_masks()
+    assert not bpy.context.window_manager.keymark_show_masks
+
+
+def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
+    """Top row first, the marker's color where it is, darkness where nothing is."""
+    bpy.ops.keymark.check_markers()
+    masks = update_masks(opened).masks
+    picture = tinted(masks)
+    trunk = masks[0].coverage == 1.0
+    assert picture.shape == (120, 160, 4) and trunk.any()
+    assert picture[trunk][:, :3] == pytest.approx(np.broadcast_to(masks[0].color, (trunk.sum(), 3)), abs=1e-5)
+    assert tuple(picture[0, 0, :3]) == (0.0, 0.0, 0.0) and 0.0 < picture[0, 0, 3] < picture[trunk][0, 3]
+
+
+def test_names_move_up_past_those_that_are_there() -> None:
+    """Over both of two that overlap in turn; one beside them stays."""
+    taken = [(0.0, 10.0, 50.0, 8.0), (20.0, 18.0, 50.0, 8.0), (200.0, 0.0, 10.0, 99.0)]
+    assert free_height((10.0, 12.0, 40.0, 8.0), taken) == 26.0
+    assert free_height((80.0, 12.0, 40.0, 8.0), taken) == 12.0
+    assert free_height((10.0, 40.0, 40.0, 8.0), taken) == 40.0
+
+
+def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened: bpy.types.Scene) -> None:
+    """Another take may have come forward meanwhile; markers that were changed keep what they have."""
+    job = SimpleNamespace(pixel=(80.0, 60.0), report=lambda *_: None)
+    operator = KEYMARK_OT_check_markers
+    first = active_take(opened).identifier
+    found = run(operator.start(job, opened))
+    add_take(opened, "Other")
+    operator.finish(job, opened, found)
+    assert all(
+        marker.has_readout(take_by_identifier(opened, first))
+        for marker in take_by_identifier(opened, first).markers
+    )
+    assert not len(active_take(opened).markers)
+    take_by_identifier(opened, first).markers[2].color = (0.2, 0.2, 0.9)
+    with pytest.raises(InputError, match="changed while they were looked for"):
+        operator.finish(job, opened, found)
+    assert not take_by_identifier(opened, first).markers[0].has_readout(take_by_identifier(opened, first))
+
+
+def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
+    """The button says so, instead of a sentence about gray after the clip was read."""
+    bpy.ops.keymark.add_marker()
+    for operator in ("reconstruct", "propose_keyframes"):
+        with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):
+            getattr(bpy.ops.keymark, operator)()
+
+
+def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """The same path with other pictures: no readout, no sample and no mask of the old ones."""
+    take = active_take(opened)
+    clip = tmp_path / "clip.mp4"
+    shutil.copy(bpy.path.abspath(take.clip.filepath), clip)
+    take.clip.filepath = str(clip)
+    bpy.ops.keymark.check_markers()
+    assert take.markers[0].found == 13
+    first = preview_of(take)
+    writer = cv2.VideoWriter(str(clip), cv2.VideoWriter_fourcc(*"mp4v"), 25.0, (160, 120))
+    for _ in range(13):
+        writer.write(np.full((120, 160, 3), 90, np.uint8))
+    writer.release()
+    update_clip_state(take)
+    assert not take.markers[0].has_readout(take) and preview_of(take) is None
+    bpy.ops.keymark.check_markers()
+    assert take.markers[0].has_readout(take) and take.markers[0].found == 0
+    assert preview_of(take) is not None is not first
+
+
+def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> None:
+    """The same scene frame shows another of its frames then."""
+    take = active_take(opened)
+    bpy.ops.keymark.check_markers()
+    opened.frame_set(5)
+    before = update_masks(opened).masks
+    assert update_masks(opened).masks is before
+    take.clip.frame_start += 4
+    assert not is_of_frame(preview_of(take), opened)
+    assert update_masks(opened).masks is not before
+
+
+def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """What was read and reviewed of one is not drawn over the other; the same one again loses nothing."""
+    take = active_take(opened)
+    bpy.ops.keymark.propose_keyframes()
+    take.method = "interpolation"
+    bpy.ops.keymark.reconstruct()
+    take.clip = take.clip
+    assert take.reading_key and take.review_key and len(take.proposals) and take.review.frame_count == 13
+    other = tmp_path / "other.mp4"
+    shutil.copy(bpy.path.abspath(take.clip.filepath), other)
+    with other.open("ab") as file:
+        file.write(bytes(64))
+    take.clip = bpy.data.movieclips.load(str(other))
+    assert not take.reading_key and not take.review_key
+    assert not len(take.proposals) and take.review.frame_count == 0 and not len(take.review.weak_frames)
+    assert take.motion_action is not None and take.keyframe_action is not None
+
+
+def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
+    """One sentence, and the switch stays as it was."""
+    clear_previews()
+    active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
+    with pytest.raises(RuntimeError, match="the footage is not there") as caught:
+        bpy.ops.keymark.show_masks()
+    assert "Traceback" not in str(caught.value)
+    assert not bpy.context.window_manager.keymark_show_masks

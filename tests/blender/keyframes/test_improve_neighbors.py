@@ -1,0 +1,101 @@
+"""A corrected keyframe at once improves the found ones around it."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+from _found import shown
+from _scene_state import differences, scene_state
+from keymark.core.errors import InputError
+from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.operators.follow.ignored_regions import add_ignored_regions
+from keymark.operators.keyframes.improve_neighbors import improve_neighbors
+from keymark.operators.shell import results
+from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
+from keymark.operators.shell.takes import active_take
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+Group = bpy.types.PropertyGroup
+FPS = 25.0
+
+
+def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, given: SimpleNamespace) -> None:
+    """In one step of undo: those around are found anew, between what holds, on the floor found before."""
+    scene = bpy.context.scene
+    scene.frame_set(7)
+    bpy.ops.ed.undo_push(message="Opened")
+    before = scene_state()
+    given.confidences = {0: 0.95, 12: 0.85}
+    given.contradictions = {12: ("shin.L",)}
+    bpy.ops.keymark.store_keyframe()
+    bpy.ops.ed.undo_push(message="Stored")
+    take = active_take(scene)
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert (given.between[-1], given.frames[-1]) == ((0, 12), (0, 12))
+    assert [each.index for each in given.takes[-1].keyframes] == [6]
+    assert given.floors[-1] == pytest.approx(0.02)
+    state = [(round(match.frame), round(match.confidence, 2)) for match in take.matching.matches]
+    assert state == [(1, 0.95), (7, 0.3), (13, 0.85)]
+    assert take.contradictions[0].frame == 13.0
+    bpy.ops.ed.undo()
+    assert differences(before, scene_state()) == ""
+
+
+def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleNamespace) -> None:
+    """A candidate that was chosen holds from then on, though it counts as found."""
+    asked = len(given.frames)
+    found.matching.shown_match = 0
+    bpy.ops.keymark.replace_match(candidate=1)
+    assert given.frames[asked] == (6, 12)
+    take = active_take(bpy.context.scene)
+    chosen = shown(take, 1)
+    take.matching.shown_match = 1
+    bpy.ops.keymark.accept_match()
+    assert given.frames[asked + 1] == (12,) and given.between[-1] == (6, 12)
+    assert [each.index for each in given.takes[-1].keyframes] == [0, 6]
+    assert shown(take, 1).minus(chosen) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
+    found: Group, given: SimpleNamespace
+) -> None:
+    """Switched off, with nothing found, without a reading, or with one of other colors."""
+    scene, asked = bpy.context.scene, len(given.frames)
+    found.matching.improve_neighbors = False
+    assert improve_neighbors(bpy.context, found, 7.0) == 0
+    found.matching.improve_neighbors = True
+    color = tuple(found.markers[0].color)
+    found.markers[0].color = (0.5, 0.1, 0.5)
+    assert improve_neighbors(bpy.context, found, 7.0) == 0
+    found.markers[0].color = color
+    assert improve_neighbors(bpy.context, found, 7.0) == 2
+    key, found.reading_key = found.reading_key, ""
+    assert improve_neighbors(bpy.context, found, 7.0) == 0
+    found.reading_key = key
+    bpy.ops.keymark.remove_found()
+    assert improve_neighbors(bpy.context, active_take(scene), 7.0) == 0
+    assert len(given.frames) == asked + 1
+
+
+def test_regions_that_are_no_marker_are_part_of_what_was_read(unposed: Group, given: SimpleNamespace) -> None:
+    """With them found and improved alike; with one more since, the footage was read as it is not followed."""
+    add_ignored_regions(unposed, (IgnoredRegion(box=(1.0, 1.0, 4.0, 4.0)),))
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert improve_neighbors(bpy.context, take, 7.0) == 2
+    add_ignored_regions(take, (IgnoredRegion(box=(1.0, 1.0, 5.0, 5.0)),))
+    assert improve_neighbors(bpy.context, take, 7.0) == 0
+
+
+def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given: SimpleNamespace) -> None:
+    """The failure changes nothing and stops nothing."""
+    bpy.context.scene.frame_set(7)
+    others = [shown(found, frame) for frame in (1, 13)]
+    bpy.context.scene.frame_set(7)
+    given.error = InputError("no marker is seen in the footage")
+    assert bpy.ops.keymark.store_keyframe() == {"FINISHED"}
+    assert (posed_frames(found), matched_frames(found)) == ((7.0,), (1.0, 13.0))
+    for frame, posture in zip((1, 13), others, strict=True):
+        assert shown(found, frame).minus(posture) == pytest.approx(0.0, abs=1e-6)
+    assert results.reading_of(found) is not None

@@ -1,0 +1,200 @@
+"""Pose All in a scene: keys, stored candidates, what is said, and what stays."""
+
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+from _found import shown
+from _scene_state import differences, scene_state
+from keymark.core.errors import InputError
+from keymark.core.prior.texts import COMPOSED
+from keymark.core.take.motion import Motion
+from keymark.core.take.take import Take
+from keymark.operators.bridge.keyframes import candidate_posture
+from keymark.operators.shell import results
+from keymark.operators.shell.contradictions import contradictions_at
+from keymark.operators.shell.keyed_frames import (
+    count_found,
+    doubtful_matches,
+    keyframes_of,
+    matched_frames,
+    posed_frames,
+    proposed_frames,
+)
+from keymark.operators.shell.takes import active_take
+from keymark.operators.takes.panel import next_step
+
+pytestmark = pytest.mark.usefixtures("registered")
+
+Group = bpy.types.PropertyGroup
+
+
+def test_every_proposed_frame_is_keyed_as_found(
+    found: Group, given: SimpleNamespace, wave_motion: Motion
+) -> None:
+    """Frames, names, confidences, alternatives, and how sure it is; every library was asked."""
+    assert (keyframes_of(found), posed_frames(found)) == ((1.0, 7.0, 13.0), ())
+    assert shown(found, 7).minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-5)
+    state = found.matching
+    assert (state.reason, state.fit, round(state.floor_found, 6)) == ("It is", 0.75, 0.02)
+    match = state.matches[1]
+    assert (match.frame, match.library, match.candidate.name) == (7.0, COMPOSED, "Wave 6")
+    assert [(each.name, each.mirrored) for each in match.candidates] == [("Wave 6", False), ("Back", True)]
+    again = candidate_posture(match.candidates[1])
+    assert again.minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-6)
+    assert (given.frames, given.libraries) == ([(0, 6, 12)], [["waves", "walking"]])
+
+
+def test_doubtful_ones_are_said_and_shown(
+    unposed: Group, given: SimpleNamespace, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The number in the report, and the most doubtful frame in the viewport."""
+    bpy.ops.keymark.pose_all()
+    assert "3 keyframes found, 1 of them doubtful" in capfd.readouterr().out
+    take = active_take(bpy.context.scene)
+    assert count_found(take) == (3, 1)
+    assert bpy.context.scene.frame_current == 7 and take.matching.shown_match == 1
+    given.confidences = dict.fromkeys((0, 6, 12), 0.9)
+    bpy.context.scene.frame_set(3)
+    bpy.ops.keymark.pose_all()
+    assert "3 keyframes found, none of them doubtful" in capfd.readouterr().out
+    assert bpy.context.scene.frame_current == 3
+
+
+def test_what_contradicts_is_doubtful_and_shown_first(unposed: Group, given: SimpleNamespace) -> None:
+    """However sure the posture is; it is said at its frame, and there alone, until that is decided on."""
+    given.contradictions = {12: ("shin.L",)}
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert doubtful_matches(take) == [2, 1]
+    assert bpy.context.scene.frame_current == 13
+    assert [contradictions_at(take, frame) for frame in (7.0, 13.0)] == [(), ("shin.L",)]
+    take.follow.use_markers = False
+    assert contradictions_at(take, 13.0) == ()
+    take.follow.use_markers = True
+    bpy.ops.keymark.accept_match()
+    assert contradictions_at(take, 13.0) == () and doubtful_matches(take) == [1]
+
+
+def test_frames_are_proposed_where_there_are_none(unposed: Group, given: SimpleNamespace) -> None:
+    """The same ones as Propose Keyframes gives, with the speed that the timeline draws."""
+    unposed.proposals.clear()
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    found = proposed_frames(take)
+    assert list(matched_frames(take)) == found and len(found) >= 2
+    assert results.speed_of(take) is not None
+    bpy.ops.keymark.propose_keyframes()
+    assert proposed_frames(active_take(bpy.context.scene)) == found
+
+
+def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespace) -> None:
+    """A found keyframe that was corrected is the animator's: it is not found again, and tells of others."""
+    scene = bpy.context.scene
+    scene.frame_set(7)
+    bone = found.armature.pose.bones["forearm.L"]
+    bone.rotation_euler[0] += 0.4
+    bone.keyframe_insert("rotation_euler", frame=7)
+    before = shown(found, 7)
+    bpy.ops.keymark.pose_all()
+    take = active_take(scene)
+    (handed,) = given.takes[-1].keyframes
+    assert (handed.index, handed.matched, given.frames[-1]) == (6, None, (0, 12))
+    assert handed.posture.minus(before) == pytest.approx(0.0, abs=1e-5)
+    assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-6)
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert [match.frame for match in take.matching.matches] == [1.0, 13.0]
+
+
+def test_a_candidate_that_a_person_chose_stays(
+    found: Group, given: SimpleNamespace, wave_motion: Motion
+) -> None:
+    """With its entry, in its place, and it is handed on like a posed one."""
+    found.matching.improve_neighbors = False
+    found.matching.shown_match = 1
+    bpy.ops.keymark.replace_match(candidate=1)
+    found.matching.shown_match = 0
+    bpy.ops.keymark.replace_match(candidate=1)
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert [each.index for each in given.takes[-1].keyframes] == [0, 6]
+    assert [(match.frame, match.by_hand) for match in take.matching.matches] == [
+        (1.0, True),
+        (7.0, True),
+        (13.0, False),
+    ]
+    assert shown(take, 1).minus(wave_motion.posture[12]) == pytest.approx(0.0, abs=1e-5)
+    assert matched_frames(take) == (1.0, 7.0, 13.0)
+
+
+def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
+    """And it is said."""
+    for frame in (1, 7, 13):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.keymark.store_keyframe()
+    before = scene_state()
+    with pytest.raises(RuntimeError, match="Every proposed frame is posed"):
+        bpy.ops.keymark.pose_all()
+    assert differences(before, scene_state()) == ""
+
+
+def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: SimpleNamespace) -> None:
+    """The user interface stays alive meanwhile: what is found for that frame comes too late."""
+    bpy.context.scene.frame_set(7)
+    before = shown(unposed, 7)
+    given.meanwhile = bpy.ops.keymark.store_keyframe
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert (posed_frames(take), matched_frames(take)) == ((7.0,), (1.0, 13.0))
+    assert shown(take, 7).minus(before) == pytest.approx(0.0, abs=1e-5)
+
+
+def test_the_floor_is_handed_on(unposed: Group, given: SimpleNamespace) -> None:
+    """Only where it is known."""
+    bpy.ops.keymark.pose_all(floor_height=0.4)
+    bpy.ops.keymark.pose_all(floor="HEIGHT", floor_height=0.4)
+    assert given.floors == [None, pytest.approx(0.4)]
+
+
+def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamespace) -> None:
+    """The sentence is reported, nothing else happens."""
+    before = scene_state()
+    given.error = InputError("no marker is seen in the footage")
+    with pytest.raises(RuntimeError, match="No marker is seen"):
+        bpy.ops.keymark.pose_all()
+    assert differences(before, scene_state()) == ""
+
+
+def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNamespace) -> None:
+    """Nothing is keyed, and the panel names the next step."""
+    assert next_step(unposed) == "Next: pose all keyframes"
+    bpy.ops.keymark.pose_all()
+    take = active_take(bpy.context.scene)
+    assert next_step(take) == "Next: check doubtful ones, reconstruct"
+    for match in take.matching.matches:
+        match.by_hand = True
+    assert next_step(take) == "Next: reconstruct the motion"
+    take.method = "interpolation"
+    assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
+
+
+def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
+    """The tooltip names the first missing requirement."""
+    bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
+    with pytest.raises(RuntimeError, match="Build the actor first"):
+        bpy.ops.keymark.pose_all()
+
+
+def test_the_drawn_clip_is_posed(
+    unposed: Group, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
+) -> None:
+    """End to end with the shipped libraries: the actor stands where the performer stood."""
+    assert bpy.ops.keymark.pose_all() == {"FINISHED"}
+    take = active_take(bpy.context.scene)
+    assert matched_frames(take) == (1.0, 7.0, 13.0)
+    for frame in (1, 13):
+        bpy.context.scene.frame_set(frame)
+        apart = np.linalg.norm(shown_points(take.armature) - wave_motion.points[frame - 1], axis=-1)
+        assert apart.mean() < 0.3

@@ -1,0 +1,77 @@
+"""Where limbs' contours appear, and which part of the body a pixel shows."""
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, exercise
+from keymark.core.body.human import HUMAN
+from keymark.core.evidence.contours import SHAPE, SIDES, ContourModel, part_map
+from keymark.core.evidence.occlusion import outline_depth
+
+MODEL = ContourModel.average(BODY, CAMERA)
+NAMES = MODEL.parts.segments
+FRAME = np.arange(1)
+STEP = 1e-5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
+    """Along the normals, to first order: of most samples, for limbs seen end on turn their contours too."""
+    rng = np.random.default_rng(seed)
+    posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
+    pose = BODY.pose(posture)
+    predicted = MODEL.evaluate(pose, FRAME)
+    ours = MODEL.normal_jacobian(predicted, predicted.normal, pose)[0]
+
+    def along(step: np.ndarray) -> np.ndarray:
+        moved = MODEL.evaluate(BODY.pose(posture.plus(step)), FRAME).pixel
+        return np.sum(predicted.normal * moved, axis=-1)[0]
+
+    steps = STEP * np.eye(HUMAN.dof_count)
+    theirs = np.stack([(along(step) - along(-step)) / (2 * STEP) for step in steps], axis=-1)
+    error = np.linalg.norm(ours - theirs, axis=-1) / np.linalg.norm(theirs, axis=-1)
+    assert np.median(error) < 0.02
+    assert np.mean(error < 0.1) > 0.75
+
+
+def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
+    """Thickness and place of each part, each by a millimeter."""
+    pose = BODY.pose(exercise(1))
+    before = MODEL.evaluate(pose, FRAME)
+    for column in range(SHAPE):
+        shape = np.zeros_like(MODEL.shape)
+        shape[:, column] = 1e-3
+        after = MODEL.with_shape(shape).evaluate(pose, FRAME)
+        moved = np.sum(before.normal * (after.pixel - before.pixel), axis=-1)
+        np.testing.assert_allclose(moved, before.shape_rate[..., column] * 1e-3, atol=0.01)
+
+
+def test_contours_lie_on_either_side_of_the_limb_and_point_outwards() -> None:
+    """Pairs of samples have opposite normals and lie as far apart as the part is wide."""
+    predicted = MODEL.evaluate(BODY.pose(exercise(1)), FRAME)
+    pairs = predicted.pixel[0].reshape(-1, len(SIDES), 2)
+    normals = predicted.normal[0].reshape(-1, len(SIDES), 2)
+    apart = pairs[:, 1] - pairs[:, 0]
+    np.testing.assert_allclose(np.sum(normals[:, 0] * normals[:, 1], axis=-1), -1.0, atol=0.02)
+    assert (np.sum(apart * normals[:, 1], axis=-1) > 0.0).all()
+    width = predicted.half_width[0].reshape(-1, len(SIDES)).sum(axis=-1)
+    np.testing.assert_allclose(np.linalg.norm(apart, axis=-1), width, rtol=0.08)
+
+
+def test_the_map_shows_the_nearest_part() -> None:
+    """A forearm held before the trunk occludes it, and pixels outside the body have no part."""
+    posture = exercise(1)
+    vector = posture.to_vector()
+    for name, value in (("shoulder.L.rotation_z", -1.4), ("elbow.L.flexion", 1.4)):
+        vector[:, HUMAN.dof_names.index(name)] = value
+    posture = posture.from_vector(HUMAN, vector)
+    pose = BODY.pose(posture)
+    parts = MODEL.part_outlines(pose, FRAME)
+    labels = part_map(parts, 0, (320, 240), 1.0)
+    for name in ("forearm.L", "shin.R", "head"):
+        middle = 0.5 * sum(CAMERA.project(end)[0][0] for end in BODY.segment_ends(pose, name))
+        column, row = middle.astype(int)
+        assert NAMES[labels[row, column]] == name
+        depth = outline_depth(middle[None, None], parts)[0, 0]
+        assert depth.argmin() == NAMES.index(name)
+    assert labels[5, 5] == -1
+    assert 0.02 < np.mean(labels >= 0) < 0.2

@@ -1,0 +1,177 @@
+"""What the body predicts of the markers' regions."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
+from keymark.core.body.human import HUMAN
+from keymark.core.body.posture import Posture
+from keymark.core.evidence import regions
+from keymark.core.evidence.regions import MOMENTS, MarkerPlacement, RegionModel
+
+STEP = 1e-5
+
+
+def standing(**angles: float) -> Posture:
+    """The rest posture at standing height with some degrees of freedom set."""
+    vector = np.zeros((1, HUMAN.dof_count))
+    vector[0, 2] = 0.95
+    for name, value in angles.items():
+        vector[0, HUMAN.dof_names.index(name.replace("__", "."))] = value
+    return Posture.from_vector(HUMAN, vector)
+
+
+def predict(posture: Posture, jacobian: bool = False):  # noqa: ANN201
+    """The prediction for a batch of postures."""
+    return MODEL.evaluate(BODY.pose(posture), np.arange(posture.batch[0]), jacobian)
+
+
+def test_a_stretched_forearm_lies_where_it_projects() -> None:
+    """Centroid in the middle of the sleeve, length and thickness of its second moments as projected."""
+    posture = standing()
+    seen = predict(posture)
+    elbow, wrist = (CAMERA.project(end)[0][0] for end in BODY.segment_ends(BODY.pose(posture), "forearm.L"))
+    sleeve = MODEL.placements[1]
+    first, last = (elbow + share * (wrist - elbow) for share in (sleeve.first, sleeve.last))
+    length = np.linalg.norm(last - first)
+    np.testing.assert_allclose(seen.centroid[0, 1], 0.5 * (first + last), atol=0.06 * length)
+    assert seen.second_moment[0, 1, 0, 0] == pytest.approx(length**2 / 12, rel=0.08)
+    assert seen.second_moment[0, 1, 1, 1] < 0.25 * seen.second_moment[0, 1, 0, 0]
+    assert seen.visible[0].min() > 0.95
+
+
+def test_moving_away_shrinks_a_region_with_the_square_of_distance() -> None:
+    """Twice as far, a quarter of the area."""
+    near, far = standing(), standing(pelvis__location_y=4.2)
+    ratio = predict(near).area[0] / predict(far).area[0]
+    np.testing.assert_allclose(ratio, 4.0, rtol=0.12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_jacobians_agree_with_central_differences_where_nothing_hides(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To first order: samples keep the viewing direction (and their visibility, here all of it)."""
+    monkeypatch.setattr(regions, "visible_share", lambda pixels, depth, parts, own: np.ones(depth.shape))
+    rng = np.random.default_rng(seed)
+    posture = standing().plus(0.15 * rng.normal(size=(1, HUMAN.dof_count)))
+    seen = predict(posture, jacobian=True)
+    steps = STEP * np.eye(HUMAN.dof_count)
+    sides = [[predict(posture.plus(sign * step)) for sign in (1.0, -1.0)] for step in steps]
+    centroid = np.stack([(a.centroid - b.centroid)[0] for a, b in sides], axis=-1) / (2 * STEP)
+    moment = np.stack([(a.second_moment - b.second_moment)[0] for a, b in sides], axis=-1) / (2 * STEP)
+    moment = np.stack([moment[:, a, b] for a, b in MOMENTS], axis=1)
+    assert seen.centroid_jacobian is not None and seen.moment_jacobian is not None
+    for marker in range(len(SEGMENTS)):
+        for ours, theirs, share in (
+            (seen.centroid_jacobian[0, marker], centroid[marker], 0.03),
+            (seen.moment_jacobian[0, marker], moment[marker], 0.20),
+        ):
+            assert np.linalg.norm(ours - theirs) < share * np.linalg.norm(theirs)
+
+
+def test_an_arm_before_the_trunk_hides_part_of_it_and_is_not_hidden_itself() -> None:
+    """The left forearm across the belly: the trunk loses area, the forearm hardly any."""
+    across = standing(**{"shoulder.L.rotation_y": 1.1, "shoulder.L.rotation_z": -0.9, "elbow.L.flexion": 1.2})
+    open_arm, crossed = predict(standing()), predict(across)
+    assert crossed.visible[0, 0] < open_arm.visible[0, 0] - 0.05
+    assert crossed.visible[0, 1] > 0.8
+
+
+def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
+    """What is wholly hidden still has moments, so that nothing downstream meets NaN."""
+    behind = standing(**{"shoulder.L.rotation_y": 1.3, "shoulder.L.rotation_z": 1.0, "elbow.L.flexion": -1.6})
+    seen = predict(behind, jacobian=True)
+    assert seen.visible[0, 1] < 0.1
+    assert np.isfinite(seen.centroid).all() and np.isfinite(seen.second_moment).all()
+    assert seen.centroid_jacobian is not None and np.isfinite(seen.centroid_jacobian).all()
+
+
+def test_every_second_moment_is_positive_definite_over_a_whole_exercise() -> None:
+    """Also where limbs point at the lens or are partly hidden."""
+    seen = predict(exercise(45))
+    assert np.linalg.eigvalsh(seen.second_moment).min() > 0.05
+    assert ((seen.visible >= 0.0) & (seen.visible <= 1.0 + 1e-12)).all()
+
+
+def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames are worked on in stretches, which nothing must show."""
+    posture = exercise(9)
+    whole = predict(posture, jacobian=True)
+    monkeypatch.setattr(regions, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
+    stretched = predict(posture, jacobian=True)
+    for field in fields(whole):
+        np.testing.assert_allclose(getattr(stretched, field.name), getattr(whole, field.name), atol=1e-8)
+
+
+def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
+    """A sock reaches less far up than a stocking."""
+    stocking = MarkerPlacement("shin.L", 0.05, 0.95)
+    sock = MarkerPlacement("shin.L", 0.5, 0.95)
+    pose = BODY.pose(standing())
+    frame = np.arange(1)
+    high, low = (
+        RegionModel(BODY, CAMERA, (placement,)).evaluate(pose, frame).centroid[0, 0, 1]
+        for placement in (stocking, sock)
+    )
+    assert low > high + 3.0
+
+
+def test_markers_are_predicted_in_the_order_given() -> None:
+    """Each marker's centroid lies nearest its own segment's middle among all segments'."""
+    posture = standing()
+    pose = BODY.pose(posture)
+    seen = predict(posture).centroid[0, 1:]
+    middles = np.array(
+        [
+            CAMERA.project(0.5 * sum(BODY.segment_ends(pose, name)))[0][0]  # type: ignore[arg-type]
+            for name in SEGMENTS[1:]
+        ]
+    )
+    nearest = np.linalg.norm(seen[:, None] - middles[None], axis=-1).argmin(axis=1)
+    np.testing.assert_array_equal(nearest, np.arange(len(middles)))
+
+
+def shifted(shift: float) -> RegionModel:
+    """The model before a camera whose picture ends elsewhere."""
+    return RegionModel(BODY, replace(CAMERA, shift_x=shift), MODEL.placements)
+
+
+def test_the_edge_of_the_picture_cuts_a_region() -> None:
+    """Half of a stretched forearm outside: half the area, and the centroid of the rest."""
+    posture = standing()
+    pose, frame = BODY.pose(posture), np.zeros(1, dtype=np.intp)
+    whole = predict(posture)
+    middle = whole.centroid[0, 1, 0]
+    model = shifted((middle - CAMERA.resolution[0]) / CAMERA.resolution[0])  # to the picture's right edge
+    cut, edge = model.evaluate(pose, frame), CAMERA.resolution[0]
+    assert cut.visible[0, 1] == pytest.approx(0.5 * whole.visible[0, 1], abs=0.08)
+    half = np.sqrt(12.0 * whole.second_moment[0, 1, 0, 0]) / 2.0
+    assert cut.centroid[0, 1, 0] == pytest.approx(edge - half / 2.0, abs=0.1 * half)
+    assert cut.second_moment[0, 1, 0, 0] == pytest.approx(0.25 * whole.second_moment[0, 1, 0, 0], rel=0.3)
+    np.testing.assert_allclose(cut.area[0, 3:], whole.area[0, 3:])  # the legs are inside
+
+
+def test_slopes_at_the_edge_are_those_of_what_is_left() -> None:
+    """A region that leaves the picture moves less than its limb, as central differences say."""
+    posture = standing(shoulder__L__rotation_y=0.2)
+    middle = predict(posture).centroid[0, 1, 0]
+    model = shifted((middle - CAMERA.resolution[0]) / CAMERA.resolution[0])
+    frame, column = np.zeros(1, dtype=np.intp), HUMAN.dof_names.index("pelvis.location_x")
+    step = 1e-4 * np.eye(HUMAN.dof_count)[column : column + 1]
+    sides = [model.evaluate(BODY.pose(posture.plus(sign * step)), frame).centroid for sign in (1.0, -1.0)]
+    slope = (sides[0] - sides[1])[0, :, 0] / 2e-4
+    seen = model.evaluate(BODY.pose(posture), frame, jacobian=True)
+    assert seen.centroid_jacobian is not None
+    ours = seen.centroid_jacobian[0, :, 0, column]
+    assert ours[1] == pytest.approx(slope[1], rel=0.05)
+    assert slope[1] < 0.7 * slope[3]  # of a shin, all of which is inside
+
+
+def test_what_has_left_the_picture_is_not_seen() -> None:
+    """No share of it, and finite moments."""
+    model = shifted(-0.9)
+    seen = model.evaluate(BODY.pose(standing()), np.zeros(1, dtype=np.intp), jacobian=True)
+    assert seen.visible.max() == 0.0
+    assert np.isfinite(seen.centroid).all() and np.isfinite(seen.moment_jacobian).all()

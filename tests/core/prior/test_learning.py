@@ -1,0 +1,150 @@
+"""Libraries learned from motions: which postures, where they stand, and what repeats itself."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from keymark.core.arrays import Array
+from keymark.core.body.actor import Actor
+from keymark.core.body.body_volume import standing_posture
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture, headings_rad, turned_and_shifted
+from keymark.core.body.posture_spline import linear_spline
+from keymark.core.body.skeleton import SIDES
+from keymark.core.errors import InputError
+from keymark.core.prior.learning import LibraryMetadata, learn_library
+from keymark.core.prior.library import read_library, write_library
+from keymark.core.prior.motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
+
+BODY = Body(Actor.from_stature(1.8))
+COLUMN = {name: place for place, name in enumerate(BODY.skeleton.dof_names)}
+ABOUT = LibraryMetadata("Anna's Stroll", "Anna", "CC0-1.0")
+FPS = 30.0
+PERIOD_S, STRIDE_M = 1.1, 1.3
+
+
+def stepping(frames: int, noise_rad: float = 0.0, arc_rad: float = 0.0) -> tuple[Posture, Array]:
+    """Someone who walks along -Y, or along an arc, with joints that shake."""
+    time_s = np.arange(frames) / FPS
+    phase = 2.0 * np.pi * time_s / PERIOD_S
+    base = standing_posture(BODY).to_vector()
+    vector = np.tile(base, (frames, 1))
+    for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
+        vector[:, COLUMN[f"hip.{side}.rotation_x"]] += -0.45 * sign * np.sin(phase)
+        vector[:, COLUMN[f"knee.{side}.flexion"]] += 0.45 - 0.4 * np.cos(phase + 0.5 * np.pi * sign)
+        vector[:, COLUMN[f"elbow.{side}.flexion"]] += 0.3 + 0.2 * sign * np.sin(phase)
+    vector += noise_rad * np.random.default_rng(3).standard_normal(vector.shape)
+    vector[:, :3] = base[:3] + [0.0, 0.0, -0.03]
+    posture = Posture.from_vector(BODY.skeleton, vector)
+    heading = arc_rad * time_s / PERIOD_S
+    step = STRIDE_M / PERIOD_S / FPS * np.stack([np.sin(heading), -np.cos(heading), 0.0 * heading], axis=1)
+    return turned_and_shifted(posture, heading, np.cumsum(step, axis=0) - step[0]), time_s
+
+
+def reaching(frames: int = 90) -> tuple[Posture, Array]:
+    """Someone who stands, raises an arm once, and keeps it there."""
+    time_s = np.arange(frames) / FPS
+    vector = np.tile(standing_posture(BODY).to_vector(), (frames, 1))
+    vector[:, COLUMN["shoulder.L.rotation_y"]] -= 1.8 / (1.0 + np.exp(-6.0 * (time_s - 1.0)))
+    return Posture.from_vector(BODY.skeleton, vector), time_s
+
+
+def test_a_walk_becomes_one_cycle_that_travels_straight_ahead() -> None:
+    """Its length, its stride along -Y, and feet on the floor, wherever and whither it was walked."""
+    posture, time_s = stepping(118)
+    elsewhere = turned_and_shifted(posture, 2.0, np.array([3.0, -1.0, 0.7]))
+    library = learn_library(BODY, elsewhere, time_s, ABOUT)
+    (motion,) = library.motions
+    assert motion.cyclic and motion.duration_s == pytest.approx(PERIOD_S, abs=0.01)
+    assert np.allclose(motion.travel, (0.0, -STRIDE_M, 0.0), atol=0.02)
+    assert 10 <= len(library.postures) <= 40 and len(motion.steps) == len(library.postures)
+    kept = Posture.stack([posture.posture for posture in library.postures])
+    assert np.abs(headings_rad(kept)).max() < 1e-3
+    assert abs(np.median(ankle_heights(BODY, kept).min(axis=1))) < 0.03
+    assert np.allclose(kept.translation[0, :2], 0.0)
+
+
+def test_place_and_direction_do_not_matter() -> None:
+    """The same motion elsewhere, in another direction and height gives the same library."""
+    posture, time_s = reaching()
+    one = learn_library(BODY, posture, time_s, ABOUT)
+    other = learn_library(BODY, turned_and_shifted(posture, -1.3, np.array([5.0, 2.0, -0.4])), time_s, ABOUT)
+    assert [step.time_s for step in one.motions[0].steps] == [step.time_s for step in other.motions[0].steps]
+    for mine, its in zip(one.postures, other.postures, strict=True):
+        assert np.abs(mine.posture.minus(its.posture)).max() < 1e-9
+
+
+def test_a_walk_along_an_arc_turns_in_every_cycle() -> None:
+    """The cycle, followed by itself after its travel, goes on where the motion went on."""
+    posture, time_s = stepping(150, arc_rad=0.5)
+    motion = learn_library(BODY, posture, time_s, ABOUT).motions[0]
+    assert motion.cyclic and motion.travel[2] == pytest.approx(0.5, abs=0.02)
+    library = learn_library(BODY, posture, time_s, ABOUT)
+    first = library.postures[0].posture
+    period = int(round(PERIOD_S * FPS))
+    again = turned_and_shifted(first, motion.travel[2], np.array([*motion.travel[:2], 0.0]))
+    # The same pair of frames in the motion, brought to where the first posture stands.
+    turn = headings_rad(first) - headings_rad(posture[0])
+    begun = turned_and_shifted(posture[[0, period]], turn, np.zeros(3))
+    there = begun.translation[1] - begun.translation[0]
+    assert np.allclose(again.translation - first.translation, there, atol=0.03)
+
+
+def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
+    """What shakes in one cycle and not in the next is no part of the motion."""
+    exact, time_s = stepping(140)
+    shaken, _ = stepping(140, noise_rad=0.08)
+    cycle = average_cycle(BODY, shaken, time_s, PERIOD_S)
+    lags = np.arange(0.0, PERIOD_S, 0.01)
+    errors = []
+    for seen in (cycle.posture, shaken[: len(cycle.time_s)]):
+        wanted = shape_vectors(BODY, seen)
+        truth = [shape_vectors(BODY, linear_spline(exact, time_s, lag + cycle.time_s)) for lag in lags]
+        errors.append(min(np.linalg.norm(wanted - there, axis=1).mean() for there in truth))
+    assert errors[0] < 0.7 * errors[1]
+
+
+def test_what_does_not_repeat_itself_stays_whole() -> None:
+    """First and last frame are in, times are the motion's, and postures crowd where much changes."""
+    posture, time_s = reaching()
+    library = learn_library(BODY, posture, time_s, ABOUT, count=12)
+    (motion,) = library.motions
+    assert not motion.cyclic and len(library.postures) == 12
+    times = [step.time_s for step in motion.steps]
+    assert times[0] == 0.0 and times[-1] == motion.duration_s == pytest.approx(time_s[-1], abs=1e-3)
+    assert sum(0.5 <= time <= 1.5 for time in times) > len(times) / 3
+    assert max(np.diff(times)) < 1.0
+
+
+def test_no_cycle_is_found_in_what_is_seen_once() -> None:
+    """A walk shorter than two strides, and standing still between two gestures."""
+    posture, time_s = stepping(45)
+    assert find_period_s(shape_vectors(BODY, posture), time_s) is None
+    still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (60, 1)))
+    assert find_period_s(shape_vectors(BODY, still), np.arange(60) / FPS) is None
+
+
+@pytest.mark.parametrize(
+    ("frames", "count", "sentence"),
+    [(5, 10, "5 frames"), (60, 1, "count of postures is 1"), (60, None, "still")],
+)
+def test_what_cannot_be_learned_from_is_refused(frames: int, count: int | None, sentence: str) -> None:
+    """In one sentence that says what is wrong."""
+    still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (frames, 1)))
+    with pytest.raises(InputError, match=sentence):
+        learn_library(BODY, still, np.arange(frames) / FPS, ABOUT, count)
+
+
+def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
+    """With a title as long as titles may be; identifier and names follow from it."""
+    posture, time_s = reaching()
+    identifier = "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
+    about = LibraryMetadata("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")
+    library = learn_library(BODY, posture, time_s, about)
+    write_library(tmp_path / "it.json", library)
+    read = read_library(tmp_path / "it.json")
+    assert read.identifier == library.identifier == identifier
+    assert read.motions == library.motions and read.license == "LicenseRef-Proprietary"
+    assert [posture.name for posture in read.postures] == [step.posture for step in read.motions[0].steps]
+    for written, its in zip(library.postures, read.postures, strict=True):
+        assert np.abs(written.posture.minus(its.posture)).max() < 1e-8
