@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ROOMS = ("numerics", "body", "observation", "prior", "matching", "estimate", "posing", "finish", "retarget")
-FOLDERS = ("core", "operators", "presets", "tests", "tools", "benchmarks", "detectors", "docs")
+ROOMS = ("numerics", "body", "evidence", "prior", "estimate", "posing", "finish", "retarget")
+FOLDERS = ("core", "operators", "presets", "tests", "tools", "benchmarks", "docs")
 FILES = ("__init__.py", "__main__.py", "blender_manifest.toml", "pyproject.toml", "Makefile")
 OPERATORS = {
     ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,

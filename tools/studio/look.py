@@ -23,6 +23,12 @@ MARKERS = tuple(CLOTHES)[:5]
 CLOTH_M = {"trunk": 0.005, "forearm": 0.003, "shin": 0.006}
 
 
+def wearing(garments: str, **others: str) -> dict[str, Color]:
+    """Colors by name, from six hexadecimal digits each: those of the markers in their order, then others."""
+    named = {**dict(zip(MARKERS, garments.split(), strict=True)), **others}
+    return {name: (int(code[:2], 16), int(code[2:4], 16), int(code[4:], 16)) for name, code in named.items()}
+
+
 @dataclass(frozen=True)
 class Look:
     """A performer's appearance."""

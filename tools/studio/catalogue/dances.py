@@ -1,7 +1,7 @@
 """Dances and turns."""
 
 from ..described import Described, actor, performed
-from ..look import Look
+from ..look import Look, wearing
 from ..motions import back_spin, dance, spin
 from ..surroundings import Lamp, Room, Thing
 from ..viewpoint import look_from
@@ -12,15 +12,7 @@ SPIN = Described(
     perform=performed(spin.plan, actor(1.74, thigh=1.02, upper_arm=1.05), 96, -20.0, tempo=0.92),
     camera=look_from(-24.0, 3.4, 2.2, (0.0, 0.0, 0.93), 35.0, SMALL),
     look=Look(
-        colors={
-            "trunk": (190, 178, 40),
-            "forearm.L": (190, 50, 130),
-            "forearm.R": (40, 110, 200),
-            "shin.L": (200, 70, 30),
-            "shin.R": (30, 150, 110),
-            "cloth": (120, 124, 132),
-            "hair": (24, 20, 20),
-        },
+        colors=wearing("beb228 be3282 286ec8 c8461e 1e966e", cloth="787c84", hair="181414"),
         girths={"trunk": 0.92, "upper_arm": 0.9, "thigh": 0.98},
         cloth_m={"trunk": 0.008, "forearm": 0.016, "shin": 0.008},
         folds=0.8,
@@ -50,16 +42,7 @@ DANCE = Described(
     perform=performed(dance.plan, actor(1.67, shin=1.03, trunk=0.97, hip_width=1.06), 120, 10.0),
     camera=look_from(14.0, 4.4, 1.5, (0.0, 0.0, 0.95), 47.0, SMALL),
     look=Look(
-        colors={
-            "trunk": (40, 90, 190),
-            "forearm.L": (206, 44, 44),
-            "forearm.R": (60, 160, 60),
-            "shin.L": (216, 110, 34),
-            "shin.R": (40, 150, 170),
-            "cloth": (70, 60, 66),
-            "skin": (92, 62, 46),
-            "hair": (18, 16, 16),
-        },
+        colors=wearing("285abe ce2c2c 3ca03c d86e22 2896aa", cloth="463c42", skin="5c3e2e", hair="121010"),
         girths={"thigh": 1.08, "trunk": 0.96, "forearm": 0.94},
     ),
     room=Room(
@@ -82,16 +65,7 @@ BACK_SPIN = Described(
     perform=performed(back_spin.plan, actor(1.66, trunk=0.99, shin=1.02, shoulder_width=1.04), 88, 8.0),
     camera=look_from(8.0, 4.2, 1.6, (0.0, 0.0, 0.94), 44.0, SMALL, tilt_deg=-1.0),
     look=Look(
-        colors={
-            "trunk": (170, 70, 60),
-            "forearm.L": (70, 170, 90),
-            "forearm.R": (70, 100, 210),
-            "shin.L": (220, 170, 40),
-            "shin.R": (190, 60, 170),
-            "cloth": (44, 48, 60),
-            "skin": (84, 58, 44),
-            "hair": (200, 160, 80),
-        },
+        colors=wearing("aa463c 46aa5a 4664d2 dcaa28 be3caa", cloth="2c303c", skin="543a2c", hair="c8a050"),
         girths={"trunk": 0.95, "thigh": 1.06},
         cloth_m={"trunk": 0.008, "forearm": 0.010, "shin": 0.012},
         folds=0.6,

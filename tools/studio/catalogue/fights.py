@@ -2,7 +2,7 @@
 
 from ..build import Build
 from ..described import Described, actor, performed
-from ..look import Look
+from ..look import Look, wearing
 from ..motions import box, kick, martial
 from ..surroundings import Lamp, Room
 from ..viewpoint import look_from
@@ -15,10 +15,7 @@ KICK = Described(
     perform=performed(kick.plan, actor(1.70, upper_arm=0.95, shin=0.97, hip_width=1.1), 100, 12.0),
     camera=look_from(58.0, 4.8, 1.1, (0.05, -0.25, 0.98), 55.0, SMALL, tilt_deg=2.0),
     look=Look(
-        colors={"trunk": (28, 130, 120), "forearm.L": (220, 170, 30), "forearm.R": (200, 60, 160),
-                 "shin.L": (60, 90, 210), "shin.R": (200, 60, 40), "cloth": (196, 192, 184), "skin": (226,
-                                                                                                      180,
-    150)},
+        colors=wearing("1c8278 dcaa1e c83ca0 3c5ad2 c83c28", cloth="c4c0b8", skin="e2b496"),
         girths={"thigh": 1.12, "trunk": 1.08, "upper_arm": 1.1, "forearm": 1.08},
         cloth_m={"trunk": 0.012, "forearm": 0.008, "shin": 0.010}, folds=0.7,
     ),
@@ -31,9 +28,7 @@ BOX = Described(
     perform=performed(box.plan, actor(1.80, forearm=1.04, shoulder_width=1.08), 108, 4.0),
     camera=look_from(24.0, 4.2, 1.45, (0.0, -0.05, 0.98), 50.0, SMALL),
     look=Look(
-        colors={"trunk": (150, 34, 34), "forearm.L": (40, 120, 200), "forearm.R": (230, 200, 50),
-                 "shin.L": (60, 160, 90),
-                 "shin.R": (150, 60, 180), "skin": (170, 120, 92)},
+        colors=wearing("962222 2878c8 e6c832 3ca05a 963cb4", skin="aa785c"),
         girths={"upper_arm": 1.15, "forearm": 1.1, "trunk": 1.04},
     ),
     room=Room(
@@ -49,16 +44,7 @@ MARTIAL = Described(
     perform=performed(martial.plan, actor(1.76, shin=0.98, hip_width=1.04), 88, -4.0, build=Build()),
     camera=look_from(-36.0, 4.4, 1.3, (0.0, -0.12, 0.97), 48.0, SMALL, tilt_deg=1.0),
     look=Look(
-        colors={
-            "trunk": (220, 140, 40),
-            "forearm.L": (70, 70, 200),
-            "forearm.R": (196, 48, 60),
-            "shin.L": (60, 170, 150),
-            "shin.R": (170, 60, 150),
-            "cloth": (66, 74, 60),
-            "skin": (160, 112, 84),
-            "hair": (26, 22, 20),
-        },
+        colors=wearing("dc8c28 4646c8 c4303c 3caa96 aa3c96", cloth="424a3c", skin="a07054", hair="1a1614"),
         girths={"thigh": 1.08, "upper_arm": 1.1, "forearm": 1.06},
         folds=0.6,
     ),

@@ -1,7 +1,7 @@
 """Throws."""
 
 from ..described import Described, actor, performed
-from ..look import Look
+from ..look import Look, wearing
 from ..motions import throw, throw60
 from ..viewpoint import look_from
 from .sizes import MIDDLE, WIDE
@@ -11,13 +11,7 @@ THROW = Described(
     perform=performed(throw.plan, actor(1.86, forearm=1.03, upper_arm=1.02), 66, -25.0, tempo=0.9),
     camera=look_from(20.0, 4.8, 1.6, (0.0, -0.05, 0.98), 42.0, WIDE),
     look=Look(
-        colors={
-            "trunk": (236, 196, 40),
-            "forearm.L": (160, 50, 170),
-            "forearm.R": (220, 70, 36),
-            "shin.L": (40, 110, 200),
-            "shin.R": (50, 150, 70),
-        },
+        colors=wearing("ecc428 a032aa dc4624 286ec8 329646"),
         girths={"upper_arm": 1.08, "thigh": 1.05},
         folds=0.5,
     ),
@@ -31,16 +25,7 @@ THROW60 = Described(
     perform=performed(throw60.plan, actor(1.84, forearm=1.02, thigh=0.98), 112, 14.0, tempo=0.78, fps=60),
     camera=look_from(-22.0, 4.6, 1.45, (0.0, -0.05, 0.97), 42.0, MIDDLE),
     look=Look(
-        colors={
-            "trunk": (60, 150, 130),
-            "forearm.L": (230, 180, 50),
-            "forearm.R": (190, 60, 150),
-            "shin.L": (200, 70, 40),
-            "shin.R": (70, 90, 200),
-            "cloth": (170, 164, 150),
-            "skin": (200, 152, 122),
-            "hair": (70, 44, 24),
-        },
+        colors=wearing("3c9682 e6b432 be3c96 c84628 465ac8", cloth="aaa496", skin="c8987a", hair="462c18"),
         girths={"upper_arm": 1.06, "thigh": 1.04},
     ),
     seed=119,

@@ -1,7 +1,7 @@
 """Walks."""
 
 from ..described import Described, actor, performed
-from ..look import Look
+from ..look import Look, wearing
 from ..motions import approach, duck, steps, stroll
 from ..surroundings import Room, Thing
 from ..viewpoint import look_at, look_from
@@ -12,14 +12,7 @@ STROLL = Described(
     perform=performed(stroll.plan, actor(1.78, thigh=1.04, forearm=0.96), 90),
     camera=look_from(6.0, 4.1, 1.55, (0.0, 0.0, 0.98), 32.0, SMALL),
     look=Look(
-        colors={
-            "trunk": (196, 54, 44),
-            "forearm.L": (36, 140, 130),
-            "forearm.R": (150, 70, 190),
-            "shin.L": (70, 100, 210),
-            "shin.R": (210, 180, 40),
-            "cloth": (92, 80, 66),
-        },
+        colors=wearing("c4362c 248c82 9646be 4664d2 d2b428", cloth="5c5042"),
         cloth_m={"trunk": 0.010, "forearm": 0.006, "shin": 0.016},
         folds=0.7,
     ),
@@ -40,16 +33,7 @@ APPROACH = Described(
     perform=performed(approach.plan, actor(1.73, thigh=1.01, upper_arm=1.03, trunk=0.98), 66, 4.0),
     camera=look_at((0.35, -6.6, 1.25), (-0.02, -1.2, 0.98), 38.0, SMALL),
     look=Look(
-        colors={
-            "trunk": (190, 60, 120),
-            "forearm.L": (50, 150, 180),
-            "forearm.R": (226, 150, 40),
-            "shin.L": (110, 80, 200),
-            "shin.R": (70, 160, 60),
-            "cloth": (60, 56, 60),
-            "skin": (226, 180, 150),
-            "hair": (90, 60, 30),
-        },
+        colors=wearing("be3c78 3296b4 e29628 6e50c8 46a03c", cloth="3c383c", skin="e2b496", hair="5a3c1e"),
         girths={"thigh": 1.04, "shin": 1.05},
     ),
     room=Room(wall=(0.44, 0.50, 0.44)),
@@ -63,16 +47,7 @@ STEPS = Described(
     perform=performed(steps.plan, actor(1.68, shin=0.98, trunk=1.03), 96),
     camera=look_from(86.0, 4.9, 1.25, (0.0, -0.08, 1.12), 44.0, SMALL),
     look=Look(
-        colors={
-            "trunk": (60, 110, 200),
-            "forearm.L": (220, 90, 40),
-            "forearm.R": (80, 160, 70),
-            "shin.L": (200, 50, 130),
-            "shin.R": (220, 190, 50),
-            "cloth": (70, 60, 56),
-            "skin": (110, 76, 58),
-            "hair": (20, 16, 16),
-        },
+        colors=wearing("3c6ec8 dc5a28 50a046 c83282 dcbe32", cloth="463c38", skin="6e4c3a", hair="141010"),
         girths={"trunk": 1.08, "thigh": 1.06},
         folds=0.7,
     ),
@@ -93,16 +68,7 @@ DUCK = Described(
     perform=performed(duck.plan, actor(1.79, forearm=0.97, hip_width=1.05), 88),
     camera=look_from(22.0, 4.4, 1.35, (0.0, -0.05, 0.92), 38.0, SMALL, tilt_deg=1.5),
     look=Look(
-        colors={
-            "trunk": (150, 160, 50),
-            "forearm.L": (60, 80, 210),
-            "forearm.R": (210, 60, 50),
-            "shin.L": (170, 70, 180),
-            "shin.R": (40, 160, 150),
-            "cloth": (96, 70, 56),
-            "skin": (190, 138, 108),
-            "hair": (60, 40, 26),
-        },
+        colors=wearing("96a032 3c50d2 d23c32 aa46b4 28a096", cloth="604638", skin="be8a6c", hair="3c281a"),
         cloth_m={"trunk": 0.011, "forearm": 0.008, "shin": 0.010},
         folds=0.7,
     ),
