@@ -18,10 +18,10 @@ from ...core.finish.rig import channel_count
 from .actions import new_channelbag
 from .armature import BoneModel, bone_models, rest_matrices, usual_mode
 from .fcurves import channels_at_rest
-from .finish_motion import rig_at_rest
 from .keys import set_posed_keys
 from .object_space import AT_ORIGIN
-from .rotation_modes import bone_path, posture_from_frames, rotation_path, rotation_values
+from .rig import nearest_postures, rig_at_rest
+from .rotation_modes import bone_path, rotation_path, rotation_values
 
 Values = dict[str, Array]
 """Channel values by bone: the rotation's, for the root then the location's."""
@@ -170,10 +170,7 @@ def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
     axes = {model.name: model.axes for model in models}
     rig = rig_at_rest(body, axes, _rest(body), modes, AT_ORIGIN)
     shown = rig.pose([values[bone.name][None] for bone in rig.bones])
-    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
-    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
-    hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
-    return posture_from_frames(body.skeleton, models, turns, hips)[0]
+    return nearest_postures(models, rig, shown, body)[0]
 
 
 def _with_joints(body: Body, stored: Posture, shown: Posture, bones: list[str]) -> Posture:

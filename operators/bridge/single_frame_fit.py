@@ -36,9 +36,9 @@ from .camera_placement import read_camera
 from .footage import Footage
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 from .take_from_scene import performers_keypoints
-from .track_keypoints import SceneEvidence
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,8 +20,8 @@ from .actor_lengths import read_body
 from .camera_placement import read_camera, read_lens
 from .footage import Footage
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
-from .track_keypoints import SceneEvidence
 
 
 def keypoints_without_keyframes(

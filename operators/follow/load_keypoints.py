@@ -75,8 +75,8 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
     Raises:
         InputError: The clip or the file is missing or unusable, or they do not belong together.
     """
+    from ..bridge.scene_evidence import read_keypoint_file
     from ..bridge.take_from_scene import clip_frames
-    from ..bridge.track_keypoints import read_keypoint_file
 
     source = footage_of(scene, take)
     frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))

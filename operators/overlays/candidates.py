@@ -16,10 +16,21 @@ from ..shell.keyed_frames import match_at, offered_at, state_of
 from ..shell.results import LruCache
 from ..shell.takes import find_take, footage_of
 from . import drawing
-from .drawing import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Color, Style, body_scale
-from .mask import Item, Label, Stroke, paint
-from .motion import limb_lines
-from .registry import world_view
+from .drawing import (
+    CANDIDATE_COLORS,
+    CORE,
+    CORE_SHARE,
+    GHOST,
+    LIMB,
+    Color,
+    Item,
+    Label,
+    Stroke,
+    Style,
+    body_scale,
+    paint,
+)
+from .motion import limb_lines, world_view
 
 TALL_M = 1.7
 """Height of a figure by which lines get thinner where it is small [m]."""

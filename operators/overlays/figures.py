@@ -94,3 +94,10 @@ def triangles(polygons: ArrayLike) -> Array:
     first = np.broadcast_to(corners[:, :1], (len(corners), count - 2, dimensions))
     fans = np.stack([first, corners[:, 1:-1], corners[:, 2:]], axis=-2).reshape(-1, 3, dimensions)
     return fans[np.isfinite(fans).all(axis=(-2, -1))]
+
+
+def squares(centers: Array, size: float) -> Array:
+    """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
+    half = 0.8 * size
+    corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
+    return np.asarray(centers[:, None] + corners)

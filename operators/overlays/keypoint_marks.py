@@ -13,10 +13,8 @@ import numpy as np
 from ...core.arrays import Array, BoolArray
 from ...core.footage.keypoints.keypoints import mirrored_point
 from ..follow.frame_keypoints import FrameKeypoints
-from .drawing import SOURCES, THROWN_OUT, Style
-from .figures import circles, segments
-from .mask import Item, Stroke
-from .timeline import squares
+from .drawing import SOURCES, THROWN_OUT, Item, Stroke, Style
+from .figures import circles, segments, squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints

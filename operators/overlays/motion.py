@@ -1,16 +1,17 @@
 """The reconstructed body as lines between its 13 points, with each point's uncertainty."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
 from ...core.arrays import Array, BoolArray, IndexArray
+from ..bridge.camera_placement import read_lens
 from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
-from ..shell.takes import find_take
+from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import (
     CORE,
@@ -20,14 +21,17 @@ from .drawing import (
     PATH_POINTS,
     SIDES,
     UNCERTAIN_M,
+    Fill,
+    Item,
+    Stroke,
     Style,
     body_scale,
+    paint,
     side_color,
 )
 from .figures import circles, segments
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
-from .mask import Fill, Item, Stroke, paint
 from .outlines import (
     MarkerColor,
     hidden_markers,
@@ -159,18 +163,85 @@ NEAREST = 0.75
 """Largest distance of the scene's frame from the clip's frame that it shows [frames]."""
 
 
-class MotionView(Protocol):
-    """A region of an editor as a view of the motion."""
+@dataclass(frozen=True, eq=False)
+class WorldView:
+    """A region of a 3D viewport as a view of the motion."""
 
-    @property
-    def footage(self) -> FootageView | None:
-        """The footage's view, if the region shows the footage."""
+    footage: FootageView | None
+    matrix: Array
+    """(4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division."""
+    right: Array
+    """(3,) the viewer's right in the world."""
+    size: Array
+    """(2,) of the region [px]."""
 
     def point_positions(self, review: "Review", indices: IndexArray) -> Array:
         """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
+        return self.project(review.points[indices])
 
     def pixels_per_meter(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a meter at each point."""
+        """Size (13,) of a meter across the view at each point."""
+        points = review.points[index]
+        depth = self._before(points)
+        return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)
+
+    def project(self, points: Array) -> Array:
+        """Region pixels (..., 2) of points (..., 3) in the world."""
+        flat = points @ self.matrix[:2, :3].T + self.matrix[:2, 3]
+        return np.asarray(0.5 * self.size * (1.0 + flat / self._before(points)[..., None]))
+
+    def _before(self, points: Array) -> Array:
+        """Homogeneous coordinate w (...) of points, which grows with the distance; NaN behind the viewer."""
+        divisor = points @ self.matrix[3, :3] + self.matrix[3, 3]
+        return np.where(divisor > 1e-6, divisor, np.nan)
+
+
+def world_view(
+    region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
+) -> WorldView:
+    """A region of a 3D viewport as a view of the motion."""
+    right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
+    return WorldView(
+        footage,
+        np.array(view.perspective_matrix, dtype=np.float64),
+        right / np.linalg.norm(right),
+        np.array([region.width, region.height], dtype=np.float64),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ClipView:
+    """A region of the Movie Clip editor as a view of the motion."""
+
+    footage: FootageView
+    to_camera: Array
+    """(4, 4) from the world to the footage's camera."""
+    focal_px: float
+    """Focal length of that camera [px of the footage]."""
+
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
+        return self.footage.to_region(review.image_points[indices])
+
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
+        depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
+        magnified = abs(self.footage.extent[0]) / self.footage.size[0]
+        return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))
+
+
+def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
+    """A region of a Movie Clip editor as a view of a take's motion.
+
+    Raises:
+        InputError: The take's camera is missing, or of an unsupported type.
+    """
+    source = footage_of(scene, take)
+    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
+    return ClipView(footage, to_camera, read_lens(source).focal_px)
+
+
+MotionView = WorldView | ClipView
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,6 +350,26 @@ def _rows(
     return tuple(rows)
 
 
+def draw_viewport(context: bpy.types.Context) -> None:
+    """Draw the motion into a 3D viewport."""
+    what = shown(context.scene)
+    if what is None or not context.space_data.overlay.show_overlays:
+        return
+    footage = footage_view(context.scene, what.take, context.area, context.region)
+    view = world_view(context.region, context.region_data, footage)
+    paint(picture(context, what, view, context.scene.keymark.overlays))
+
+
+def draw_clip_editor(context: bpy.types.Context) -> None:
+    """Draw the motion into a Movie Clip editor."""
+    scene, what = context.scene, shown(context.scene)
+    if what is None or context.space_data.view != "CLIP" or what.take.camera is None:
+        return
+    footage = footage_view(scene, what.take, context.area, context.region)
+    if footage is not None:
+        paint(picture(context, what, clip_view(scene, what.take, footage), scene.keymark.overlays))
+
+
 # --- Overlay of keypoints where there is no motion yet
 
 
@@ -286,8 +377,8 @@ TALL_M = 1.7
 """Height of a figure by which marks get smaller where it is small [m]."""
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw into the region that Blender is drawing."""
+def draw_keypoints(context: bpy.types.Context) -> None:
+    """Draw the keypoints of the scene's frame."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
     hidden = context.space_data.type == "VIEW_3D" and not context.space_data.overlay.show_overlays

@@ -13,9 +13,8 @@ from ..shell.keyed_frames import doubtful_matches, have_frames, matched_frames, 
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
-from .drawing import Color, faded
-from .figures import diamonds, segments
-from .mask import Fill, Item, Label, Stroke, paint
+from .drawing import Color, Fill, Item, Label, Stroke, faded, paint
+from .figures import diamonds, segments, squares
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
@@ -107,13 +106,6 @@ def confidence_color(confidence: Array) -> Array:
     share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
     stops = np.stack([UNSURE, HALFWAY, SURE])
     return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
-
-
-def squares(centers: Array, size: float) -> Array:
-    """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
-    half = 0.8 * size
-    corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
-    return np.asarray(centers[:, None] + corners)
 
 
 def pointers(x: Array, tip: float, size: float) -> Array:

@@ -13,8 +13,7 @@ from ....core.progress import run, within
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
 from ..actor_lengths import read_body
-from ..final_motion import motion_frames, read_values, shown_postures
-from ..finish_motion import read_rig
+from ..rig import motion_frames, read_rig, read_values, shown_postures
 
 DRAWN_FRAMES = 25
 """Frames of the motion that the picture is drawn from."""

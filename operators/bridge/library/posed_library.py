@@ -19,10 +19,9 @@ from ....core.prior.texts import identifier_from, unique_name
 from ....core.prior.transfer import transferred
 from ....core.progress import run
 from ..actor_lengths import read_body
-from ..final_motion import motion_frames, read_values, shown_postures
-from ..finish_motion import read_rig
 from ..keyframes import keyed_frames, read_keyframes
 from ..posture_curves import read_posture_curves
+from ..rig import motion_frames, read_rig, read_values, shown_postures
 from .pose_assets import is_posture, library_from_assets
 
 DECIMALS_S = 4

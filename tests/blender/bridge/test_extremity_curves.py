@@ -18,8 +18,7 @@ from keymark.operators.bridge.extremity_curves import (
     turned_extremities,
 )
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.bridge.final_motion import write_final
-from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion
+from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion, write_final
 from keymark.operators.bridge.keyframes import store_pose
 from mathutils import Euler, Matrix, Vector
 

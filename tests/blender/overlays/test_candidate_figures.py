@@ -11,8 +11,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
 from keymark.operators.overlays import candidates
-from keymark.operators.overlays.drawing import candidate_icon
-from keymark.operators.overlays.mask import Label, Stroke
+from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
 from keymark.operators.shell.takes import active_take, footage_of
 

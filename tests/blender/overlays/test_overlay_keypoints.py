@@ -11,16 +11,15 @@ from keymark.core.review.review import Review
 from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion
 from keymark.operators.overlays import motion as keypoint_overlay
-from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Style
+from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Label, Stroke, Style
 from keymark.operators.overlays.keypoint_marks import (
     all_sources,
     compared_marks,
     not_yet_compared,
     seen_marks,
 )
-from keymark.operators.overlays.mask import Label, Stroke
+from keymark.operators.overlays.motion import ClipView
 from keymark.operators.overlays.outlines import predicted_contours
-from keymark.operators.overlays.registry import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 
