@@ -6,8 +6,7 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
-SLOT = "Actor"
-"""Name of the slot of an Action that is made for no armature in particular."""
+SLOT = "Actor"  # name of the slot of an Action that is made for no armature in particular
 
 
 def new_channelbag(action: bpy.types.Action) -> bpy.types.ActionChannelbag:

@@ -18,14 +18,11 @@ from .object_space import object_space
 
 LARGEST_MISFIT = 0.01
 """Share of stature by which bones may lie off the skeleton before the armature counts as another one."""
-ANY_STATURE_M = 1.7
-"""Stature of the actor from which bone axes are taken; they do not depend on it."""
+ANY_STATURE_M = 1.7  # stature of the actor from which bone axes are taken; they do not depend on it
 
 
-SAME_DIRECTION = 1e-3
-"""Length of the difference of two unit vectors that still point the same way."""
-LEAST_ROLL_RAD = 1e-4
-"""A smaller roll is rounding."""
+SAME_DIRECTION = 1e-3  # length of the difference of two unit vectors that still point the same way
+LEAST_ROLL_RAD = 1e-4  # a smaller roll is rounding
 
 
 def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
@@ -123,13 +120,6 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
 
     Every bone keeps its direction at rest, whatever the rest pose is, and the hips keep their location, so
     that keyed poses stay where they were posed.
-
-    Args:
-        armature_object: An armature with the skeleton's bones, of even scale.
-        body: Skeleton and sizes in the world.
-
-    Raises:
-        InputError: A bone is missing, the object is scaled unevenly, or the armature is not the file's own.
     """
     axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
     models = bone_models(body)

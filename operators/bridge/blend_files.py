@@ -47,12 +47,7 @@ BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
 
 
 def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None:
-    """Refuse a file that is no .blend, or too large for what it should hold.
-
-    Args:
-        path: The file.
-        what: What it holds, with its article, for the sentence.
-        largest_bytes: A larger one is refused.
+    """Refuse a file that is no .blend, or too large for `what` it should hold.
 
     Raises:
         InputError: It is missing, no regular file, no .blend, or too large.
@@ -83,14 +78,7 @@ def write_blend(
     named: Path | None = None,
     **options: object,
 ) -> None:
-    """Write datablocks and all that they use into a compressed .blend.
-
-    Args:
-        path: The file.
-        blocks: The datablocks.
-        data: Where they are; by default in the open file.
-        named: The file's name in sentences, where it will have another.
-        options: More for `bpy.data.libraries.write`.
+    """Write datablocks and all that they use into a compressed .blend; sentences call it `named`.
 
     Raises:
         ConversionError: Blender could not write the file, or not all of it.

@@ -16,28 +16,17 @@ SIDES_OF_RING = 20
 RINGS_OF_CAP = 4
 SKIN_SRGB = (178, 164, 150)
 SKIN_NAME = "Body"
-LINEAR_SRGB = 0.04045
-"""Below this share of full scale sRGB is linear (IEC 61966-2-1)."""
+LINEAR_SRGB = 0.04045  # below this share of full scale sRGB is linear (IEC 61966-2-1)
 
 
 def build_body_mesh(
     armature_object: bpy.types.Object, body: Body, markers: Sequence[MarkerStyle]
 ) -> bpy.types.Object:
-    """Add a mesh that the armature moves, each vertex with one bone.
+    """Add a mesh that the armature moves, each vertex with one bone; returns its object.
 
     The shaft of a marker's segment has the marker's color, without shading from lights or view transform
-    beyond what the renderer adds; caps and all other segments are a plain skin.
-
-    Args:
-        armature_object: The actor, built for `body`.
-        body: Skeleton and sizes.
-        markers: The performer's markers; `trunk` covers pelvis and chest.
-
-    Returns:
-        The mesh object, parented to the armature with an Armature modifier.
-
-    Raises:
-        InputError: The armature lacks bones.
+    beyond what the renderer adds; caps and all other segments are a plain skin. `trunk` covers pelvis and
+    chest.
     """
     materials = [_material(SKIN_NAME, SKIN_SRGB)]
     color_of: dict[str, int] = {}

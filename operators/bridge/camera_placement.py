@@ -15,20 +15,11 @@ from .footage_camera import may_move
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
-STILL = 1e-6
-"""Largest change of the camera's matrix [m or 1] that still counts as rounding."""
+STILL = 1e-6  # largest change of the camera's matrix [m or 1] that still counts as rounding
 
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
-    """The camera that took the footage, with its lens and poses.
-
-    Args:
-        footage: A clip, which gives size and lens distortion, and its perspective camera.
-        frames: (F,) scene frames of the footage, at which a moving camera is read.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """The camera that took the footage, with its lens, and its poses at scene frames (F,) if it moves."""
     return replace(read_lens(footage), matrix_world=_poses(footage.scene, footage.camera, frames))
 
 
@@ -137,20 +128,12 @@ def write_placement(camera_object: bpy.types.Object, placement: CameraPlacement)
 
 
 def still_camera(footage: Footage) -> Camera:
-    """Lens and pose of the footage's camera in the scene's current frame.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """Lens and pose of the footage's camera in the scene's current frame."""
     return replace(read_lens(footage), matrix_world=_pose(footage.camera))
 
 
 def write_found_camera(footage: Footage, camera: Camera) -> None:
-    """Give the footage's camera another height, tilt, roll and focal length; nothing else of it changes.
-
-    Raises:
-        InputError: There is no camera or clip.
-    """
+    """Give the footage's camera another height, tilt, roll and focal length; nothing else of it changes."""
     data = footage.camera.data
     # Where Blender measures the sensor along the other side, the same factor applies.
     data.lens *= camera.lens_mm / read_lens(footage).lens_mm

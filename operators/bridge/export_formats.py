@@ -25,14 +25,12 @@ class ExportFormat:
 
     name: str
     suffix: str
-    description: str
-    """Tooltip: what the format is for."""
+    description: str  # tooltip: what the format is for
     write: Callable[[bpy.types.Object, Path], None]
     """Write the motion of an armature over its scene's frames, with the other selected objects."""
     operator_type: str = ""
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
-    addon: str = ""
-    """Name of the add-on, as in the Preferences."""
+    addon: str = ""  # name of the add-on, as in the Preferences
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
@@ -154,16 +152,10 @@ def export_motion(
     path: Path,
     along: Sequence[bpy.types.Object] = (),
 ) -> None:
-    """Write an actor's or a character's motion; scene, selection and frame are as before afterwards.
+    """Write an actor's or a character's motion over `frames`, first to last, into a whole file or none.
 
-    Args:
-        scene: The scene that holds the actor.
-        armature_object: The actor.
-        action: The motion.
-        frames: First and last scene frame.
-        export_format: The format to write.
-        path: The file; it appears complete or not at all.
-        along: Other objects that are written too, where the format has any; nothing else is.
+    The objects `along` are written too, where the format has any; nothing else is. Scene, selection and frame
+    are as before afterwards.
 
     Raises:
         InputError: The actor is hidden with its collection.

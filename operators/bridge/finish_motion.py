@@ -38,8 +38,7 @@ CHANGED_BY_FEET = ("pelvis", "thigh", "shin")
 PLANTING = "Planting the feet"
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
-NOTICEABLE_M = 0.005
-"""Distance between a pose and its nearest posture above which a note is made [m]."""
+NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,7 @@ class FinishOptions:
 
     tolerance_m: float | None
     """Largest distance of the body from the motion [m]; None for a key on every frame."""
-    whole_pose: bool
-    """Whether all bones are keyed on the same frames."""
+    whole_pose: bool  # whether all bones are keyed on the same frames
     stray_m: float | None
     """Distance that a resting foot may stray and still be held [m]; None to leave feet alone."""
 
@@ -60,14 +58,11 @@ class Finished:
 
     body: Body
     rig: Rig
-    frames: Array
-    """(F,) scene frames."""
+    frames: Array  # (F,) scene frames
     motion: Sequence[Array] | Sequence[Spline]
     """For each bone of the rig its values on every frame, or few keys."""
-    furthest_m: float
-    """The largest distance from the motion that reducing the keys makes [m]."""
-    contacts: tuple[Contact, ...]
-    """The planted feet."""
+    furthest_m: float  # the largest distance from the motion that reducing the keys makes [m]
+    contacts: tuple[Contact, ...]  # the planted feet
     notes: tuple[str, ...]
 
     @property
@@ -79,13 +74,7 @@ class Finished:
     def write(
         self, armature_object: bpy.types.Object, motion_action: bpy.types.Action, action: bpy.types.Action
     ) -> int:
-        """Write the motion into an Action; returns how many keys it has now.
-
-        Args:
-            armature_object: The actor.
-            motion_action: The reconstructed motion.
-            action: The final Action.
-        """
+        """Write the motion into a final Action; returns how many keys it has now."""
         return write_final(
             armature_object, motion_action, action, self.body, self.rig, self.frames, self.motion
         )
@@ -98,17 +87,9 @@ def finish_motion(
     options: FinishOptions,
     frame_s: float,
 ) -> Job[Finished]:
-    """Finish the motion that an Action holds, with the animator's changes.
+    """Finish the motion that an Action holds, with the animator's changes; nothing in Blender is changed.
 
-    Args:
-        armature_object: The actor.
-        action: The motion.
-        keyframe_action: The animator's keyframes; their frames stay keys.
-        options: Tolerance, keys and feet.
-        frame_s: Time from one scene frame to the next [s].
-
-    Yields:
-        Progress; nothing in Blender is changed.
+    Frames of the animator's keyframes stay keys; `frame_s` is the time from one scene frame to the next [s].
 
     Raises:
         InputError: The Action has no motion of the actor, or the armature is not an actor's.
@@ -182,16 +163,7 @@ def with_turned_extremities(
     extremities: Extremities,
     where: Mapping[str, BoolArray],
 ) -> list[Array]:
-    """Values with hands and feet turned anew; the rest stays.
-
-    Args:
-        armature_object: The actor.
-        rig: The actor, with the hands and feet as bones.
-        values: What each bone of the rig holds, (F, C).
-        posture: A batch of F postures.
-        extremities: Its hands and feet.
-        where: (F,) by name of hand or foot: in which frames.
-    """
+    """Values with the hands and feet of postures in the frames `where` (F,) says, by name; the rest stays."""
     columns = posture_columns(armature_object, posture, extremities)
     stored = {(path, index): column for path, index, _, column in columns}
     changed = [column.copy() for column in values]
@@ -243,18 +215,8 @@ def write_final(
 ) -> int:
     """Write a finished motion as ordinary keys, replacing all that the Action held for the actor.
 
-    Args:
-        armature_object: The actor.
-        source: The Action the motion was read from; its other curves (posed hands and feet, properties) are
-            copied, but for review curves.
-        action: The final Action.
-        body: The actor's body.
-        rig: The actor as `read_rig` finds it.
-        frames: (F,) scene frames, rising.
-        motion: For each bone of the rig its values (F, C), keyed on every frame; or few keys.
-
-    Returns:
-        Number of keys on the bones' curves.
+    Other curves of `source`, from which the motion was read (posed hands and feet, properties), are copied,
+    but for review curves. Returns the number of keys on the bones' curves.
     """
     channelbag = channelbag_for(action, armature_object)
     for fcurve in list(channelbag.fcurves):

@@ -71,28 +71,16 @@ class Footage:
 
     @property
     def shown_s(self) -> float:
-        """Time [s] of the scene's current frame from the clip's first.
-
-        Raises:
-            InputError: There is no clip.
-        """
+        """Time [s] of the scene's current frame from the clip's first."""
         return (self.scene.frame_current - self.first_frame) / self.rate
 
     @property
     def path(self) -> Path:
-        """The clip's file.
-
-        Raises:
-            InputError: There is no clip, or its file is missing.
-        """
+        """The clip's file."""
         return clip_path(self.clip)
 
     def open(self) -> "Clip":
-        """Open the clip's file.
-
-        Raises:
-            InputError: There is no clip, its file is missing or cannot be decoded.
-        """
+        """Open the clip's file."""
         # This module is imported while the extension registers, when OpenCV may be missing.
         from ...core.footage.clips.clip import Clip
 
@@ -144,8 +132,7 @@ class AttachedFootage:
     """The camera that a clip was attached to."""
 
     camera: bpy.types.Object
-    guessed_lens_mm: float
-    """Focal length, where it is a guess [mm]; 0 where it is known."""
+    guessed_lens_mm: float  # focal length, where it is a guess [mm]; 0 where it is known
     guessed_placement: CameraPlacement | None = None
     """Where a new camera was put; None for one that was there already."""
 
@@ -156,16 +143,11 @@ def attach_footage(
     camera_object: bpy.types.Object | None = None,
     guessed_lens_mm: float = 0.0,
 ) -> AttachedFootage:
-    """Put a clip behind a camera and give the scene the clip's size, rate and range.
+    """Put a clip behind a camera and give the scene the clip's size, rate and range, if its file is there.
 
     A lens set in the clip's tracking camera is used, and the camera follows a solved clip. A lens that was
-    never set is guessed; one that the animator set stays, as does the camera's pose.
-
-    Args:
-        scene: The scene to change.
-        clip: A clip that Blender has; where its file is missing, the scene keeps size, rate and range.
-        camera_object: The camera; by default a new one at eye height that looks at the world's origin.
-        guessed_lens_mm: Focal length that was guessed for that camera before and may be guessed anew [mm].
+    never set is guessed, anew where it is `guessed_lens_mm` [mm]; one that the animator set stays, as does
+    the camera's pose. A new camera, the default, stands at eye height and looks at the world's origin.
     """
     size = (clip.size[0], clip.size[1])
     if clip.frame_duration and all(size):

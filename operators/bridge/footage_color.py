@@ -12,15 +12,7 @@ REACH_PX = 2
 
 
 def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = None) -> tuple[int, int, int]:
-    """The color at a pixel of the footage in a frame of the scene.
-
-    Args:
-        footage: The clip in its scene.
-        pixel: (2,) x to the right, y down, in pixels of the footage.
-        scene_frame: The frame; by default the current one.
-
-    Returns:
-        Red, green, blue in 0 to 255.
+    """Red, green, blue (0 to 255) at a pixel (2,) of the footage, by default in the scene's current frame.
 
     Raises:
         InputError: There is no footage, no frame of it at the scene's, or the pixel lies outside.

@@ -37,18 +37,13 @@ def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
 # --- Found keyframes, on the keyframe Action beside the animator's own
 
 
-DIGITS = 3
-"""Decimals to which frames are told apart, as in `keyed_frames`."""
+DIGITS = 3  # decimals to which frames are told apart, as in `keyed_frames`
 
 
 def untouched_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
-    """Scene frames whose found posture is unchanged, in order.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Scene frames whose found posture is unchanged, in order."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is None:
         return ()
@@ -70,17 +65,7 @@ def write_matched(
     frames: Array,
     postures: Sequence[Posture],
 ) -> None:
-    """Key postures as found keyframes; what is keyed on the same frames is replaced, all else stays.
-
-    Args:
-        armature_object: The actor.
-        action: The Action to key.
-        frames: (K,) scene frames, rising.
-        postures: K single postures, at least one.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
-    """
+    """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced."""
     channelbag = channelbag_for(action, armature_object)
     columns = posture_columns(armature_object, Posture.stack(list(postures)))
     turned = _turned_to_neighbors(channelbag, columns, frames)
@@ -95,11 +80,7 @@ def remove_keyframes(
     skeleton: Skeleton,
     frames: Collection[float],
 ) -> None:
-    """Remove keyframes; keys of hands and feet stay.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Remove keyframes; keys of hands and feet stay."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is not None:
         remove_keys(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
@@ -111,11 +92,7 @@ def take_over(
     skeleton: Skeleton,
     frames: Collection[float],
 ) -> None:
-    """Turn found keyframes into the animator's own, as if posed by hand.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Turn found keyframes into the animator's own, as if posed by hand."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is not None:
         give_to_animator(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
@@ -159,20 +136,16 @@ Matches = Mapping[float, Matched]
 """What found keyframes resemble, by scene frame as `untouched_frames` gives them."""
 
 NOT_MATCHED: Matches = MappingProxyType({})
-NEAREST = 0.5
-"""A key farther than this [frames] from every frame of the clip belongs to none."""
-NOTICEABLE_M = 0.005
-"""Distance between a pose and its nearest posture above which a note is made [m]."""
+NEAREST = 0.5  # a key farther than this [frames] from every frame of the clip belongs to none
+NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
 @dataclass(frozen=True, eq=False)
 class PosedKeyframes:
     """Keyframes read from an armature."""
 
-    keyframes: tuple[Keyframe, ...]
-    """In order of frame."""
-    notes: tuple[str, ...]
-    """Notes for the animator, one sentence each."""
+    keyframes: tuple[Keyframe, ...]  # in order of frame
+    notes: tuple[str, ...]  # notes for the animator, one sentence each
 
 
 def keyed_frames(
@@ -203,18 +176,8 @@ def read_keyframes(
     """The postures that the armature shows at the frames keyed in `action`.
 
     Each is the whole pose as Blender evaluates it there, so a bone without a key of its own on that frame
-    counts as the animator sees it. Scene, Action and pose are as before afterwards.
-
-    Args:
-        scene: The scene that holds the armature.
-        armature_object: The actor.
-        action: The animator's Action.
-        body: Skeleton, with the sizes that `read_body` finds.
-        clip_frames: (F,) scene frame of every frame of the clip; keys elsewhere are left out with a note.
-        matches: The matched keyframes, and what they were matched with.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    counts as the animator sees it. Keys beside `clip_frames` (F,), the scene frames of the clip's, are left
+    out with a note. Scene, Action and pose are as before afterwards.
     """
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
@@ -244,11 +207,7 @@ def read_keyframes(
 def store_pose(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frame: float
 ) -> None:
-    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame."""
     channelbag = channelbag_for(action, armature_object)
     for model in skeleton_bones(armature_object, skeleton):
         bone = armature_object.pose.bones[model.name]
@@ -267,14 +226,7 @@ def write_keyframes(
 ) -> None:
     """Key postures in `action`, as if the animator had posed them; matched ones as `write_matched` does.
 
-    Args:
-        armature_object: The actor.
-        action: The Action to key.
-        keyframes: At least one, in order of frame.
-        clip_frames: (F,) scene frame of every frame of the clip.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    `clip_frames` (F,) are the scene frames of the clip's.
     """
     frames = clip_frames[[keyframe.index for keyframe in keyframes]]
     channelbag = channelbag_for(action, armature_object)

@@ -14,16 +14,12 @@ from numpy.typing import NDArray
 
 from ...core.arrays import Array, BoolArray, SingleArray
 
-Keys = dict[str, NDArray[np.generic]]
-"""Properties of N keys by name: (N,), or (N, 2) for coordinates."""
+Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or (N, 2) for coordinates
 
-UNMARKED = 0.0
-"""`back` of a key without a record of its first value, as earlier versions made all."""
+UNMARKED = 0.0  # `back` of a key without a record of its first value, as earlier versions made all
 MARK_OF_ZERO = 1e-30
-MATCH_AMPLITUDE = -1.0
-"""`amplitude` of the keys of a found keyframe; users cannot set one below zero."""
-SAME_FRAME = 1e-3
-"""Keys nearer than this [frames] lie on the same frame."""
+MATCH_AMPLITUDE = -1.0  # `amplitude` of the keys of a found keyframe; users cannot set one below zero
+SAME_FRAME = 1e-3  # keys nearer than this [frames] lie on the same frame
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
 ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
@@ -166,16 +162,7 @@ def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterabl
 def add_generated_keys(
     channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
 ) -> None:
-    """Add GENERATED keys, linear between frames; where the animator has a key, that key stays alone.
-
-    Args:
-        channelbag: The channel bag that has the curve, or gets it.
-        path: Data path of the animated property.
-        index: Component of the property.
-        group: Name of the curve's group.
-        frames: (F,) scene frames, fractional ones allowed.
-        values: (F,) values of the property.
-    """
+    """Add GENERATED keys at scene frames (F,), linear between them; the animator's keys there stay alone."""
     fcurve = ensure_fcurve(channelbag, path, index, group)
     _add_between(fcurve, _as_generated(_new_keys(frames, values, "GENERATED", "LINEAR")))
 
@@ -192,17 +179,9 @@ def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
 def set_posed_keys(
     channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
 ) -> None:
-    """Set keys of the animator's own type with Blender's usual smooth interpolation.
+    """Set keys of the animator's own type at scene frames (K,), with Blender's usual smooth interpolation.
 
     Keys on the same frames are replaced, all others stay.
-
-    Args:
-        channelbag: Where the curve lies or is added.
-        path: Data path of the posed property.
-        index: Component of the property.
-        group: Name of the curve's group.
-        frames: (K,) scene frames.
-        values: (K,) values of the property.
     """
     _set_keys(ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, "KEYFRAME", "BEZIER"))
 
@@ -264,16 +243,10 @@ def _keys_on(
 
 
 def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
-    """Replace a curve's keys by ones of the animator's own type, with smooth interpolation of given slopes.
+    """Replace a curve's keys by the animator's own at rising frames (K,), with slopes (K,) per frame.
 
     The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
     cubic that has the keys' values and slopes.
-
-    Args:
-        fcurve: The curve.
-        frames: (K,) scene frames, rising.
-        values: (K,) values of the property.
-        slopes: (K,) change of the property per frame.
     """
     keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
     third = np.diff(frames) / 3.0
@@ -286,13 +259,7 @@ def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, sl
 
 
 def write_linear_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array) -> None:
-    """Replace a curve's keys by ones of the animator's own type, linear between frames.
-
-    Args:
-        fcurve: The curve.
-        frames: (K,) scene frames, rising.
-        values: (K,) values of the property.
-    """
+    """Replace a curve's keys by the animator's own at rising frames (K,), linear between them."""
     _write_keys(fcurve, _new_keys(frames, values, "KEYFRAME", "LINEAR"))
 
 

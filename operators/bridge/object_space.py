@@ -9,18 +9,15 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
-UNEVEN = 1e-4
-"""Relative difference of the scales along the axes that still counts as rounding."""
+UNEVEN = 1e-4  # relative difference of the scales along the axes that still counts as rounding
 
 
 @dataclass(frozen=True, eq=False)
 class ObjectSpace:
     """A similarity from an object's own space to the world."""
 
-    rotation: Array
-    """(3, 3)."""
-    location: Array
-    """(3,) [m]."""
+    rotation: Array  # (3, 3)
+    location: Array  # (3,) [m]
     scale: float
 
     def to_world(self, points: Array) -> Array:

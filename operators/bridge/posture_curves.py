@@ -23,24 +23,15 @@ from .object_space import AT_ORIGIN
 from .rig import nearest_postures, rig_at_rest
 from .rotation_modes import bone_path, rotation_path, rotation_values
 
-Values = dict[str, Array]
-"""Channel values by bone: the rotation's, for the root then the location's."""
+Values = dict[str, Array]  # channel values by bone: the rotation's, for the root then the location's
 
-FRAME = 1.0
-"""The only frame of a pose asset."""
-SAME = 2e-6
-"""Largest relative error of channels by single precision."""
+FRAME = 1.0  # the only frame of a pose asset
+SAME = 2e-6  # largest relative error of channels by single precision
 LARGEST_LOCATION_M = 1000.0
 
 
 def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture) -> None:
-    """Give an empty Action the curves of a posture: one key a channel.
-
-    Args:
-        action: The Action.
-        body: The body that was posed.
-        posture: A single posture, the floor at z = 0.
-    """
+    """Give an empty Action the curves of a single posture, the floor at z = 0: one key a channel."""
     channelbag = new_channelbag(action)
     values = channel_values(body, posture)
     for model in _models(body):
@@ -52,14 +43,11 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
 def read_posture_curves(
     action: bpy.types.Action, body: Body, stored: Posture | None = None
 ) -> Posture | None:
-    """The posture that an Action's curves show; None where it has no curve of a bone of the skeleton.
+    """The posture that a pose asset's curves show; None where it has no curve of a bone of the skeleton.
 
-    Args:
-        action: A pose asset. Curves of anything but the skeleton's bones are ignored; bones without curves
-            are as in `stored`, or at rest.
-        body: The body it was posed on.
-        stored: The posture that the curves were once written from. Joints whose curves are unchanged
-            are taken from it, to the last digit.
+    Curves of anything but the skeleton's bones are ignored; bones without curves are as in `stored`, or at
+    rest. `stored` is the posture that the curves were once written from: joints whose curves are unchanged
+    are taken from it, to the last digit.
     """
     curves = {(curve.data_path, curve.array_index): curve for curve in _fcurves(action) if not curve.is_empty}
     known = channel_values(body, stored if stored is not None else Posture.rest(body.skeleton))

@@ -24,15 +24,8 @@ from .rotation_modes import bone_path, posture_from_frames, rotation_path
 def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
     """Read the bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
 
-    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels.
-
-    Args:
-        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
-        body: The skeleton, with the sizes that `read_body` finds in the armature.
-        extremities: Names of hands and feet that turn; the others are rigid with their limbs.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels. The armature
+    has any location, even scale and rest pose; hands and feet that are not named are rigid with their limbs.
     """
     axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
     names = list(axes)
@@ -52,13 +45,7 @@ def rig_at_rest(
 ) -> Rig:
     """A rig as `read_rig` gives it, of bones that need not be in an armature.
 
-    Args:
-        body: Skeleton and sizes.
-        axes: (3, 3) each bone's axes in its joint's frame.
-        rest: (4, 4) rest matrix of each bone, in the object's space.
-        modes: Rotation mode of each bone.
-        space: From the object's space to the world.
-        extremities: Names of hands and feet that turn.
+    By bone: its axes (3, 3) in its joint's frame, its rest matrix (4, 4) in the object's space, and its mode.
     """
     models = bone_models(body)
     turning = [model for model in models if model.chain or model.name in extremities]
@@ -145,22 +132,11 @@ def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, b
 def read_values(
     armature_object: bpy.types.Object, action: bpy.types.Action, rig: Rig, frames: Array
 ) -> Generator[float, None, list[Array]]:
-    """Evaluate an Action's curves at scene frames, bone by bone; the scene is not touched.
+    """Evaluate an Action's curves at scene frames (F,), bone by bone; the scene is not touched.
 
     Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
-    plays the Action.
-
-    Args:
-        armature_object: The actor.
-        action: The motion, with the animator's changes.
-        rig: The actor as `read_rig` finds it.
-        frames: (F,) scene frames.
-
-    Yields:
-        The fraction done.
-
-    Returns:
-        Values as in `Rig`: (F, C) a bone; quaternions of unit length and without jumps of sign.
+    plays the Action. Yields the fraction done; returns values as in `Rig`, (F, C) a bone, quaternions of unit
+    length and without jumps of sign.
     """
     channelbag = existing_channelbag(action, armature_object)
     channels = rig_channels(rig)

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from ...core.footage.region_tracks import MarkerStyle
 
 
-MOST_FILES = 12
-"""Files that are remembered: those of the takes at hand, for a job and for panels."""
+MOST_FILES = 12  # files that are remembered: those of the takes at hand, for a job and for panels
 
 
 def read_keypoint_file(
@@ -33,12 +32,7 @@ def read_keypoint_file(
 ) -> People:
     """Everyone whom a file of keypoints, or a folder with a file a frame, says was seen.
 
-    Args:
-        path: The file or folder.
-        frame_count: Number of the clip's frames F; None where it is not known.
-        size: Width and height of the clip [px].
-        fps: Frames per second of the clip.
-        frame_start: Scene frame of its first one.
+    `frame_count` is None where it is not known; `size` is width and height of the clip [px].
 
     Raises:
         InputError: The file is missing or unusable, or it cannot be one of this clip.
@@ -76,12 +70,8 @@ def one_person(
 ) -> People:
     """The people of a source that shows the performer alone.
 
-    Args:
-        names: (N,) the body points.
-        source: What saw them.
-        size: Width and height of the footage [px].
-        pixel: (F, N, 2) places [px], NaN where a point is not seen.
-        score: (F, N) confidence, 0 to 1.
+    `pixel` (F, N, 2) are places [px] of the N named points, NaN where one is not seen; `score` (F, N) is 0 to
+    1.
     """
     unknown = np.full((1, len(names), 3), np.nan)
     nobody = SeenPeople(pixel[:0], score[:0], unknown[:0])
@@ -104,18 +94,15 @@ class ClickedPoint:
     """A body point that was clicked on in a frame."""
 
     point: str
-    frame: int
-    """Scene frames after the clip's first one: a clip may be moved in time."""
+    frame: int  # scene frames after the clip's first one: a clip may be moved in time
     pixel: tuple[float, float]
 
 
 def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPoint]) -> tuple[People, ...]:
     """The performer as a person clicked on points; no source where none was.
 
-    Args:
-        footage: The clip in its scene.
-        frames: (F,) scene frame of each frame of the clip.
-        clicks: The points; those outside the clip are left out, the last one of a frame counts.
+    Clicks outside the clip, whose frames have the scene frames (F,), are left out; the last one of a frame
+    counts.
     """
     at = shown_index(frames, [footage.first_frame + click.frame for click in clicks])
     inside = [(int(index), click) for index, click in zip(at, clicks, strict=True) if index >= 0]
@@ -134,16 +121,14 @@ def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPo
 
 
 TRACKS = "tracks"
-FIRST_CLIP_FRAME = 1
-"""Frame of a track's marker in the first picture that the timeline shows."""
+FIRST_CLIP_FRAME = 1  # frame of a track's marker in the first picture that the timeline shows
 
 
 @dataclass(frozen=True)
 class AssignedTrack:
     """A motion track, and the body point that it follows."""
 
-    owner: str
-    """Name of the clip's tracking object that it belongs to; the clip's first is its camera."""
+    owner: str  # name of the clip's tracking object that it belongs to; the clip's first is its camera
     track: str
     point: str
 
@@ -161,12 +146,8 @@ def people_of_tracks(
     """The performer as tracks of a clip show them; further tracks of the same point are further sources.
 
     A track is seen in the frames that have a marker of its own, tracked or set by hand, that is not disabled.
-    What Blender shows before, between and after them is no observation.
-
-    Args:
-        footage: The clip in its scene.
-        frames: (F,) scene frame of each frame of the clip.
-        assigned: Tracks and their points; those that the clip does not have are left out.
+    What Blender shows before, between and after them is no observation. `frames` (F,) are scene frames of the
+    clip's; tracks that the clip does not have are left out.
     """
     tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
     sources: list[dict[str, bpy.types.MovieTrackingTrack]] = []
@@ -240,15 +221,12 @@ class SceneEvidence:
     """Evidence beside the keyframes, as far as it is switched on."""
 
     markers: "tuple[MarkerStyle, ...]" = ()
-    files: tuple[Path, ...] = ()
-    """Files of keypoints, or folders of them."""
+    files: tuple[Path, ...] = ()  # files of keypoints, or folders of them
     tracks: tuple[AssignedTrack, ...] = ()
     clicks: tuple[ClickedPoint, ...] = ()
-    depth_hints: bool = True
-    """Whether a detector's guess of depths is used."""
+    depth_hints: bool = True  # whether a detector's guess of depths is used
     contours: bool = True
-    ignored_regions: "tuple[IgnoredRegion, ...]" = ()
-    """Regions of the picture that are never a marker."""
+    ignored_regions: "tuple[IgnoredRegion, ...]" = ()  # regions of the picture that are never a marker
 
     @property
     def has_keypoints(self) -> bool:
@@ -256,15 +234,7 @@ class SceneEvidence:
         return bool(self.files or self.tracks or self.clicks)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
-        """Everyone whom each source of keypoints saw, clicked points first.
-
-        Args:
-            footage: The clip in its scene.
-            frames: (F,) scene frame of each frame of the clip.
-
-        Raises:
-            InputError: A file is missing, or cannot be one of this clip.
-        """
+        """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""
         width, height = footage.clip.size
         files = tuple(
             read_keypoint_file(path, len(frames), (width, height), footage.rate, footage.first_frame)

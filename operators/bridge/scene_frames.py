@@ -16,26 +16,16 @@ from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from .actions import assign_action
 from .object_space import evaluated
 
-Pose = dict[str, list[tuple[float, ...]]]
-"""Values of all channels, by bone."""
-SAME_FRAME = 1e-3
-"""What a scene frame may lie below one of the clip and still show it [frames]."""
+Pose = dict[str, list[tuple[float, ...]]]  # values of all channels, by bone
+SAME_FRAME = 1e-3  # what a scene frame may lie below one of the clip and still show it [frames]
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:
-    """Scene frames that show the frames of a clip.
+    """Scene frames (F,) that show the frames of a clip, whose times are (F,) [s] from the first.
 
     Whole steps for a constant rate, however the container rounds its times; by their times, and so
     fractional, for a variable rate, as Blender shows them.
-
-    Args:
-        time_s: (F,) time of each frame from the first [s].
-        first: Scene frame of the first frame.
-        rate: Frames per second of the clip in Blender.
-
-    Returns:
-        (F,) scene frames.
     """
     if is_variable_frame_rate(time_s):
         return np.asarray(first + time_s * rate)
@@ -43,12 +33,7 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
 
 
 def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
-    """Index of the clip's frame that Blender shows at scene frames; -1 before the clip and after it.
-
-    Args:
-        frames: (F,) scene frame of each frame of the clip.
-        at: (...) scene frames.
-    """
+    """Index of the clip's frame, of (F,), shown at scene frames (...); -1 before the clip and after it."""
     asked = np.asarray(at, dtype=np.float64)
     index = np.searchsorted(frames, asked + SAME_FRAME, side="right") - 1
     return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)

@@ -10,7 +10,6 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ..bridge.camera_placement import read_lens
-from ..bridge.keyframes import candidate_posture
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.keyed_frames import match_at, offered_at, state_of
 from ..shell.results import LruCache
@@ -32,12 +31,9 @@ from .drawing import (
 )
 from .motion import limb_lines, world_view
 
-TALL_M = 1.7
-"""Height of a figure by which lines get thinner where it is small [m]."""
-ABOVE = 6.0
-"""Distance of a figure's number from the point that it stands above [px]."""
-BESIDE = 16.0
-"""Distance at which the numbers of two figures, as high as this, can both be read [px]."""
+TALL_M = 1.7  # height of a figure by which lines get thinner where it is small [m]
+ABOVE = 6.0  # distance of a figure's number from the point that it stands above [px]
+BESIDE = 16.0  # distance at which the numbers of two figures, as high as this, can both be read [px]
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -87,6 +83,7 @@ def candidate_points(armature_object: bpy.types.Object, match: bpy.types.Propert
 
     def found() -> Array:
         from ..bridge.actor_lengths import read_body
+        from ..bridge.keyframes import candidate_posture
 
         body = read_body(armature_object, HUMAN)
         return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
@@ -109,10 +106,7 @@ def over_footage(
 def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
     """The figures of all candidates but the chosen one, each with its number where it differs from that.
 
-    Args:
-        positions: (N, 13, 2) region pixels of the candidates' points, NaN where not seen.
-        chosen: Index of the one that the frame has.
-        settings: The overlays' settings.
+    `positions` (N, 13, 2) are region pixels of the candidates' points, NaN where not seen.
     """
     scale, names = drawing.ui_scale(), HUMAN.point_names
     heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
@@ -138,13 +132,9 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
 
 
 def _number_place(figure: Array, apart: Array, taken: list[Array], beside: float) -> tuple[float, float]:
-    """The point [px] of a figure above which its number stands.
+    """The point [px] of a figure (13, 2) above which its number stands, `beside` those already there.
 
-    Args:
-        figure: (13, 2) its points [px].
-        apart: (13,) their distances from those of the chosen figure [px], negative where not seen.
-        taken: Where other figures' numbers stand.
-        beside: Distance from those that is enough [px].
+    `apart` (13,) is the distance from the chosen figure's points [px], negative where not seen.
     """
     order = [point for point in np.argsort(-apart, kind="stable") if apart[point] >= 0.0]
     free = (

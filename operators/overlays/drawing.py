@@ -23,15 +23,12 @@ from .figures import triangles
 
 Color = tuple[float, float, float, float]
 
-HALO: Color = (0.0, 0.0, 0.0, 0.75)
-"""Dark edge that sets lines off from footage of any brightness."""
+HALO: Color = (0.0, 0.0, 0.0, 0.75)  # dark edge that sets lines off from footage of any brightness
 INK: Color = (1.0, 1.0, 1.0, 1.0)
-HALO_PX = 1.25
-"""Width of a halo on each side of its line."""
+HALO_PX = 1.25  # width of a halo on each side of its line
 FONT = 0
 TEXT_SIZE = 11.0
-OUTLINED_TEXT = 6
-"""The blur level that blf draws as an outline instead of a shadow."""
+OUTLINED_TEXT = 6  # the blur level that blf draws as an outline instead of a shadow
 ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
 
@@ -47,13 +44,9 @@ def faded(color: Sequence[float], opacity: float) -> Color:
 
 
 def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0.0) -> None:
-    """Draw straight segments.
+    """Draw straight segments (S, 2, 2) in region pixels, or (S, 2, 3) in space; colors are (4,) or (S, 4).
 
-    Args:
-        segments: (S, 2, 2) region pixels, or (S, 2, 3) points in the space being drawn.
-        color: (4,) one for all, or (S, 4) one each.
-        width: Thickness, scaled with the user interface.
-        halo: Opacity of a dark edge on both sides, 0 to 1.
+    `halo` is the opacity of a dark edge on both sides.
     """
     if not len(segments):
         return
@@ -78,12 +71,7 @@ def _polyline(segments: Array, color: ArrayLike, width: float) -> None:
 
 
 def polygons(corners: ArrayLike, color: ArrayLike) -> None:
-    """Fill convex polygons.
-
-    Args:
-        corners: (N, K, D) region pixels or points in space; polygons that are not finite are left out.
-        color: (4,) one for all, or (N, 4) one each.
-    """
+    """Fill convex polygons (N, K, D), without those that are not finite; colors are (4,) or (N, 4)."""
     points = np.asarray(corners, dtype=np.float64)
     if not len(points):
         return
@@ -111,11 +99,9 @@ def _positions(points: Array) -> SingleArray:
 
 
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
-    """Upload a picture to the graphics card; keep the texture, as making one takes time.
+    """Upload a picture (height, width, 4) of red, green, blue, alpha in sRGB, 0 to 1, top row first.
 
-    Args:
-        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first; the texture's own
-            coordinates begin at the bottom.
+    Keep the texture, as making one takes time; its own coordinates begin at the bottom.
     """
     rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
     height, width, _ = rows.shape
@@ -133,13 +119,8 @@ def text(
 ) -> None:
     """Draw a line of text, outlined so that it reads on any background.
 
-    Args:
-        words: The text.
-        x: Position of the part of the text that `align` names [region px].
-        y: Base line [region px].
-        color: Color of the text.
-        size: In points, scaled with the user interface.
-        align: `left`, `middle` or `right`.
+    `x` is the position of the part of it that `align` names, `y` the base line [region px]; `size` is in
+    points, scaled with the user interface.
     """
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
@@ -170,8 +151,7 @@ def _opaque(rgb: Rgb) -> Color:
 SIDES: Mapping[str, Color] = {side: _opaque(rgb) for side, rgb in LIGHT.items()}
 LEFT, RIGHT, MIDDLE = SIDES["L"], SIDES["R"], SIDES[""]
 """Colors of the performer's sides, and of what has none."""
-CORE: Color = (0.08, 0.08, 0.08, 1.0)
-"""Color of the core of a hollow line."""
+CORE: Color = (0.08, 0.08, 0.08, 1.0)  # color of the core of a hollow line
 SOURCES: tuple[Color, ...] = (
     (0.90, 0.55, 0.78, 1.0),
     (0.94, 0.89, 0.26, 1.0),
@@ -179,41 +159,32 @@ SOURCES: tuple[Color, ...] = (
     (0.72, 0.62, 0.98, 1.0),
 )
 """Colors of keypoints by their source: purple, yellow, green and violet, none of them a side's."""
-THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)
-"""Color of keypoints that are not believed."""
+THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)  # color of keypoints that are not believed
 DASH, GAP = 6.0, 4.0
 JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
-CORE_SHARE = 0.45
-"""Thickness of the core of a hollow line, as a share of the line's."""
+CORE_SHARE = 0.45  # thickness of the core of a hollow line, as a share of the line's
 CANDIDATE_COLORS = 8
 """Colors of collections that Blender's themes have, with an icon each: those of a frame's candidates."""
-GHOST = 0.6
-"""Opacity of figures that are only offered."""
-LIMB = 2.4
-"""Thickness of limbs relative to outlines."""
+GHOST = 0.6  # opacity of figures that are only offered
+LIMB = 2.4  # thickness of limbs relative to outlines
 METER, SMALLEST = 160.0, 0.35
 """Size of a meter below which a body's marks get smaller [px], and the smallest share of their size."""
-PALER = 0.5
-"""Share of white in the prediction's color, so that dashes show over a solid line."""
+PALER = 0.5  # share of white in the prediction's color, so that dashes show over a solid line
 HALO_STYLE = 0.9
 UNCERTAIN_M = 0.05
 """Standard deviation above which a point is drawn as a ring within a circle of that size [m]."""
 PATH_POINTS = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
-PATH_FRAMES = 15
-"""Frames of a path before the current one, and after it."""
+PATH_FRAMES = 15  # frames of a path before the current one, and after it
 
 
 @dataclass(frozen=True)
 class Style:
     """The animator's opacity, and the scales of screen and body."""
 
-    width: ClassVar[float] = 1.5
-    """Thickness of lines."""
+    width: ClassVar[float] = 1.5  # thickness of lines
     opacity: float
-    scale: float
-    """Screen pixels for each unscaled pixel."""
-    body_scale: float = 1.0
-    """Scale of the body's marks, below 1 for a distant body."""
+    scale: float  # screen pixels for each unscaled pixel
+    body_scale: float = 1.0  # scale of the body's marks, below 1 for a distant body
 
     def color(self, color: Color | tuple[float, float, float]) -> Color:
         """A color with the chosen opacity."""
@@ -256,23 +227,18 @@ def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
 class Stroke:
     """Straight lines."""
 
-    segments: Array
-    """(S, 2, 2) region pixels."""
-    color: ArrayLike
-    """(4,) for all, or (S, 4)."""
+    segments: Array  # (S, 2, 2) region pixels
+    color: ArrayLike  # (4,) for all, or (S, 4)
     width: float
-    halo: float = 0.0
-    """Opacity of the dark edge."""
+    halo: float = 0.0  # opacity of the dark edge
 
 
 @dataclass(frozen=True, eq=False)
 class Fill:
     """Filled convex polygons."""
 
-    corners: Array
-    """(N, K, 2) region pixels."""
-    color: ArrayLike
-    """(4,) for all, or (N, 4)."""
+    corners: Array  # (N, K, 2) region pixels
+    color: ArrayLike  # (4,) for all, or (N, 4)
 
 
 @dataclass(frozen=True)

@@ -15,15 +15,7 @@ MOST_DASHES = 1000
 
 
 def segments(points: ArrayLike, *, closed: bool = False) -> Array:
-    """Cut lines into their segments; those with an end that is not finite are left out.
-
-    Args:
-        points: (..., N, D) lines of N points each.
-        closed: Whether each line returns to its first point.
-
-    Returns:
-        (S, 2, D).
-    """
+    """Cut lines (..., N, D) into segments (S, 2, D); those with an end that is not finite are left out."""
     line = np.asarray(points, dtype=np.float64)
     ends = np.roll(line, -1, axis=-2) if closed else line[..., 1:, :]
     starts = line if closed else line[..., :-1, :]
@@ -32,16 +24,9 @@ def segments(points: ArrayLike, *, closed: bool = False) -> Array:
 
 
 def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) -> Array:
-    """Cut one line into dashes that run on around its corners.
+    """Cut one line (N, D) into dashes (S, 2, D) that run on around its corners.
 
-    Args:
-        points: (N, D) points; a dash begins anew after one that is not finite.
-        dash: Length of a dash.
-        gap: Length of the gap after it.
-        closed: Whether the line returns to its first point.
-
-    Returns:
-        (S, 2, D) segments of the dashes.
+    A dash begins anew after a point that is not finite.
     """
     line = np.asarray(points, dtype=np.float64)
     if closed and len(line):

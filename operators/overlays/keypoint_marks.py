@@ -20,12 +20,9 @@ if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
 
 ToRegion = Callable[[Array], Array]
-ARM, RING = 5.5, 3.5
-"""Half-length of a cross's arms, and radius of a ring [px]."""
-SQUARE = 1.1
-"""Half of a square's side around a cross, in half-lengths of its arms."""
-SAME_PX = 0.5
-"""Distance within which two keypoints of a body point are one [px of the footage]."""
+ARM, RING = 5.5, 3.5  # half-length of a cross's arms, and radius of a ring [px]
+SQUARE = 1.1  # half of a square's side around a cross, in half-lengths of its arms
+SAME_PX = 0.5  # distance within which two keypoints of a body point are one [px of the footage]
 UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
 SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5
 
@@ -44,15 +41,7 @@ def all_sources(keypoints: "ComparedKeypoints | None", seen: Sequence[FrameKeypo
 def compared_marks(
     keypoints: "ComparedKeypoints", index: int, to_region: ToRegion, sources: Sequence[str], style: Style
 ) -> list[Item]:
-    """The keypoints of one frame that a motion was held against.
-
-    Args:
-        keypoints: The keypoints.
-        index: Index of the frame.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        sources: All sources that are drawn, in the order of their colors.
-        style: Colors and sizes.
-    """
+    """The keypoints of one frame that a motion was held against; `sources` in order of color."""
     if not keypoints.names:
         return []
     seen, predicted = to_region(keypoints.seen[index]), to_region(keypoints.predicted[index])
@@ -77,14 +66,7 @@ def compared_marks(
 def seen_marks(
     seen: Sequence[FrameKeypoints], to_region: ToRegion, sources: Sequence[str], style: Style
 ) -> list[Item]:
-    """The keypoints that a take's sources see in a frame, of everyone.
-
-    Args:
-        seen: Those of each source.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        sources: All sources that are drawn, in the order of their colors.
-        style: Colors and sizes.
-    """
+    """The keypoints that a take's sources see in a frame, of everyone; `sources` in order of color."""
     items: list[Item] = []
     for each in seen:
         places = to_region(each.pixel.reshape(-1, 2))

@@ -67,11 +67,7 @@ Row = tuple[Sample, str]
 def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
     """A legend on a dark background, which sets it off from bright footage.
 
-    Args:
-        rows: Samples and texts, from the top down.
-        x: Left end of the samples.
-        y: Base line of the last row.
-        style: Colors and sizes.
+    Rows are from the top down; x is the left end of the samples, y the base line of the last row.
     """
     if not rows:
         return ()

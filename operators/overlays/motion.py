@@ -47,8 +47,7 @@ if TYPE_CHECKING:
     from ...core.review.review import Review
 
 
-NECK, PELVIS = "neck", "pelvis"
-"""The middle between the shoulders, and between the hips."""
+NECK, PELVIS = "neck", "pelvis"  # the middle between the shoulders, and between the hips
 LIMBS = (
     ("", "head", NECK),
     ("", NECK, PELVIS),
@@ -66,15 +65,7 @@ LIMBS = (
 def skeleton(
     review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
 ) -> list[Item]:
-    """The body of one frame.
-
-    Args:
-        review: The review of the motion.
-        index: Index of the frame.
-        positions: (13, 2) region pixels of the points.
-        pixels_per_meter: (13,) size of a meter at each point in the region.
-        style: Colors and sizes.
-    """
+    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each."""
     sigma = review.sigma_m[index]
     uncertain = sigma > UNCERTAIN_M
     colors = np.array([style.color(side_color(name)) for name in review.point_names])
@@ -157,10 +148,8 @@ def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
 # --- The reconstructed motion as items to draw, whichever editor they are drawn in
 
 
-UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
-"""Color of a marker that was removed since the reconstruction."""
-NEAREST = 0.75
-"""Largest distance of the scene's frame from the clip's frame that it shows [frames]."""
+UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)  # color of a marker that was removed since the reconstruction
+NEAREST = 0.75  # largest distance of the scene's frame from the clip's frame that it shows [frames]
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,12 +157,9 @@ class WorldView:
     """A region of a 3D viewport as a view of the motion."""
 
     footage: FootageView | None
-    matrix: Array
-    """(4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division."""
-    right: Array
-    """(3,) the viewer's right in the world."""
-    size: Array
-    """(2,) of the region [px]."""
+    matrix: Array  # (4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division
+    right: Array  # (3,) the viewer's right in the world
+    size: Array  # (2,) of the region [px]
 
     def point_positions(self, review: "Review", indices: IndexArray) -> Array:
         """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
@@ -214,10 +200,8 @@ class ClipView:
     """A region of the Movie Clip editor as a view of the motion."""
 
     footage: FootageView
-    to_camera: Array
-    """(4, 4) from the world to the footage's camera."""
-    focal_px: float
-    """Focal length of that camera [px of the footage]."""
+    to_camera: Array  # (4, 4) from the world to the footage's camera
+    focal_px: float  # focal length of that camera [px of the footage]
 
     def point_positions(self, review: "Review", indices: IndexArray) -> Array:
         """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
@@ -231,11 +215,7 @@ class ClipView:
 
 
 def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
-    """A region of a Movie Clip editor as a view of a take's motion.
-
-    Raises:
-        InputError: The take's camera is missing, or of an unsupported type.
-    """
+    """A region of a Movie Clip editor as a view of a take's motion."""
     source = footage_of(scene, take)
     to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
     return ClipView(footage, to_camera, read_lens(source).focal_px)
@@ -250,8 +230,7 @@ class Shown:
 
     take: bpy.types.PropertyGroup
     review: "Review"
-    index: int
-    """Index in the clip of the scene's current frame."""
+    index: int  # index in the clip of the scene's current frame
 
 
 def shown(scene: bpy.types.Scene) -> Shown | None:
@@ -373,8 +352,7 @@ def draw_clip_editor(context: bpy.types.Context) -> None:
 # --- Overlay of keypoints where there is no motion yet
 
 
-TALL_M = 1.7
-"""Height of a figure by which marks get smaller where it is small [m]."""
+TALL_M = 1.7  # height of a figure by which marks get smaller where it is small [m]
 
 
 def draw_keypoints(context: bpy.types.Context) -> None:

@@ -43,15 +43,7 @@ def observed_outlines(
     colors: list[MarkerColor],
     style: Style,
 ) -> list[Item]:
-    """A solid outline of each region that was found.
-
-    Args:
-        review: The review of the motion.
-        index: Index of the frame.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        colors: Each marker's color.
-        style: Colors and sizes.
-    """
+    """A solid outline of each region that was found."""
     outlines = to_region(review.observed[index])
     return [
         Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
@@ -108,16 +100,7 @@ def paths(
     keyframe_indices: IndexArray,
     style: Style,
 ) -> list[Item]:
-    """The paths of N points.
-
-    Args:
-        names: The points' names.
-        positions: (N, I, 2) their region pixels in each frame of the window.
-        frames: (I,) indices of those frames in the clip.
-        index: Index of the current frame in the clip.
-        keyframe_indices: Indices of the keyframes.
-        style: Colors and sizes.
-    """
+    """The paths of N points: `positions` (N, I, 2) at the clip's `frames` (I,), about the frame `index`."""
     keyed = np.isin(frames, keyframe_indices)
     dots, marks = positions[:, ~keyed].reshape(-1, 2), positions[:, keyed]
     items: list[Item] = []

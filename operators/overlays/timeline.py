@@ -20,26 +20,17 @@ if TYPE_CHECKING:
     from ...core.footage.reading import Reading
 
 
-UNSURE = np.array([0.90, 0.42, 0.10])
-HALFWAY = np.array([0.93, 0.83, 0.35])
-SURE = np.array([0.22, 0.55, 0.90])
-"""Colors of low, middle and high confidence, also for color-blind eyes."""
+CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])
+"""Of low, middle and high confidence, also for color-blind eyes."""
 DOUBTED = 0.5
 """Confidence up to which a frame has the lowest color: no better than chance that a joint is correct."""
-FINEST_PX = 1.5
-"""Frames nearer than this are drawn as one."""
+FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
 def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
-    """Merge frames that lie closer than can be seen, so that a long clip takes no longer to draw.
+    """Merge frames at rising positions (F,) too close to be told apart; their lowest or highest value is kept.
 
-    Args:
-        x: (F,) increasing positions.
-        values: (F,) values there.
-        lowest: Whether the lowest of the merged values is kept, or the highest.
-
-    Returns:
-        Positions and values, (N,) each.
+    A long clip then takes no longer to draw.
     """
     if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
         return x, values
@@ -56,16 +47,9 @@ def in_view(x: Array, width: float) -> slice:
 
 
 def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A curve and the area under it.
+    """A curve (N, 2) of values 0 to 1 at positions (N,), and the pieces (N - 1, 4, 2) of the area under it.
 
-    Args:
-        x: (N,) positions.
-        values: (N,) heights, 0 to 1; NaN leaves a gap.
-        floor: Height of 0.
-        height: Distance from 0 to 1.
-
-    Returns:
-        The line (N, 2) and the area's pieces (N - 1, 4, 2).
+    NaN leaves a gap; `floor` is the height of 0, `height` the distance from 0 to 1.
     """
     line = np.stack([x, floor + height * values], axis=-1)
     foot = np.stack([x, np.full_like(x, floor)], axis=-1)
@@ -74,16 +58,9 @@ def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, 
 
 
 def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A bar for each frame: the higher and bluer, the higher its confidence.
+    """A bar (N, 4, 2) and its opaque color (N, 4) a frame: the higher and bluer, the higher its confidence.
 
-    Args:
-        x: (N,) positions.
-        confidence: (N,) 0 to 1; NaN leaves a gap.
-        floor: Foot of the bars.
-        height: Height of a bar of confidence 1.
-
-    Returns:
-        Bars (N, 4, 2) and their opaque colors (N, 4).
+    NaN leaves a gap; `height` is that of a bar of confidence 1.
     """
     middles = 0.5 * (x[1:] + x[:-1])
     reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
@@ -104,8 +81,7 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
 def confidence_color(confidence: Array) -> Array:
     """Colors (N, 3) of confidences (N,)."""
     share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
-    stops = np.stack([UNSURE, HALFWAY, SURE])
-    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
+    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in CONFIDENCE_COLORS.T], axis=-1)
 
 
 def pointers(x: Array, tip: float, size: float) -> Array:
@@ -125,17 +101,12 @@ MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 class Sizes:
     """Unscaled sizes [px]."""
 
-    graph: float
-    """Largest height of the graph."""
-    ruler: float
-    """Height kept free at the top."""
-    headroom: float
-    """Height between graph and ruler, for triangles and text."""
+    graph: float  # largest height of the graph
+    ruler: float  # height kept free at the top
+    headroom: float  # height between graph and ruler, for triangles and text
     strip: float
-    foot: float
-    """Height below the strip, for Blender's scroll bar."""
-    gap: float
-    """Height between strip and graph."""
+    foot: float  # height below the strip, for Blender's scroll bar
+    gap: float  # height between strip and graph
     diamond: float
     pointer: float
 
@@ -143,8 +114,7 @@ class Sizes:
 ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
 SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
 """Sizes for a Timeline as low as its ruler, as Blender 5 opens it."""
-LEAST_ROOMY = 16.0
-"""Height of a graph [px] for which the ruler is kept free."""
+LEAST_ROOMY = 16.0  # height of a graph [px] for which the ruler is kept free
 LEAST = 6.0
 SPEED: Color = (0.35, 0.68, 0.92, 1.0)
 PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
@@ -157,15 +127,11 @@ GROUND: Color = (0.0, 0.0, 0.0, 0.28)
 class Timeline:
     """Horizontal positions of frames in a region, and heights of graph and strip."""
 
-    origin: float
-    """Horizontal position of frame 0 [px]."""
-    scale: float
-    """Pixels for each frame."""
+    origin: float  # horizontal position of frame 0 [px]
+    scale: float  # pixels for each frame
     width: float
-    height: float
-    """Height of the graph [px]."""
-    pixel: float
-    """Screen pixels for each unscaled pixel."""
+    height: float  # height of the graph [px]
+    pixel: float  # screen pixels for each unscaled pixel
     sizes: Sizes
 
     @property

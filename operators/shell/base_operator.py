@@ -78,11 +78,4 @@ class BaseOperator:
 
     @abstractmethod
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Do the work.
-
-        Returns:
-            None when done; {"CANCELLED"} when nothing was changed, so that Blender adds no undo step.
-
-        Raises:
-            KeymarkError: The work failed; its sentence is reported.
-        """
+        """Do the work; return {"CANCELLED"} when nothing was changed, so that Blender adds no undo step."""

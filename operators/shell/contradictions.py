@@ -12,10 +12,8 @@ from ...core.footage.keypoints.keypoints import BODY_POINTS
 from .job_progress import steady_frame
 from .panel import draw_sentence
 
-SAME_FRAME = 0.5
-"""A note nearer to a frame than this [frames] is of that frame."""
-SEPARATOR = "\n"
-"""Between names, which are of one line each."""
+SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
+SEPARATOR = "\n"  # between names, which are of one line each
 
 
 class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):

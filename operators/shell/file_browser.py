@@ -9,18 +9,11 @@ from ...core.errors import InputError
 
 SEPARATORS = ("/", os.sep)
 
-_folders: dict[str, str] = {}
-"""Folder that each operator's browser was left in, for this session."""
+_folders: dict[str, str] = {}  # folder that each operator's browser was left in, for this session
 
 
 def browse(operator: bpy.types.Operator, context: bpy.types.Context, folder: str = "") -> set[str]:
-    """Show the file browser where this operator's was left last; return what `invoke` returns.
-
-    Args:
-        operator: The operator; its `filepath` is set to the folder.
-        context: Its window manager shows the browser.
-        folder: Where the browser begins the first time; Blender's own choice by default.
-    """
+    """Show the file browser where this operator's was left last, at first in `folder`; returns as `invoke`."""
     begin = _folders.get(operator.bl_idname, folder)
     if begin:
         operator.filepath = os.path.join(begin, "")

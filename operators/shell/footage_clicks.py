@@ -70,13 +70,7 @@ class WorldInRegion:
 
 
 def view_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> WorldInRegion | None:
-    """The 3D view that lies under the mouse; None over another editor, a sidebar or a header.
-
-    Args:
-        context: Its window is searched.
-        mouse_x: Mouse position in the window, from its left edge [px].
-        mouse_y: The same from its bottom edge [px].
-    """
+    """The 3D view under the mouse [window px]; None over another editor, a sidebar or a header."""
     for area in context.screen.areas:
         if area.type != "VIEW_3D":
             continue
@@ -109,8 +103,7 @@ class ClickSequence:
 
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     cursor = "CROSSHAIR"
-    ends_beside = True
-    """Whether a click beside the footage ends it; a brush is easily put down there."""
+    ends_beside = True  # whether a click beside the footage ends it; a brush is easily put down there
 
     @abstractmethod
     def cancel(self, context: bpy.types.Context) -> None:

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
 
 CANCELS_JOB = frozenset({"ESC"})
-CANCELS_CLICK = frozenset({"ESC", "RIGHTMOUSE"})
-"""As in Blender's own operators that wait for a click."""
+CANCELS_CLICK = frozenset({"ESC", "RIGHTMOUSE"})  # as in Blender's own operators that wait for a click
 
 
 class Modal(Protocol):
@@ -77,7 +76,7 @@ class JobOperator(BaseOperator):
 
     @abstractmethod
     def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
-        """Return the job; it must leave the scene as it was."""
+        """The job; it must leave the scene as it was."""
 
     @abstractmethod
     def finish(self, scene: bpy.types.Scene, result: Any) -> None:

@@ -29,9 +29,7 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
 def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
-    Args:
-        context: Its windows are searched.
-        job: Only operators whose name begins so, as `keymark.reconstruct`; any but `TOOLS` by default.
+    `job` is how its operator's name begins, as `keymark.reconstruct`; any but `TOOLS` by default.
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
@@ -54,12 +52,7 @@ def steady_frame(context: bpy.types.Context) -> float:
 
 
 def time_left(elapsed_s: float, fraction: float) -> str:
-    """Estimated time a job still takes, as a label; empty while it is too early to tell.
-
-    Args:
-        elapsed_s: Time it has taken so far.
-        fraction: Share of it that is done, 0 to 1.
-    """
+    """Estimated time a job still takes, as a label; empty while it is too early to tell."""
     if elapsed_s < EARLIEST_S or fraction < LEAST_FRACTION:
         return ""
     seconds = elapsed_s * (1.0 - fraction) / fraction

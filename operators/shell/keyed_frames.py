@@ -55,7 +55,7 @@ def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
 
 
 def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
-    """Return an empty Action for keyframes, with a fake user: kept while the motion's is in use."""
+    """An empty Action for keyframes, with a fake user: kept while the motion's is in use."""
     action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
     action.use_fake_user = True
     return action
@@ -64,8 +64,7 @@ def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
 # --- Scene frames of keyframes, posed and found, cached so that redraws need not read the keys
 
 
-SAME_FRAME = 0.5
-"""A key nearer to a frame than this [frames] counts as that frame's."""
+SAME_FRAME = 0.5  # a key nearer to a frame than this [frames] counts as that frame's
 
 
 @dataclass(frozen=True)
@@ -73,8 +72,7 @@ class KeyedFrames:
     """Scene frames keyed in an Action, in ascending order."""
 
     all: tuple[float, ...] = ()
-    untouched: tuple[float, ...] = ()
-    """Those whose keys are unchanged since they were found."""
+    untouched: tuple[float, ...] = ()  # those whose keys are unchanged since they were found
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
@@ -82,18 +80,18 @@ _keyed: dict[tuple[int, int], KeyedFrames] = {}
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames of a take's keyframes, posed and found, in ascending order."""
+    """The scene frames of a take's keyframes, posed and found, in ascending order."""
     return _keyed_of(take).all
 
 
 def matched_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that were found in the footage and not changed since, in ascending order."""
+    """The scene frames that were found in the footage and not changed since, in ascending order."""
     known = {round(match.frame, 3) for match in take.matching.matches}
     return tuple(frame for frame in _keyed_of(take).untouched if frame in known)
 
 
 def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that the animator posed, in ascending order."""
+    """The scene frames that the animator posed, in ascending order."""
     matched = set(matched_frames(take))
     return tuple(frame for frame in keyframes_of(take) if frame not in matched)
 
@@ -135,12 +133,12 @@ def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """Return the take's proposed scene frames, in ascending order."""
+    """The take's proposed scene frames, in ascending order."""
     return sorted({proposal.frame for proposal in take.proposals}) if take else []
 
 
 def unposed_proposals(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """Return the proposed frames without a keyframe, in ascending order."""
+    """The proposed frames without a keyframe, in ascending order."""
     if take is None:
         return []
     keyed = {round(frame) for frame in keyframes_of(take)}
@@ -187,8 +185,7 @@ def unregister() -> None:
 # --- Found keyframes of a take, those that nobody posed
 
 
-DOUBTFUL = 0.5
-"""Confidence below which a found keyframe is doubtful: it is more likely wrong than right."""
+DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: it is more likely wrong than right
 
 
 def state_of(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> str:

@@ -39,14 +39,9 @@ def give_notices(
     sentences: Iterable[str] = (),
     frame: float | None = None,
 ) -> None:
-    """Replace the notices about something of a step; none: there is nothing to know any more.
+    """Replace the notices about something of a step of `STEPS`; none: there is nothing to know any more.
 
-    Args:
-        take: The take.
-        step: The step in whose panel they stand, a name of `steps.STEPS`.
-        about: What they are about, by any name: `clip`, `lengths`.
-        sentences: The notices, as they are shown.
-        frame: Scene frame of a keyframe; the notices hold while there is one.
+    `about` is any name, such as `clip`; notices of a keyframe's scene frame hold while there is one.
     """
     notices = take.notices
     for index in reversed(range(len(notices))):

@@ -9,8 +9,7 @@ from .job_progress import job_is_running
 from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .takes import find_take, has_lost_actor, present_actor
 
-MOST_NAMED = 3
-"""Missing bones that a sentence names."""
+MOST_NAMED = 3  # missing bones that a sentence names
 
 Requirement = Callable[[bpy.types.Context], str | None]
 

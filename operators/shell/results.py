@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-DEFAULT_SIZE = 6
-"""Results of one kind: those of the takes at hand."""
+DEFAULT_SIZE = 6  # results of one kind: those of the takes at hand
 
 
 class LruCache(Generic[Result]):
@@ -34,7 +33,7 @@ class LruCache(Generic[Result]):
         self._results: OrderedDict[str, Result | None] = OrderedDict()
 
     def get(self, key: str, load: Callable[[], Result | None]) -> Result | None:
-        """Return the result of a key; the first time, what `load` returns."""
+        """The result of a key; the first time, what `load` returns."""
         if key not in self._results:
             self.put(key, load())
         self._results.move_to_end(key)
@@ -59,12 +58,9 @@ class LruCache(Generic[Result]):
 class FootageSpeed:
     """V_sum of a take's footage over scene frames."""
 
-    key: str
-    """Digest of it."""
-    frames: "Array"
-    """(F,) scene frames."""
-    values: "Array"
-    """(F,) [px per frame]."""
+    key: str  # digest of it
+    frames: "Array"  # (F,) scene frames
+    values: "Array"  # (F,) [px per frame]
 
 
 FOLDER = "results"
@@ -73,14 +69,13 @@ EXTENSION = (__package__ or "").partition(".operators")[0]
 
 _readings: "LruCache[Reading]" = LruCache()
 _reviews: "LruCache[Review]" = LruCache()
-_speeds: "LruCache[FootageSpeed]" = LruCache()
-"""By the take's identifier and the key of its reading."""
+_speeds: "LruCache[FootageSpeed]" = LruCache()  # by the take's identifier and the key of its reading
 _reconstructions: "LruCache[Reconstruction]" = LruCache(2)
 """The last one of each take, by the take's identifier."""
 
 
 def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
-    """Return the last reading of a take's clip; None if there is none, or it was lost.
+    """The last reading of a take's clip; None if there is none, or it was lost.
 
     It is for display: only `read_footage` checks whether it still holds.
     """
@@ -98,7 +93,7 @@ def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
 
 
 def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
-    """Return the review of a take's motion; None if there is none, or it was lost."""
+    """The review of a take's motion; None if there is none, or it was lost."""
     if not take.review_key:
         return None
     from ...core.review.review import Review
@@ -123,7 +118,7 @@ def clear_review(take: bpy.types.PropertyGroup) -> None:
 
 
 def last_reconstruction(take: bpy.types.PropertyGroup) -> "Reconstruction | None":
-    """Return the take's last reconstruction in this session, from which the next one starts."""
+    """The take's last reconstruction in this session, from which the next one starts."""
     return _reconstructions.get(take.identifier, lambda: None)
 
 
@@ -133,7 +128,7 @@ def keep_reconstruction(take: bpy.types.PropertyGroup, reconstruction: "Reconstr
 
 
 def speed_of(take: bpy.types.PropertyGroup) -> "FootageSpeed | None":
-    """Return the speed by which keyframes were last proposed in this session, of the take's reading."""
+    """The speed by which keyframes were last proposed in this session, of the take's reading."""
     return _speeds.get(f"{take.identifier} {take.reading_key}", lambda: None)
 
 
@@ -157,7 +152,7 @@ def _reading_conversions() -> "tuple[Callable[[Reading], Arrays], Callable[[Arra
 
 
 def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Result]) -> Result | None:
-    """Return a result from memory or disk; None if it is in neither."""
+    """A result from memory or disk; None if it is in neither."""
     if not key:
         return None
 

@@ -19,8 +19,7 @@ class StepPanel(TakePanel):
 
     bl_options = {"HIDE_HEADER"}
     bl_label: str
-    step: ClassVar[str]
-    """A name of `steps.STEPS`."""
+    step: ClassVar[str]  # a name of `steps.STEPS`
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
@@ -46,7 +45,7 @@ class StepPanel(TakePanel):
         state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
 
     def column(self) -> bpy.types.UILayout:
-        """Return the step's column of properties."""
+        """The step's column of properties."""
         return property_column(self._body)
 
     @property

@@ -61,13 +61,10 @@ def library_of_assets(
     about: LibraryMetadata,
     identifier: str,
 ) -> Library:
-    """The library that pose assets belong to, and the pose assets of an actor that belong to none.
+    """The library that pose assets belong to, with an actor's pose assets that belong to none, if given.
 
-    Args:
-        actions: Linked ones and those that hold no posture are ignored.
-        armature_object: The actor of pose assets that belong to no library; None to leave these out.
-        about: Details of the library where no pose asset belongs to one.
-        identifier: The library to take where there are several.
+    Linked Actions are ignored. Of several libraries that with the identifier is taken; a new one has the
+    details `about`.
 
     Raises:
         InputError: There are no pose assets, or those of several other libraries, or one is unusable.
@@ -138,18 +135,9 @@ def library_from_action(
     about: LibraryMetadata,
     count: int | None = None,
 ) -> Library:
-    """Learn a library from the motion that an Action holds for an actor.
+    """Learn a library from the motion that an Action holds for an actor; `frame_s` is a frame's time [s].
 
-    Args:
-        armature_object: The actor.
-        action: The motion, with the animator's changes.
-        frame_s: Time from one scene frame to the next [s].
-        about: Title, author and license.
-        count: How many postures; by default 10 to 40, as many as differ.
-
-    Raises:
-        InputError: The Action has no motion of the actor, the armature is not an actor's, or the motion
-            is too short or stands still, or title, author or license is invalid.
+    It has `count` postures; by default 10 to 40, as many as differ.
     """
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
