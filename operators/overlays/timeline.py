@@ -28,7 +28,7 @@ FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
 def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
-    """Merge frames at rising positions (F,) too close to be told apart; their lowest or highest value is kept.
+    """Merge frames at rising positions (F,) too close to tell apart; their lowest or highest value is kept.
 
     A long clip then takes no longer to draw.
     """

@@ -13,7 +13,7 @@ _folders: dict[str, str] = {}  # folder that each operator's browser was left in
 
 
 def browse(operator: bpy.types.Operator, context: bpy.types.Context, folder: str = "") -> set[str]:
-    """Show the file browser where this operator's was left last, at first in `folder`; returns as `invoke`."""
+    """Show the file browser where this operator's was left last, first in `folder`; returns as `invoke`."""
     begin = _folders.get(operator.bl_idname, folder)
     if begin:
         operator.filepath = os.path.join(begin, "")
