@@ -56,6 +56,7 @@ def channels_at_rest(
     `models` are parents first; `rest` has each bone's rest matrix (4, 4) in the object's space.
     """
     frames: dict[str, Array] = {}
+    axes: dict[str, Array] = {}  # the bones' in the object's space
     channels = []
     for model in models:
         frames[model.name] = _joint_frame(postures, model, frames)
@@ -63,16 +64,14 @@ def channels_at_rest(
             frames[model.name] = frames[model.name] @ extremities.turns[model.name]
         elif not model.chain:
             continue
-        turn = rest[model.name][:3, :3]
-        posed = _posed(frames, model, space.rotation)
-        location = None
+        axes[model.name] = posed = np.asarray(space.rotation.T @ frames[model.name] @ model.axes)
+        turn, location = rest[model.name][:3, :3], None
         if model.parent is None:
             head = space.from_world(postures.translation + frames[model.name] @ model.start)
             location = (head - rest[model.name][:3, 3]) @ turn
         else:
-            above = next(other for other in models if other.name == model.parent)
             turn = rest[model.parent][:3, :3].T @ turn
-            posed = np.swapaxes(_posed(frames, above, space.rotation), -1, -2) @ posed
+            posed = np.swapaxes(axes[model.parent], -1, -2) @ posed
         channels.append(BoneChannels(model.name, turn.T @ posed, location))
     return tuple(channels)
 
@@ -90,11 +89,6 @@ def _joint_frame(postures: Posture, model: BoneModel, frames: dict[str, Array]) 
         else:
             frame = frame @ postures.rotations[..., skeleton.ball_joints.index(joint), :, :]
     return frame
-
-
-def _posed(frames: dict[str, Array], model: BoneModel, object_rotation: Array) -> Array:
-    """(F, 3, 3) the bone's axes in the object's space."""
-    return np.asarray(object_rotation.T @ frames[model.name] @ model.axes)
 
 
 # --- F-curves of a motion, in an Action that animates the actor's armature

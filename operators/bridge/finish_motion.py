@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.body.human import HUMAN
-from ...core.body.kinematics import Body, Extremities
+from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
 from ...core.body.skeleton import Skeleton
 from ...core.finish.hermite import Spline
@@ -34,7 +34,6 @@ from .rig import (
 )
 from .rotation_modes import ALL_PATHS, bone_path
 
-CHANGED_BY_FEET = ("pelvis", "thigh", "shin")
 PLANTING = "Planting the feet"
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
@@ -113,12 +112,17 @@ def finish_motion(
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
         notes = _planting_notes(rig, shown, body, before, planted)
         if planted.contacts:
-            values = with_planted_legs(armature_object, rig, values, planted.posture)
+            every = np.ones(len(frames), dtype=bool)
+            moved = {bone.name: every for bone in rig.bones if _is_moved_by_feet(bone.name)}
+            values = _replaced(armature_object, rig, values, planted.posture, moved)
     if turned:
         contacts = planted.contacts or None
         natural = natural_extremities(body, planted.posture, time_s, contacts)
         where = {name: np.isin(frames, np.round(own, 3)) for name, own in turned.items()}
-        values = with_turned_extremities(armature_object, rig, values, planted.posture, natural, where)
+        values = _replaced(armature_object, rig, values, planted.posture, where, natural)
+        for held, bone in zip(values, rig.bones, strict=True):
+            if bone.name in where and bone.mode == "QUATERNION":
+                held[:, :4] = unit_quaternions(held[:, :4])
     if options.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
     allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts)
@@ -143,27 +147,19 @@ def _planting_notes(
     )
 
 
-def with_planted_legs(
-    armature_object: bpy.types.Object, rig: Rig, values: Sequence[Array], planted: Posture
-) -> list[Array]:
-    """Values with hips and legs replaced by those of other postures; the rest stays."""
-    stored = {(path, index): column for path, index, _, column in posture_columns(armature_object, planted)}
-    changed = [column.copy() for column in values]
-    for bone, column, path, index in rig_channels(rig):
-        if rig.bones[bone].name.partition(".")[0] in CHANGED_BY_FEET:
-            changed[bone][:, column] = stored[path, index]
-    return changed
+def _is_moved_by_feet(bone: str) -> bool:
+    return bone.partition(".")[0] in ("pelvis", "thigh", "shin")
 
 
-def with_turned_extremities(
+def _replaced(
     armature_object: bpy.types.Object,
     rig: Rig,
     values: Sequence[Array],
     posture: Posture,
-    extremities: Extremities,
     where: Mapping[str, BoolArray],
+    extremities: Extremities = RIGID,
 ) -> list[Array]:
-    """Values with the hands and feet of postures in the frames `where` (F,) says, by name; the rest stays."""
+    """Values with those of postures in the frames `where` (F,) says of each bone; the rest stays."""
     columns = posture_columns(armature_object, posture, extremities)
     stored = {(path, index): column for path, index, _, column in columns}
     changed = [column.copy() for column in values]
@@ -171,9 +167,6 @@ def with_turned_extremities(
         rows = where.get(rig.bones[bone].name)
         if rows is not None:
             changed[bone][rows, column] = stored[path, index][rows]
-    for bone, model in enumerate(rig.bones):
-        if model.name in where and model.mode == "QUATERNION":
-            changed[bone][:, :4] = unit_quaternions(changed[bone][:, :4])
     return changed
 
 
@@ -182,7 +175,7 @@ def largest_leg_distance_m(rig: Rig, shown: RigPose, body: Body, posture: Postur
     pose = body.pose(posture)
     worst = 0.0
     for index, bone in enumerate(rig.bones):
-        if bone.name.partition(".")[0] in CHANGED_BY_FEET:
+        if _is_moved_by_feet(bone.name):
             end = body.segment_ends(pose, bone.name)[1]
             there = shown.points[:, rig.point_slices[index].start + 1]
             worst = max(worst, float(np.linalg.norm(end - there, axis=-1).max()))

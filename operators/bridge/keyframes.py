@@ -1,6 +1,6 @@
 """Postures of candidates, as a scene's properties hold them."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -15,11 +15,12 @@ from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
+from .armature import BoneModel
 from .fcurves import moved_paths, posture_columns
 from .keys import (
     animator_frames,
+    generated_frames,
     give_to_animator,
-    matched_frames_of,
     remove_keys,
     set_matched_keys,
     set_posed_keys,
@@ -48,11 +49,13 @@ def untouched_frames(
     if channelbag is None:
         return ()
     found: set[float] | None = None
-    for path, index in _curves(armature_object, skeleton):
+    for model, path, index, _ in _channels(armature_object, skeleton):
+        if not model.chain:
+            continue
         fcurve = channelbag.fcurves.find(path, index=index)
         if fcurve is None:
             return ()
-        frames = set(np.round(matched_frames_of(fcurve), DIGITS).tolist())
+        frames = set(np.round(generated_frames(fcurve, matched=True), DIGITS).tolist())
         found = frames if found is None else found & frames
         if not found:
             return ()
@@ -98,18 +101,15 @@ def take_over(
         give_to_animator(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
 
 
-def _curves(armature_object: bpy.types.Object, skeleton: Skeleton) -> list[tuple[str, int]]:
-    """Data path and array index of all channels of a posture, in the bones' present rotation modes."""
-    curves = []
+def _channels(
+    armature_object: bpy.types.Object, skeleton: Skeleton
+) -> Iterator[tuple[BoneModel, str, int, float]]:
+    """Bone, data path, array index and value of all channels, in the bones' present rotation modes."""
     for model in skeleton_bones(armature_object, skeleton):
-        if not model.chain:
-            continue
         bone = armature_object.pose.bones[model.name]
-        channels = [rotation_path(bone.rotation_mode), *(["location"] if model.is_root else [])]
-        for channel in channels:
-            count = len(getattr(bone, channel))
-            curves += [(bone_path(model.name, channel), index) for index in range(count)]
-    return curves
+        for channel in (rotation_path(bone.rotation_mode), *(("location",) if model.is_root else ())):
+            for index, value in enumerate(getattr(bone, channel)):
+                yield model, bone_path(model.name, channel), index, value
 
 
 def _turned_to_neighbors(
@@ -209,13 +209,9 @@ def store_pose(
 ) -> None:
     """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame."""
     channelbag = channelbag_for(action, armature_object)
-    for model in skeleton_bones(armature_object, skeleton):
-        bone = armature_object.pose.bones[model.name]
-        channels = [rotation_path(bone.rotation_mode), *(["location"] if model.is_root else [])]
-        for channel in channels:
-            path = bone_path(model.name, channel)
-            for index, value in enumerate(getattr(bone, channel)):
-                set_posed_keys(channelbag, path, index, model.name, np.array([frame]), np.array([value]))
+    at = np.array([frame])
+    for model, path, index, value in _channels(armature_object, skeleton):
+        set_posed_keys(channelbag, path, index, model.name, at, np.array([value]))
 
 
 def write_keyframes(

@@ -66,8 +66,10 @@ def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
     points = fcurve.keyframe_points
     keys: Keys = {}
     for name in (*PAIRS, *FLOATS, *ENUMS, *FLAGS):
-        count = len(points) * (2 if name in PAIRS else 1)
-        values = np.empty(count, _dtype(name))
+        values = np.empty(
+            len(points) * (2 if name in PAIRS else 1),
+            np.bool_ if name in FLAGS else np.int32 if name in ENUMS else np.float32,
+        )
         points.foreach_get(name, values)
         keys[name] = values.reshape(-1, 2) if name in PAIRS else values
     return keys
@@ -81,13 +83,6 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     for name in (*ENUMS, *FLOATS, *PAIRS, *FLAGS):
         points.foreach_set(name, keys[name].ravel())
     fcurve.update()
-
-
-def _dtype(name: str) -> type[np.generic]:
-    """The type in which Blender stores a property of keys."""
-    if name in FLAGS:
-        return np.bool_
-    return np.int32 if name in ENUMS else np.float32
 
 
 def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
@@ -127,21 +122,15 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
-def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys of found keyframes that are unchanged."""
+def generated_frames(fcurve: bpy.types.FCurve, matched: bool = False) -> Array:
+    """Frames (N,) of the GENERATED keys that are unchanged, or of those of found keyframes among them."""
     if not len(fcurve.keyframe_points):
         return np.zeros(0)
     keys = _read_keys(fcurve)
-    unchanged = _generated(keys) & (keys["amplitude"] == MATCH_AMPLITUDE)
+    unchanged = _generated(keys)
+    if matched:
+        unchanged &= keys["amplitude"] == MATCH_AMPLITUDE
     return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
-
-
-def generated_frames(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the GENERATED keys that are unchanged."""
-    if not len(fcurve.keyframe_points):
-        return np.zeros(0)
-    keys = _read_keys(fcurve)
-    return np.asarray(keys["co"][_generated(keys), 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
@@ -221,11 +210,9 @@ def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str
             given = _as_animators(keys)
             usual = bpy.types.Keyframe.bl_rna.properties["amplitude"].default
             given["amplitude"] = np.full(len(there), usual, np.float32)
-            changed = {
-                name: np.where(there if column.ndim == 1 else there[:, None], given[name], column)
-                for name, column in keys.items()
-            }
-            _write_keys(fcurve, changed)
+            for name, column in keys.items():
+                column[there] = given[name][there]
+            _write_keys(fcurve, keys)
 
 
 def _keys_on(

@@ -36,7 +36,8 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
     values = channel_values(body, posture)
     for model in _models(body):
         if model.chain:
-            for (path, index), value in zip(_channels(body, model), values[model.name], strict=True):
+            channels = _channels(model, usual_mode(body.skeleton, model))
+            for (path, index), value in zip(channels, values[model.name], strict=True):
                 set_posed_keys(channelbag, path, index, model.name, np.array([FRAME]), np.array([value]))
 
 
@@ -56,14 +57,14 @@ def read_posture_curves(
     changed: list[str] = []
     found = False
     for model in _models(body):
-        modes[model.name] = usual_mode(body.skeleton, model)
+        mode = usual_mode(body.skeleton, model)
+        modes[model.name] = mode
         if not model.chain:
             continue
-        mode, there, column = _read_bone(curves, model, modes[model.name], known[model.name])
-        found |= there
-        modes[model.name] = mode
-        values[model.name] = column
         before = known[model.name]
+        modes[model.name], there, column = _read_bone(curves, model, mode, before)
+        values[model.name] = column
+        found |= there
         slack = SAME * np.maximum(1.0, np.abs(before))
         if len(column) != len(before) or (np.abs(column - before) > slack).any():
             changed.append(model.name)
@@ -88,11 +89,10 @@ def channel_values(body: Body, posture: Posture) -> Values:
     return values
 
 
-def _channels(body: Body, model: BoneModel) -> list[tuple[str, int]]:
-    """Data path and index of each of a bone's values."""
-    mode = usual_mode(body.skeleton, model)
-    path = bone_path(model.name, rotation_path(mode))
+def _channels(model: BoneModel, mode: str) -> list[tuple[str, int]]:
+    """Data path and index of each of a bone's values in a rotation mode."""
     location = [(bone_path(model.name, "location"), index) for index in range(3 if model.is_root else 0)]
+    path = bone_path(model.name, rotation_path(mode))
     return [*((path, index) for index in range(channel_count(mode))), *location]
 
 
@@ -123,9 +123,7 @@ def _read_bone(
     modes = [mode, *(other for other in ("QUATERNION", "AXIS_ANGLE", euler) if other != mode)]
     keyed = [m for m in modes if any((bone_path(name, rotation_path(m)), i) in curves for i in range(4))]
     chosen = keyed[0] if keyed else mode
-    path, count = bone_path(name, rotation_path(chosen)), channel_count(chosen)
-    location = [(bone_path(name, "location"), index) for index in range(3 if model.is_root else 0)]
-    channels = [*((path, index) for index in range(count)), *location]
+    count, channels = channel_count(chosen), _channels(model, chosen)
     usual = known[:count] if chosen == mode else np.eye(4)[0][:count] * (chosen == "QUATERNION")
     otherwise = np.concatenate([usual, known[channel_count(mode) :]])
     values = [

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ...core.arrays import Array, IndexArray
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.files.digest import digest
 from ...core.footage.keypoints.keypoints import People, SeenPeople
@@ -184,19 +184,13 @@ def _people(
     pixel = np.full((len(frames), len(points), 2), np.nan)
     score = np.zeros((len(frames), len(points)))
     for column, track in enumerate(points.values()):
-        index, places = _seen(footage, frames, track)
-        pixel[index, column] = places
+        markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
+        index = shown_index(frames, [_start(footage) + marker.frame for marker in markers])
+        pixel[index[index >= 0], column] = _places(footage, track, markers)[index >= 0]
         score[index, column] = float(track.weight)
     width, height = footage.clip.size
     source = f"{TRACKS} {rank + 1}" if rank else TRACKS
     return one_person(tuple(points), source, (width, height), pixel, score)
-
-
-def _seen(footage: Footage, frames: Array, track: bpy.types.MovieTrackingTrack) -> tuple[IndexArray, Array]:
-    """Indices (K,) of the clip's frames in which a track is seen, and its places there (K, 2) [px]."""
-    markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
-    index = shown_index(frames, [_start(footage) + marker.frame for marker in markers])
-    return index[index >= 0], _places(footage, track, markers)[index >= 0]
 
 
 def _places(

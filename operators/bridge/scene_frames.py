@@ -46,7 +46,10 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     Poses without keys, of any armature in the scene, are restored as well.
     """
     before = scene.frame_current, scene.frame_subframe
-    poses = [(actor, pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
+    animated = [
+        one for one in scene.objects if one.type == "ARMATURE" and one.animation_data and one.is_editable
+    ]
+    poses = [(actor, pose_of(actor)) for actor in armatures if actor.animation_data is not None]
 
     def go_to(frame: float) -> None:
         whole = floor(frame)
@@ -79,10 +82,6 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
                 data.action_slot = before[1]
             evaluated(armature_object)  # a new Action is evaluated once, which would undo the unkeyed changes
         restore_pose(armature_object, pose)
-
-
-def _is_animated(item: bpy.types.Object) -> bool:
-    return item.type == "ARMATURE" and item.animation_data is not None and item.is_editable
 
 
 def pose_of(armature_object: bpy.types.Object) -> Pose:

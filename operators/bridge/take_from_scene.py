@@ -68,9 +68,6 @@ def performers_keypoints(
 # --- Read a take from a scene
 
 
-READING = "Reading the footage's times"
-
-
 def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None) -> Job[Array]:
     """Find the scene frames (F,) that show the frames of the clip, fractional for variable frame rates.
 
@@ -78,7 +75,7 @@ def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None)
     any clip, knows them where it is one of this.
     """
     times = clip_times(footage.open(), kept, evidence.markers, evidence.ignored_regions)
-    time_s = yield from within(READING, times, 0.0, 1.0)
+    time_s = yield from within("Reading the footage's times", times, 0.0, 1.0)
     return scene_frames(time_s, footage.first_frame, footage.rate)
 
 
