@@ -200,10 +200,7 @@ def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: Bone
 
 
 def _limit_ik(
-    pose_bone: bpy.types.PoseBone,
-    model: BoneModel,
-    axis: ArrayLike,
-    limits_deg: tuple[float, float],
+    pose_bone: bpy.types.PoseBone, model: BoneModel, axis: ArrayLike, limits_deg: tuple[float, float]
 ) -> None:
     along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign
     column = int(np.argmax(np.abs(along)))

@@ -24,14 +24,7 @@ from .fcurves import moved_paths, posture_columns
 from .keyframes import keyed_frames, untouched_frames
 from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
 from .review_curves import is_review_curve
-from .rig import (
-    motion_frames,
-    read_rig,
-    read_values,
-    rig_channels,
-    shown_postures,
-    unit_quaternions,
-)
+from .rig import motion_frames, read_rig, read_values, rig_channels, shown_postures, unit_quaternions
 from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"

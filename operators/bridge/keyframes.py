@@ -63,10 +63,7 @@ def untouched_frames(
 
 
 def write_matched(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    frames: Array,
-    postures: Sequence[Posture],
+    armature_object: bpy.types.Object, action: bpy.types.Action, frames: Array, postures: Sequence[Posture]
 ) -> None:
     """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced."""
     channelbag = channelbag_for(action, armature_object)
@@ -78,10 +75,7 @@ def write_matched(
 
 
 def remove_keyframes(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    frames: Collection[float],
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
 ) -> None:
     """Remove keyframes; keys of hands and feet stay."""
     channelbag = existing_channelbag(action, armature_object)
@@ -90,10 +84,7 @@ def remove_keyframes(
 
 
 def take_over(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    frames: Collection[float],
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
 ) -> None:
     """Turn found keyframes into the animator's own, as if posed by hand."""
     channelbag = existing_channelbag(action, armature_object)

@@ -37,11 +37,7 @@ def hidden_markers(review: "Review", index: int) -> list[int]:
 
 
 def observed_outlines(
-    review: "Review",
-    index: int,
-    to_region: Callable[[Array], Array],
-    colors: list[MarkerColor],
-    style: Style,
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
 ) -> list[Item]:
     """A solid outline of each region that was found."""
     outlines = to_region(review.observed[index])
@@ -52,11 +48,7 @@ def observed_outlines(
 
 
 def predicted_outlines(
-    review: "Review",
-    index: int,
-    to_region: Callable[[Array], Array],
-    colors: list[MarkerColor],
-    style: Style,
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
 ) -> list[Item]:
     """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
     outlines = to_region(review.predicted[index])

@@ -284,10 +284,7 @@ def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) 
     heights = timeline.floor + timeline.height * level
     x = timeline.frame_x(frames)
     marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
-    return [
-        Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
-        Fill(marks[done], PROPOSED),
-    ]
+    return [Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8), Fill(marks[done], PROPOSED)]
 
 
 def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
@@ -295,10 +292,7 @@ def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) ->
     x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
     marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))
-    return [
-        Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8),
-        Fill(marks[sure], MATCHED),
-    ]
+    return [Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8), Fill(marks[sure], MATCHED)]
 
 
 _speeds: LruCache[FootageSpeed] = LruCache()
