@@ -10,7 +10,6 @@ from keymark.operators.bridge.footage_to_scene import show_footage
 
 
 def test_another_frame_has_another_color_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
-    """The frame that the scene shows is the one that is read."""
     shown = show_footage(bpy.context.scene, camera, tiny_take.clip, tiny_take.fps, 1, 13)
     footage = Footage(bpy.context.scene, bpy.context.scene.active_clip, shown)
     pose = tiny_take.body.pose(tiny_take.keyframes[0].posture)

@@ -15,7 +15,6 @@ def overlay(draw: DrawFunction) -> Overlay:
 
 @pytest.fixture(autouse=True)
 def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Record of the blend modes that handlers set; without a window there is no GPU module."""
     modes: list[str] = []
     monkeypatch.setattr(registry, "gpu", SimpleNamespace(state=SimpleNamespace(blend_set=modes.append)))
     registry.try_again()
@@ -25,7 +24,6 @@ def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def test_a_failure_is_logged_once_and_switches_the_overlay_off(
     caplog: pytest.LogCaptureFixture, blending: list[str]
 ) -> None:
-    """The second redraw does not even try; another go is given on demand."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
@@ -45,7 +43,6 @@ def test_a_failure_is_logged_once_and_switches_the_overlay_off(
 
 
 def test_another_overlay_goes_on(blending: list[str]) -> None:
-    """One that fails takes no other with it."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
@@ -69,14 +66,12 @@ def test_every_overlay_can_be_handed_to_blender() -> None:
 
 
 def test_without_a_screen_no_handler_is_added() -> None:
-    """Tests, render farms and the command line draw nothing."""
     registry.register()
     assert registry._handlers == []
     registry.unregister()
 
 
 def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
-    """An unsupported camera, for example: no error, and the overlay stays enabled."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
