@@ -46,9 +46,7 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     Poses without keys, of any armature in the scene, are restored as well.
     """
     before = scene.frame_current, scene.frame_subframe
-    animated = [
-        one for one in scene.objects if one.type == "ARMATURE" and one.animation_data and one.is_editable
-    ]
+    armatures = [one for one in scene.objects if one.type == "ARMATURE" and one.is_editable]
     poses = [(actor, pose_of(actor)) for actor in armatures if actor.animation_data is not None]
 
     def go_to(frame: float) -> None:

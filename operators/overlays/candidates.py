@@ -21,6 +21,7 @@ from .drawing import (
     CORE_SHARE,
     GHOST,
     LIMB,
+    TALL_M,
     Color,
     Item,
     Label,
@@ -31,7 +32,6 @@ from .drawing import (
 )
 from .motion import limb_lines, world_view
 
-TALL_M = 1.7  # height of a figure by which lines get thinner where it is small [m]
 ABOVE = 6.0  # distance of a figure's number from the point that it stands above [px]
 BESIDE = 16.0  # distance at which the numbers of two figures, as high as this, can both be read [px]
 
@@ -118,10 +118,10 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
         if index == chosen:
             continue
         color = style.color(candidate_color(index))
-        lines, is_right = limb_lines(names, figure)
+        lines, sides = limb_lines(names, figure)
         items += [
             Stroke(lines, color, width, GHOST * style.halo),
-            Stroke(lines[is_right], style.color(CORE), CORE_SHARE * width),
+            Stroke(lines[sides == "R"], style.color(CORE), CORE_SHARE * width),
         ]
         apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
         if apart.max() >= 0.0:

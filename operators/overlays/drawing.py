@@ -169,6 +169,7 @@ GHOST = 0.6  # opacity of figures that are only offered
 LIMB = 2.4  # thickness of limbs relative to outlines
 METER, SMALLEST = 160.0, 0.35
 """Size of a meter below which a body's marks get smaller [px], and the smallest share of their size."""
+TALL_M = 1.7  # height of a figure by which marks get smaller where it is small [m]
 PALER = 0.5  # share of white in the prediction's color, so that dashes show over a solid line
 HALO_STYLE = 0.9
 UNCERTAIN_M = 0.05

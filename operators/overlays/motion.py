@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.arrays import Array, BoolArray, IndexArray
 from ..bridge.camera_placement import read_lens
@@ -20,6 +21,7 @@ from .drawing import (
     LIMB,
     PATH_POINTS,
     SIDES,
+    TALL_M,
     UNCERTAIN_M,
     Fill,
     Item,
@@ -76,33 +78,27 @@ def skeleton(
     ]
 
 
-def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, BoolArray]:
-    """Lines (N, 2, 2) of a body from its points (13, 2), and which of them (N,) are of the right side.
+def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray[np.str_]]:
+    """Lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none.
 
     A line with an end that is not finite is left out.
     """
-    lines, sides = _lines(names, positions)
-    seen = np.isfinite(lines).all(axis=(-2, -1))
-    return lines[seen], np.array([side == "R" for side in sides])[seen]
-
-
-def _lines(names: tuple[str, ...], positions: Array) -> tuple[Array, list[str]]:
     at = dict(zip(names, positions, strict=True))
     at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
     at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
-    return np.array([[at[start], at[end]] for _, start, end in LIMBS]), [side for side, _, _ in LIMBS]
+    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    return lines[seen], np.array([side for side, _, _ in LIMBS])[seen]
 
 
 def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
     """Lines in the colors of their sides; those of the right have a dark core."""
-    lines, sides = _lines(names, positions)
-    colors = np.array([style.color(SIDES[side]) for side in sides])
-    seen = np.isfinite(lines).all(axis=(-2, -1))
-    hollow = seen & np.array([side == "R" for side in sides])
+    lines, sides = limb_lines(names, positions)
+    colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
     width = LIMB * style.width * style.body_scale
     return [
-        Stroke(lines[seen], colors[seen], width, style.halo),
-        Stroke(lines[hollow], style.color(CORE), CORE_SHARE * width),
+        Stroke(lines, colors, width, style.halo),
+        Stroke(lines[sides == "R"], style.color(CORE), CORE_SHARE * width),
     ]
 
 
@@ -310,22 +306,18 @@ def _rows(
         if settings.show_observed:
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:
-                words = f"Hidden: {', '.join(hidden)}"
-                rows.append((Sample.NONE, words))
+                rows.append((Sample.NONE, f"Hidden: {', '.join(hidden)}"))
             rows.append((Sample.SOLID, "Marker as seen"))
         if settings.show_predicted:
             rows.append((Sample.DASHED, "Marker as the motion predicts it"))
     if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
         rows.append((Sample.DASHED, "Contour as the motion predicts it"))
     if settings.show_skeleton:
-        rows.append((Sample.LEFT, "Performer's left"))
-        rows.append((Sample.RIGHT, "Performer's right"))
+        rows += [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
         if (what.review.sigma_m[what.index] > UNCERTAIN_M).any():
             rows.append((Sample.RING, "Uncertain point"))
     if settings.show_paths:
-        rows.append((Sample.PAST, "Path so far"))
-        rows.append((Sample.FUTURE, "Path to come"))
-        rows.append((Sample.DIAMOND, "Keyframe"))
+        rows += [(Sample.PAST, "Path so far"), (Sample.FUTURE, "Path to come"), (Sample.DIAMOND, "Keyframe")]
     return tuple(rows)
 
 
@@ -350,9 +342,6 @@ def draw_clip_editor(context: bpy.types.Context) -> None:
 
 
 # --- Overlay of keypoints where there is no motion yet
-
-
-TALL_M = 1.7  # height of a figure by which marks get smaller where it is small [m]
 
 
 def draw_keypoints(context: bpy.types.Context) -> None:
@@ -382,6 +371,5 @@ def picture_keypoints(
     sources = all_sources(None, seen)
     items = seen_marks(seen, view.to_region, sources, style)
     if settings.show_legend:
-        at = corner(context.area, context.region, scale)
-        items += legend(source_rows(sources), *at, style)
+        items += legend(source_rows(sources), *corner(context.area, context.region, scale), style)
     return items

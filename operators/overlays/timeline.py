@@ -209,13 +209,15 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     if proposed:
         frames = np.array(proposed, dtype=np.float64)
         still = frames[~have_frames(matched, frames)]
-        items += proposals(still, _level(still, speed), have_frames(posed, still), timeline)
+        if len(still):
+            done = have_frames(posed, still)
+            items += marks(diamonds, still, _level(still, speed), done, PROPOSED, timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
         found = take.matching.matches
         doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
         sure = np.array([frame not in doubtful for frame in matched])
-        items += matches(frames, _level(frames, speed), sure, timeline)
+        items += marks(squares, frames, _level(frames, speed), sure, MATCHED, timeline)
     return items
 
 
@@ -277,22 +279,19 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     ]
 
 
-def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) -> list[Item]:
-    """Diamonds on the graph: hollow where the actor is still to be posed, filled where it is."""
-    if not len(frames):
-        return []
-    heights = timeline.floor + timeline.height * level
-    x = timeline.frame_x(frames)
-    marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
-    return [Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8), Fill(marks[done], PROPOSED)]
-
-
-def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
-    """Squares on the graph at found keyframes: hollow for doubtful ones, filled for sure ones."""
+def marks(
+    shape: Callable[[Array, float], Array],
+    frames: Array,
+    level: Array,
+    filled: BoolArray,
+    color: Color,
+    timeline: Timeline,
+) -> list[Item]:
+    """Diamonds or squares at frames (K,) of the graph, at heights (K,) from 0 to 1; some filled."""
     x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
-    marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))
-    return [Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8), Fill(marks[sure], MATCHED)]
+    figures = shape(centers, timeline.fitting(x, timeline.sizes.diamond))
+    return [Stroke(segments(figures, closed=True), color, 1.6, 0.8), Fill(figures[filled], color)]
 
 
 _speeds: LruCache[FootageSpeed] = LruCache()

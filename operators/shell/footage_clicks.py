@@ -14,18 +14,10 @@ from .footage_view import FootageRequest, ask, follow_mouse, pixel_under, shows_
 from .job_operator import cancel_click
 from .takes import active_take
 
-NAVIGATION = {
-    *(
-        "MIDDLEMOUSE",
-        "WHEELUPMOUSE",
-        "WHEELDOWNMOUSE",
-        "TRACKPADPAN",
-        "TRACKPADZOOM",
-        "MOUSEPAN",
-        "MOUSEZOOM",
-    ),
-    *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
-}
+NAVIGATION = frozenset(
+    "MIDDLEMOUSE WHEELUPMOUSE WHEELDOWNMOUSE TRACKPADPAN TRACKPADZOOM MOUSEPAN MOUSEZOOM HOME LEFT_ARROW "
+    "RIGHT_ARROW UP_ARROW DOWN_ARROW NUMPAD_PLUS NUMPAD_MINUS".split()
+)
 """Events that move the view or change the frame; the operator passes them on to Blender."""
 
 
@@ -166,7 +158,6 @@ class ClickSequence:
 def _kind_under(context: bpy.types.Context, event: bpy.types.Event) -> str:
     """The kind of editor under the mouse; empty between them."""
     for area in context.screen.areas:
-        inside = 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height
-        if inside:
+        if 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height:
             return str(area.type)
     return ""

@@ -188,8 +188,7 @@ def shown_request() -> FootageRequest | None:
 
 def side_of(name: str) -> str:
     """Whose left or right a body part or point is; empty for those in the middle."""
-    side = SIDES.get(name[-2:])
-    return side if side else ""
+    return SIDES.get(name[-2:], "")
 
 
 def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:

@@ -161,24 +161,24 @@ def _on_load(*_arguments: object) -> None:
     invalidate_keyed_frames()
 
 
-CHANGE_HANDLERS = ("depsgraph_update_post",)
-LOAD_HANDLERS = ("load_post", "undo_post", "redo_post")
+HANDLERS = {
+    "depsgraph_update_post": _on_change,
+    "load_post": _on_load,
+    "undo_post": _on_load,
+    "redo_post": _on_load,
+}
 
 
 def register() -> None:
     """Add handlers that empty the cache when keys may have changed."""
-    for name in CHANGE_HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_change)
-    for name in LOAD_HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_load)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister() -> None:
     """Remove the handlers."""
-    for name in CHANGE_HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_change)
-    for name in LOAD_HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_load)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
     invalidate_keyed_frames()
 
 
@@ -206,13 +206,12 @@ def is_doubtful(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -
 def doubtful_matches(take: bpy.types.PropertyGroup) -> list[int]:
     """Places in the list of the doubtful found keyframes: contradicted ones first, then the least sure."""
     matches: Sequence[bpy.types.PropertyGroup] = take.matching.matches
-    doubtful = [index for index, match in enumerate(matches) if is_doubtful(take, match)]
 
     def rank(index: int) -> tuple[bool, float, int]:
         match = matches[index]
         return not contradictions_at(take, match.frame), match.confidence, index
 
-    return sorted(doubtful, key=rank)
+    return sorted((index for index, match in enumerate(matches) if is_doubtful(take, match)), key=rank)
 
 
 def match_at(take: bpy.types.PropertyGroup, frame: float) -> int:

@@ -21,14 +21,11 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-DEFAULT_SIZE = 6  # results of one kind: those of the takes at hand
-
 
 class LruCache(Generic[Result]):
     """Results by key; when it is full, the least recently used one is dropped. None: known to be absent."""
 
-    def __init__(self, size: int = DEFAULT_SIZE) -> None:
-        """Begin empty."""
+    def __init__(self, size: int = 6) -> None:
         self._size = size
         self._results: OrderedDict[str, Result | None] = OrderedDict()
 
@@ -79,17 +76,20 @@ def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
 
     It is for display: only `read_footage` checks whether it still holds.
     """
-    return _load(_readings, take.reading_key, _reading_conversions()[1])
+    from ...core.footage.reading import reading_from_arrays  # late: registering must not need OpenCV
+
+    return _load(_readings, take.reading_key, reading_from_arrays)
 
 
 def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
     """Keep the reading of a take's clip, in memory and on disk."""
-    to_arrays, _ = _reading_conversions()
+    from ...core.footage.reading import reading_arrays
+
     known = take.reading_key == reading.key and reading_of(take) is not None
     _readings.put(reading.key, reading)
     take.reading_key = reading.key
     if not known:
-        _save(reading.key, to_arrays(reading))
+        _save(reading.key, reading_arrays(reading))
 
 
 def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
@@ -142,13 +142,6 @@ def clear_cache() -> None:
     """Drop all results from memory; those on disk stay."""
     for cache in (_readings, _reviews, _reconstructions, _speeds):
         cache.clear()
-
-
-def _reading_conversions() -> "tuple[Callable[[Reading], Arrays], Callable[[Arrays], Reading]]":
-    """Conversion of readings to arrays and back; imported late, as registering must not need OpenCV."""
-    from ...core.footage.reading import reading_arrays, reading_from_arrays
-
-    return reading_arrays, reading_from_arrays
 
 
 def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Result]) -> Result | None:
