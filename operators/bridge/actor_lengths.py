@@ -16,13 +16,7 @@ from ...core.errors import InputError
 from .armature import BoneModel, bone_models
 from .object_space import object_space
 
-LARGEST_MISFIT = 0.01
-"""Share of stature by which bones may lie off the skeleton before the armature counts as another one."""
 ANY_STATURE_M = 1.7  # stature of the actor from which bone axes are taken; they do not depend on it
-
-
-SAME_DIRECTION = 1e-3  # length of the difference of two unit vectors that still point the same way
-LEAST_ROLL_RAD = 1e-4  # a smaller roll is rounding
 
 
 def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
@@ -56,11 +50,11 @@ def _as_rolled(
     for model in models:
         rest = np.array(bones[model.name].matrix_local, dtype=np.float64)[:3, :3]
         turn = model.axes.T @ rest  # at rest in a T pose all joints' frames are the object's own
-        if model.chain and np.linalg.norm(turn[:, 1] - [0.0, 1.0, 0.0]) > SAME_DIRECTION:
+        if model.chain and np.linalg.norm(turn[:, 1] - [0.0, 1.0, 0.0]) > 1e-3:
             return models
         roll = float(np.arctan2(turn[0, 2], turn[0, 0]))
         about = hinge(np.array([0.0, 1.0, 0.0]), np.array(roll))
-        rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > LEAST_ROLL_RAD else model)
+        rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > 1e-4 else model)
     return tuple(rolled)
 
 
@@ -94,7 +88,7 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     lengths = np.linalg.lstsq(matrix, vector, rcond=None)[0]
     body = Body(Actor(dict(zip(names, map(float, lengths), strict=True))), skeleton)
     misfit = float(np.abs(matrix @ lengths - vector).max())
-    if misfit > LARGEST_MISFIT * body.actor.stature_m:
+    if misfit > 0.01 * body.actor.stature_m:
         raise InputError(
             f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's "
             "skeleton; build an actor with Keymark and change its lengths only"

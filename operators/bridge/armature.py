@@ -26,7 +26,6 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Segment, Skeleton
 from .actor_bones import color_bones
 
-STRAIGHT = 1.0 - 1e-6  # cosine above which a segment continues another
 HINGE_ORDER = "YZX"
 
 
@@ -120,7 +119,7 @@ def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Arra
         return axis
     along = _direction(body, segment)
     for other in body.skeleton.segments:
-        if other.parent == segment.name and _direction(body, other) @ along > STRAIGHT:
+        if other.parent == segment.name and _direction(body, other) @ along > 1.0 - 1e-6:
             follower = _first_hinge(body.skeleton, other)
             if follower is not None:
                 return follower
@@ -133,7 +132,6 @@ def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Arra
 
 
 COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}  # bone collection of each side
-CONNECTED_M = 1e-6
 
 
 def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> bpy.types.Object:
@@ -177,7 +175,7 @@ def _add_bones(
             bone.align_roll(Vector(model.axes[:, 2]))
             if model.parent:
                 bone.parent = edit_bones[model.parent]
-                bone.use_connect = (bone.head - bone.parent.tail).length < CONNECTED_M
+                bone.use_connect = (bone.head - bone.parent.tail).length < 1e-6
         bpy.ops.object.mode_set(mode="OBJECT")
 
 

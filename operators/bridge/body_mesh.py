@@ -14,9 +14,6 @@ from .actor_lengths import skeleton_bones
 
 SIDES_OF_RING = 20
 RINGS_OF_CAP = 4
-SKIN_SRGB = (178, 164, 150)
-SKIN_NAME = "Body"
-LINEAR_SRGB = 0.04045  # below this share of full scale sRGB is linear (IEC 61966-2-1)
 
 
 def build_body_mesh(
@@ -28,7 +25,7 @@ def build_body_mesh(
     beyond what the renderer adds; caps and all other segments are a plain skin. `trunk` covers pelvis and
     chest.
     """
-    materials = [_material(SKIN_NAME, SKIN_SRGB)]
+    materials = [_material("Body", (178, 164, 150))]
     color_of: dict[str, int] = {}
     colored_caps: dict[str, set[int]] = {}
     for marker in markers:
@@ -112,4 +109,4 @@ def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material
 def _linear(color_srgb: tuple[int, int, int]) -> tuple[float, ...]:
     share = np.array(color_srgb) / 255.0
     curve = ((share + 0.055) / 1.055) ** 2.4
-    return tuple(float(value) for value in np.where(share <= LINEAR_SRGB, share / 12.92, curve))
+    return tuple(float(value) for value in np.where(share <= 0.04045, share / 12.92, curve))

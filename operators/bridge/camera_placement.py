@@ -15,8 +15,6 @@ from .footage_camera import may_move
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
-STILL = 1e-6  # largest change of the camera's matrix [m or 1] that still counts as rounding
-
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
     """The camera that took the footage, with its lens, and its poses at scene frames (F,) if it moves."""
@@ -90,7 +88,7 @@ def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Arra
         for row, frame in enumerate(frames):
             go_to(float(frame))
             poses[row] = _rigid(evaluated(camera_object).matrix_world)
-    still = np.abs(poses - poses[0]).max() < STILL
+    still = np.abs(poses - poses[0]).max() < 1e-6
     return poses[0] if still else poses
 
 

@@ -15,9 +15,6 @@ from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_atomically
 from .scene_frames import showing_action
 
-BVH_ORDER = "ZXY"
-"""One order of rotation channels for all joints: some readers take the first joint's for all."""
-
 
 @dataclass(frozen=True)
 class ExportFormat:
@@ -60,52 +57,22 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 filepath=str(path),
                 frame_start=scene.frame_start,
                 frame_end=scene.frame_end,
-                rotate_mode=BVH_ORDER,
+                rotate_mode="ZXY",  # one order for all joints: some readers take the first one's for all
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
             raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
-def _write_fbx(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.fbx(
-        filepath=str(path),
-        use_selection=True,
-        object_types={"ARMATURE", "MESH", "EMPTY"},
-        add_leaf_bones=False,
-        bake_anim=True,
-        bake_anim_use_nla_strips=False,
-        bake_anim_use_all_actions=False,
-        bake_anim_simplify_factor=0.0,
-        check_existing=False,
-    )
+def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object, Path], None]:
+    """The writer by an operator such as `export_scene.fbx`."""
+    group, name = exporter.split(".")
 
+    def write(_: bpy.types.Object, path: Path) -> None:
+        operator = getattr(getattr(bpy.ops, group), name)
+        operator(filepath=str(path), check_existing=False, **options)
 
-def _write_gltf(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.gltf(
-        filepath=str(path),
-        export_format="GLB",
-        use_selection=True,
-        export_animations=True,
-        export_animation_mode="ACTIVE_ACTIONS",
-        export_frame_range=True,
-        export_force_sampling=True,
-        export_anim_slide_to_zero=True,
-        export_def_bones=False,
-        check_existing=False,
-    )
-
-
-def _write_usd(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.wm.usd_export(
-        filepath=str(path),
-        selected_objects_only=True,
-        export_animation=True,
-        export_armatures=True,
-        only_deform_bones=False,
-        export_materials=False,
-        check_existing=False,
-    )
+    return write
 
 
 FORMATS = {
@@ -121,7 +88,16 @@ FORMATS = {
         "FBX",
         ".fbx",
         "Write for game engines and other animation programs",
-        _write_fbx,
+        _written_by(
+            "export_scene.fbx",
+            use_selection=True,
+            object_types={"ARMATURE", "MESH", "EMPTY"},
+            add_leaf_bones=False,
+            bake_anim=True,
+            bake_anim_use_nla_strips=False,
+            bake_anim_use_all_actions=False,
+            bake_anim_simplify_factor=0.0,
+        ),
         "EXPORT_SCENE_OT_fbx",
         "FBX",
     ),
@@ -129,12 +105,32 @@ FORMATS = {
         "glTF",
         ".glb",
         "Write one binary file for engines and the web",
-        _write_gltf,
+        _written_by(
+            "export_scene.gltf",
+            export_format="GLB",
+            use_selection=True,
+            export_animations=True,
+            export_animation_mode="ACTIVE_ACTIONS",
+            export_frame_range=True,
+            export_force_sampling=True,
+            export_anim_slide_to_zero=True,
+            export_def_bones=False,
+        ),
         "EXPORT_SCENE_OT_gltf",
         "glTF 2.0",
     ),
     "USD": ExportFormat(
-        "USD", ".usdc", "Write for film pipelines: a skeleton with its animation", _write_usd
+        "USD",
+        ".usdc",
+        "Write for film pipelines: a skeleton with its animation",
+        _written_by(
+            "wm.usd_export",
+            selected_objects_only=True,
+            export_animation=True,
+            export_armatures=True,
+            only_deform_bones=False,
+            export_materials=False,
+        ),
     ),
 }
 """By identifier, in the order in which the export panel shows them."""
@@ -181,15 +177,13 @@ def export_motion(
 @contextmanager
 def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[None]:
     """Set the scene's range to `frames`, without a preview range; then restore range and current frame."""
-    names = ("frame_start", "frame_end", "use_preview_range")
-    before = {name: getattr(scene, name) for name in names}
+    before = scene.frame_start, scene.frame_end, scene.use_preview_range
     at = scene.frame_current, scene.frame_subframe
     scene.frame_start, scene.frame_end, scene.use_preview_range = *frames, False
     try:
         yield
     finally:
-        scene.use_preview_range = before["use_preview_range"]
-        scene.frame_start, scene.frame_end = before["frame_start"], before["frame_end"]
+        scene.frame_start, scene.frame_end, scene.use_preview_range = before
         scene.frame_set(at[0], subframe=at[1])
 
 

@@ -17,7 +17,6 @@ from ...core.arrays import Array, BoolArray, SingleArray
 Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or (N, 2) for coordinates
 
 UNMARKED = 0.0  # `back` of a key without a record of its first value, as earlier versions made all
-MARK_OF_ZERO = 1e-30
 MATCH_AMPLITUDE = -1.0  # `amplitude` of the keys of a found keyframe; users cannot set one below zero
 SAME_FRAME = 1e-3  # keys nearer than this [frames] lie on the same frame
 FLOATS = ("back", "amplitude", "period")
@@ -37,7 +36,7 @@ def _generated(keys: Keys) -> BoolArray:
 def _value_mark(keys: Keys) -> SingleArray:
     """(N,) `back` of keys that records their present values."""
     values = keys["co"][:, 1].astype(np.float32)
-    return np.where(values == UNMARKED, np.float32(MARK_OF_ZERO), values)
+    return np.where(values == UNMARKED, np.float32(1e-30), values)
 
 
 def _as_generated(keys: Keys) -> Keys:

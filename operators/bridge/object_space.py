@@ -9,8 +9,6 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
-UNEVEN = 1e-4  # relative difference of the scales along the axes that still counts as rounding
-
 
 @dataclass(frozen=True, eq=False)
 class ObjectSpace:
@@ -42,7 +40,7 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
     linear = matrix[:3, :3]
     squared = linear.T @ linear
     scale = float(np.sqrt(np.trace(squared) / 3.0))
-    uneven = np.abs(squared - scale**2 * np.eye(3)).max() > UNEVEN * scale**2
+    uneven = np.abs(squared - scale**2 * np.eye(3)).max() > 1e-4 * scale**2
     if scale <= 0.0 or uneven or np.linalg.det(linear) < 0.0:
         scales = ", ".join(f"{value:.4g}" for value in np.sqrt(np.diag(squared)))
         raise InputError(

@@ -25,9 +25,7 @@ from .rotation_modes import bone_path, rotation_path, rotation_values
 
 Values = dict[str, Array]  # channel values by bone: the rotation's, for the root then the location's
 
-FRAME = 1.0  # the only frame of a pose asset
 SAME = 2e-6  # largest relative error of channels by single precision
-LARGEST_LOCATION_M = 1000.0
 
 
 def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture) -> None:
@@ -38,7 +36,7 @@ def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture)
         if model.chain:
             channels = _channels(model, usual_mode(body.skeleton, model))
             for (path, index), value in zip(channels, values[model.name], strict=True):
-                set_posed_keys(channelbag, path, index, model.name, np.array([FRAME]), np.array([value]))
+                set_posed_keys(channelbag, path, index, model.name, np.array([1.0]), np.array([value]))
 
 
 def read_posture_curves(
@@ -137,7 +135,7 @@ def _read_bone(
 def _value(curve: bpy.types.FCurve, default: float) -> float:
     """A curve's value at its first key; an untrusted file may hold any number."""
     value = float(curve.keyframe_points[0].co[1]) if len(curve.keyframe_points) else default
-    return value if abs(value) < LARGEST_LOCATION_M else default
+    return value if abs(value) < 1000.0 else default
 
 
 def _usable(values: Array, otherwise: Array, mode: str) -> Array:

@@ -13,7 +13,6 @@ from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.body.skeleton import JointKind, Skeleton
 from .armature import BoneModel
 
-SMALL_TURN = 1e-7  # below this angle [rad] a rotation has no axis of its own and keeps the one before
 PATHS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 ALL_PATHS = ("rotation_quaternion", "rotation_axis_angle", "rotation_euler")
 
@@ -49,7 +48,7 @@ def set_rotation(pose_bone: bpy.types.PoseBone, rotation: Array) -> None:
 def _continuous_axis_angles(rotation: Array) -> Array:
     vectors = Rotation.from_matrix(rotation).as_rotvec()
     angles = np.linalg.norm(vectors, axis=-1)
-    turned = angles >= SMALL_TURN
+    turned = angles >= 1e-7
     axes = np.concatenate([[[0.0, 1.0, 0.0]], vectors / np.where(turned, angles, 1.0)[:, None]])
     # Where it hardly turns, the axis stays the last one; before the first turn it is Y, as of new bones.
     rows = np.maximum.accumulate(np.where(turned, 1 + np.arange(len(angles)), 0))
@@ -78,10 +77,6 @@ def _continuous_eulers(rotation: Array, order: str) -> Array:
 
 
 # --- Postures fitted to joint frames
-
-
-SWEEPS = 50
-CONVERGED_RAD = 1e-12
 
 
 def posture_from_frames(
@@ -128,7 +123,7 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
     angles = [np.zeros(rotation.shape[:-2]) for _ in axes]
     if len(axes) == 2:  # start where the chain is exact, so that no other local optimum is found
         angles[0] = _first_angle(axes[0], axes[1], rotation)
-    for _ in range(SWEEPS):
+    for _ in range(50):
         before = list(angles)
         for i, axis in enumerate(axes):
             left, right = np.eye(3), np.eye(3)
@@ -141,7 +136,7 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
             angles[i] = _nearest_angle(
                 axis, np.swapaxes(left, -1, -2) @ rotation @ np.swapaxes(right, -1, -2)
             )
-        if np.abs(np.subtract(before, angles)).max() < CONVERGED_RAD:
+        if np.abs(np.subtract(before, angles)).max() < 1e-12:
             break
     return angles
 

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from ...core.footage.region_tracks import MarkerStyle
 
 
-MOST_FILES = 12  # files that are remembered: those of the takes at hand, for a job and for panels
-
-
 def read_keypoint_file(
     path: Path, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
@@ -56,7 +53,7 @@ def file_state(path: Path) -> str | None:
     return digest(tuple((name, state.st_size, state.st_mtime_ns) for name, state in states))
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=12)
 def _read(
     path: Path, state: str, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
@@ -121,7 +118,6 @@ def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPo
 
 
 TRACKS = "tracks"
-FIRST_CLIP_FRAME = 1  # frame of a track's marker in the first picture that the timeline shows
 
 
 @dataclass(frozen=True)
@@ -204,7 +200,7 @@ def _places(
 
 def _start(footage: Footage) -> int:
     """Scene frame of a track's marker at frame 0."""
-    return int(footage.clip.frame_start) - FIRST_CLIP_FRAME
+    return int(footage.clip.frame_start) - 1
 
 
 # --- What a scene's take is held against

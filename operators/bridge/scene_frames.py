@@ -17,7 +17,6 @@ from .actions import assign_action
 from .object_space import evaluated
 
 Pose = dict[str, list[tuple[float, ...]]]  # values of all channels, by bone
-SAME_FRAME = 1e-3  # what a scene frame may lie below one of the clip and still show it [frames]
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
@@ -35,7 +34,7 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
 def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
     """Index of the clip's frame, of (F,), shown at scene frames (...); -1 before the clip and after it."""
     asked = np.asarray(at, dtype=np.float64)
-    index = np.searchsorted(frames, asked + SAME_FRAME, side="right") - 1
+    index = np.searchsorted(frames, asked + 1e-3, side="right") - 1
     return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 

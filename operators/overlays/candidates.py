@@ -18,9 +18,7 @@ from . import drawing
 from .drawing import (
     CANDIDATE_COLORS,
     CORE,
-    CORE_SHARE,
     GHOST,
-    LIMB,
     TALL_M,
     Color,
     Item,
@@ -30,10 +28,8 @@ from .drawing import (
     body_scale,
     paint,
 )
-from .motion import limb_lines, world_view
-
-ABOVE = 6.0  # distance of a figure's number from the point that it stands above [px]
-BESIDE = 16.0  # distance at which the numbers of two figures, as high as this, can both be read [px]
+from .figures import limb_lines
+from .views import world_view
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -111,7 +107,7 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
     scale, names = drawing.ui_scale(), HUMAN.point_names
     heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
     style = Style(settings.opacity, scale, body_scale(heights / TALL_M, scale))
-    width = LIMB * style.width * style.body_scale
+    width = style.limb * style.width * style.body_scale
     items: list[Item] = []
     taken: list[Array] = []
     for index, figure in enumerate(positions):
@@ -121,13 +117,13 @@ def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) ->
         lines, sides = limb_lines(names, figure)
         items += [
             Stroke(lines, color, width, GHOST * style.halo),
-            Stroke(lines[sides == "R"], style.color(CORE), CORE_SHARE * width),
+            Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
         ]
         apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
         if apart.max() >= 0.0:
-            x, y = _number_place(figure, apart, taken, BESIDE * scale)
+            x, y = _number_place(figure, apart, taken, 16.0 * scale)
             taken.append(np.array([x, y]))
-            items.append(Label(str(index + 1), x, y + ABOVE * scale, (*color[:3], 1.0), "middle"))
+            items.append(Label(str(index + 1), x, y + 6.0 * scale, (*color[:3], 1.0), "middle"))
     return items
 
 

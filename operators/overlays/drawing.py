@@ -25,10 +25,8 @@ Color = tuple[float, float, float, float]
 
 HALO: Color = (0.0, 0.0, 0.0, 0.75)  # dark edge that sets lines off from footage of any brightness
 INK: Color = (1.0, 1.0, 1.0, 1.0)
-HALO_PX = 1.25  # width of a halo on each side of its line
 FONT = 0
 TEXT_SIZE = 11.0
-OUTLINED_TEXT = 6  # the blur level that blf draws as an outline instead of a shadow
 ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
 
@@ -51,7 +49,7 @@ def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0
     if not len(segments):
         return
     if halo > 0.0:
-        _polyline(segments, faded(HALO, halo), width + 2.0 * HALO_PX)
+        _polyline(segments, faded(HALO, halo), width + 2.0 * 1.25)
     _polyline(segments, color, width)
 
 
@@ -125,7 +123,7 @@ def text(
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, color[3])
+    blf.shadow(FONT, 6, 0.0, 0.0, 0.0, color[3])
     blf.shadow_offset(FONT, 0, 0)
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)
@@ -160,18 +158,12 @@ SOURCES: tuple[Color, ...] = (
 )
 """Colors of keypoints by their source: purple, yellow, green and violet, none of them a side's."""
 THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)  # color of keypoints that are not believed
-DASH, GAP = 6.0, 4.0
-JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
-CORE_SHARE = 0.45  # thickness of the core of a hollow line, as a share of the line's
 CANDIDATE_COLORS = 8
 """Colors of collections that Blender's themes have, with an icon each: those of a frame's candidates."""
 GHOST = 0.6  # opacity of figures that are only offered
-LIMB = 2.4  # thickness of limbs relative to outlines
 METER, SMALLEST = 160.0, 0.35
 """Size of a meter below which a body's marks get smaller [px], and the smallest share of their size."""
 TALL_M = 1.7  # height of a figure by which marks get smaller where it is small [m]
-PALER = 0.5  # share of white in the prediction's color, so that dashes show over a solid line
-HALO_STYLE = 0.9
 UNCERTAIN_M = 0.05
 """Standard deviation above which a point is drawn as a ring within a circle of that size [m]."""
 PATH_POINTS = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
@@ -182,7 +174,14 @@ PATH_FRAMES = 15  # frames of a path before the current one, and after it
 class Style:
     """The animator's opacity, and the scales of screen and body."""
 
-    width: ClassVar[float] = 1.5  # thickness of lines
+    width: ClassVar[float] = 1.5  # thickness of lines [px]
+    limb: ClassVar[float] = 2.4  # thickness of limbs, relative to that
+    core: ClassVar[float] = 0.45  # thickness of a hollow line's core, relative to the line's
+    dash: ClassVar[float] = 6.0  # [px]
+    gap: ClassVar[float] = 4.0  # [px]
+    joint: ClassVar[float] = 3.5  # radius [px]
+    dot: ClassVar[float] = 1.4  # radius [px]
+    diamond: ClassVar[float] = 5.0  # radius [px]
     opacity: float
     scale: float  # screen pixels for each unscaled pixel
     body_scale: float = 1.0  # scale of the body's marks, below 1 for a distant body
@@ -198,7 +197,7 @@ class Style:
     @property
     def halo(self) -> float:
         """Opacity of lines' dark edges."""
-        return HALO_STYLE * self.opacity
+        return 0.9 * self.opacity
 
 
 def body_scale(pixels_per_meter: Array, scale: float) -> float:
@@ -220,7 +219,7 @@ def side_color(name: str) -> Color:
 
 def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
     """A color nearer to white."""
-    red, green, blue = (PALER + (1.0 - PALER) * np.asarray(color, dtype=np.float64)).tolist()
+    red, green, blue = (0.5 + (1.0 - 0.5) * np.asarray(color, dtype=np.float64)).tolist()
     return (red, green, blue)
 
 

@@ -6,12 +6,9 @@ Points are region pixels unless stated otherwise. A point that is not finite bre
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...core.arrays import Array
-
-MOST_DASHES = 1000
-"""Upper limit for a line, which gets longer dashes where it reaches far outside a zoomed view."""
 
 
 def segments(points: ArrayLike, *, closed: bool = False) -> Array:
@@ -41,7 +38,7 @@ def _dashed_run(line: Array, dash: float, gap: float) -> Array:
     steps = line[1:] - line[:-1]
     along = np.zeros(len(line))
     np.cumsum(np.sqrt(np.einsum("nd,nd->n", steps, steps)), out=along[1:])
-    period = max(dash + gap, along[-1] / MOST_DASHES)
+    period = max(dash + gap, along[-1] / 1000)
     if along[-1] == 0.0:
         return np.empty((0, 2, line.shape[-1]))
     share = dash / (dash + gap)
@@ -86,3 +83,39 @@ def squares(centers: Array, size: float) -> Array:
     half = 0.8 * size
     corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
     return np.asarray(centers[:, None] + corners)
+
+
+NECK, PELVIS = "neck", "pelvis"  # the middle between the shoulders, and between the hips
+
+
+LIMBS = (
+    ("", "head", NECK),
+    ("", NECK, PELVIS),
+    ("", "shoulder.L", "shoulder.R"),
+    ("", "hip.L", "hip.R"),
+    *(
+        (side, f"{start}.{side}", f"{end}.{side}")
+        for side in ("L", "R")
+        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+    ),
+)
+"""Side and ends of each line."""
+
+
+def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray[np.str_]]:
+    """Lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none.
+
+    A line with an end that is not finite is left out.
+    """
+    at = dict(zip(names, positions, strict=True))
+    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
+    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
+    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    return lines[seen], np.array([side for side, _, _ in LIMBS])[seen]
+
+
+UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
+
+
+SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5

@@ -9,12 +9,6 @@ import numpy as np
 from ...core.arrays import Array
 from .drawing import (
     CORE,
-    CORE_SHARE,
-    DASH,
-    DIAMOND,
-    DOT,
-    GAP,
-    JOINT,
     LEFT,
     MIDDLE,
     RIGHT,
@@ -27,8 +21,7 @@ from .drawing import (
     Style,
     text_size,
 )
-from .figures import circles, dashes, diamonds, segments, squares
-from .keypoint_marks import SLANTING, SQUARE, UPRIGHT
+from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squares
 
 GROUND = (0.0, 0.0, 0.0, 0.35)
 SAMPLE, GAP_AFTER, LINE, MARGIN = 26.0, 8.0, 18.0, 12.0
@@ -98,24 +91,24 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
     if sample in (Sample.LEFT, Sample.RIGHT):
         limb = Stroke(whole, style.color(LEFT if sample is Sample.LEFT else RIGHT), THICK, style.halo)
         return (
-            [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), CORE_SHARE * THICK)]
+            [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), style.core * THICK)]
         )
     if sample in (Sample.RING, Sample.EXPECTED):
-        rim = segments(circles(middle, JOINT * style.scale, 16), closed=True)
+        rim = segments(circles(middle, style.joint * style.scale, 16), closed=True)
         return [Stroke(rim, color, THIN, style.halo)]
     if sample in (*SOURCE_SAMPLES, Sample.THROWN_OUT, Sample.SWAPPED):
         return _keypoint_sample(sample, middle[0], style)
     if sample is Sample.DIAMOND:
-        marks = diamonds(middle, DIAMOND * style.scale)
+        marks = diamonds(middle, style.diamond * style.scale)
         return [Stroke(segments(marks, closed=True), color, THIN, style.halo), Fill(marks, color)]
     if sample is Sample.NONE:
         return []
     dashed = sample in (Sample.DASHED, Sample.FUTURE)
-    parts = dashes(line, DASH * style.scale, GAP * style.scale) if dashed else whole
+    parts = dashes(line, style.dash * style.scale, style.gap * style.scale) if dashed else whole
     items: list[Item] = [Stroke(parts, color, THIN, style.halo)]
     if sample in (Sample.PAST, Sample.FUTURE):
         dots = np.linspace(line[0], line[1], 5)[1:-1]
-        items.append(Fill(circles(dots, (DOT + 1.0) * style.scale, 8), color))
+        items.append(Fill(circles(dots, (style.dot + 1.0) * style.scale, 8), color))
     return items
 
 
@@ -123,10 +116,10 @@ def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
     color = style.color(THROWN_OUT if sample is Sample.THROWN_OUT else MIDDLE)
     if sample in SOURCE_SAMPLES:
         color = style.color(SOURCES[SOURCE_SAMPLES.index(sample)])
-    arms = JOINT * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
+    arms = style.joint * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
     items: list[Item] = [Stroke(middle + np.stack([-arms, arms], axis=1), color, THIN, style.halo)]
     if sample is Sample.SWAPPED:
-        square = squares(middle[None], SQUARE * JOINT * style.scale)
+        square = squares(middle[None], 1.1 * style.joint * style.scale)
         items.append(Stroke(segments(square, closed=True), color, THIN, style.halo))
     return items
 

@@ -27,7 +27,6 @@ from . import drawing
 from .figures import segments
 
 DARKENING = 0.5
-TINT = 0.65
 NAME_GAP = 4.0  # between an outline and the name above it [unscaled px]
 LARGEST_SHARE = 0.2
 """Of a frame's time: masks that take longer are not made while the animation plays. Overlays together are to
@@ -69,7 +68,7 @@ def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleAr
     picture[..., 3] = darkening
     for mask in masks:
         share = mask.coverage[..., None]
-        picture = (1.0 - share) * picture + share * np.array([*mask.color, TINT], dtype=np.float32)
+        picture = (1.0 - share) * picture + share * np.array([*mask.color, 0.65], dtype=np.float32)
     return picture.astype(np.float32)
 
 

@@ -5,20 +5,15 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
-from ...core.arrays import Array, BoolArray, IndexArray
-from ..bridge.camera_placement import read_lens
+from ...core.arrays import Array, BoolArray
 from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
-from ..shell.takes import find_take, footage_of
+from ..shell.takes import find_take
 from . import drawing
 from .drawing import (
     CORE,
-    CORE_SHARE,
-    JOINT,
-    LIMB,
     PATH_POINTS,
     SIDES,
     TALL_M,
@@ -31,11 +26,10 @@ from .drawing import (
     paint,
     side_color,
 )
-from .figures import circles, segments
+from .figures import circles, limb_lines, segments
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
 from .outlines import (
-    MarkerColor,
     hidden_markers,
     observed_outlines,
     paths,
@@ -43,25 +37,11 @@ from .outlines import (
     predicted_outlines,
     window,
 )
+from .views import MotionView, clip_view, world_view
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
     from ...core.review.review import Review
-
-
-NECK, PELVIS = "neck", "pelvis"  # the middle between the shoulders, and between the hips
-LIMBS = (
-    ("", "head", NECK),
-    ("", NECK, PELVIS),
-    ("", "shoulder.L", "shoulder.R"),
-    ("", "hip.L", "hip.R"),
-    *(
-        (side, f"{start}.{side}", f"{end}.{side}")
-        for side in ("L", "R")
-        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
-    ),
-)
-"""Side and ends of each line."""
 
 
 def skeleton(
@@ -78,33 +58,20 @@ def skeleton(
     ]
 
 
-def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray[np.str_]]:
-    """Lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none.
-
-    A line with an end that is not finite is left out.
-    """
-    at = dict(zip(names, positions, strict=True))
-    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
-    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
-    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
-    seen = np.isfinite(lines).all(axis=(-2, -1))
-    return lines[seen], np.array([side for side, _, _ in LIMBS])[seen]
-
-
 def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
     """Lines in the colors of their sides; those of the right have a dark core."""
     lines, sides = limb_lines(names, positions)
     colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
-    width = LIMB * style.width * style.body_scale
+    width = style.limb * style.width * style.body_scale
     return [
         Stroke(lines, colors, width, style.halo),
-        Stroke(lines[sides == "R"], style.color(CORE), CORE_SHARE * width),
+        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
     ]
 
 
 def _joints(positions: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
     """Discs, and rings for uncertain points."""
-    rims = circles(positions, style.size(JOINT), 16)
+    rims = circles(positions, style.size(style.joint), 16)
     seen = np.isfinite(positions).all(axis=-1)
     edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
     return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
@@ -144,82 +111,6 @@ def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
 # --- The reconstructed motion as items to draw, whichever editor they are drawn in
 
 
-UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)  # color of a marker that was removed since the reconstruction
-NEAREST = 0.75  # largest distance of the scene's frame from the clip's frame that it shows [frames]
-
-
-@dataclass(frozen=True, eq=False)
-class WorldView:
-    """A region of a 3D viewport as a view of the motion."""
-
-    footage: FootageView | None
-    matrix: Array  # (4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division
-    right: Array  # (3,) the viewer's right in the world
-    size: Array  # (2,) of the region [px]
-
-    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
-        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
-        return self.project(review.points[indices])
-
-    def pixels_per_meter(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a meter across the view at each point."""
-        points = review.points[index]
-        depth = self._before(points)
-        return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)
-
-    def project(self, points: Array) -> Array:
-        """Region pixels (..., 2) of points (..., 3) in the world."""
-        flat = points @ self.matrix[:2, :3].T + self.matrix[:2, 3]
-        return np.asarray(0.5 * self.size * (1.0 + flat / self._before(points)[..., None]))
-
-    def _before(self, points: Array) -> Array:
-        """Homogeneous coordinate w (...) of points, which grows with the distance; NaN behind the viewer."""
-        divisor = points @ self.matrix[3, :3] + self.matrix[3, 3]
-        return np.where(divisor > 1e-6, divisor, np.nan)
-
-
-def world_view(
-    region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
-) -> WorldView:
-    """A region of a 3D viewport as a view of the motion."""
-    right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
-    return WorldView(
-        footage,
-        np.array(view.perspective_matrix, dtype=np.float64),
-        right / np.linalg.norm(right),
-        np.array([region.width, region.height], dtype=np.float64),
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class ClipView:
-    """A region of the Movie Clip editor as a view of the motion."""
-
-    footage: FootageView
-    to_camera: Array  # (4, 4) from the world to the footage's camera
-    focal_px: float  # focal length of that camera [px of the footage]
-
-    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
-        """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
-        return self.footage.to_region(review.image_points[indices])
-
-    def pixels_per_meter(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a meter across the view at each point."""
-        depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
-        magnified = abs(self.footage.extent[0]) / self.footage.size[0]
-        return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))
-
-
-def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
-    """A region of a Movie Clip editor as a view of a take's motion."""
-    source = footage_of(scene, take)
-    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
-    return ClipView(footage, to_camera, read_lens(source).focal_px)
-
-
-MotionView = WorldView | ClipView
-
-
 @dataclass(frozen=True, eq=False)
 class Shown:
     """A frame of a take's motion that is drawn."""
@@ -237,7 +128,7 @@ def shown(scene: bpy.types.Scene) -> Shown | None:
         return None
     away = np.abs(review.frames - scene.frame_current_final)
     index = int(away.argmin())
-    return Shown(take, review, index) if away[index] <= NEAREST else None
+    return Shown(take, review, index) if away[index] <= 0.75 else None
 
 
 def picture(
@@ -270,7 +161,7 @@ def _outlines(
     what: Shown, footage: FootageView, settings: bpy.types.PropertyGroup, style: Style
 ) -> list[Item]:
     chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
-    colors = [chosen.get(name, UNKNOWN) for name in what.review.marker_names]
+    colors = [chosen.get(name, (0.8, 0.8, 0.8)) for name in what.review.marker_names]
     items: list[Item] = []
     if settings.show_observed:
         items += observed_outlines(what.review, what.index, footage.to_region, colors, style)

@@ -7,10 +7,6 @@ import numpy as np
 
 from ...core.arrays import Array, IndexArray
 from .drawing import (
-    DASH,
-    DIAMOND,
-    DOT,
-    GAP,
     INK,
     MIDDLE,
     PATH_FRAMES,
@@ -58,10 +54,10 @@ def predicted_outlines(
         whole = outline[np.isfinite(outline).all(axis=-1)]
         if not len(whole):
             continue
-        parts = dashes(whole, DASH * style.scale, GAP * style.scale, closed=True)
+        parts = dashes(whole, style.dash * style.scale, style.gap * style.scale, closed=True)
         items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
         if marker in hidden:
-            x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
+            x, y = whole[:, 0].max() + style.gap * style.scale, whole[:, 1].mean()
             words = f"{review.marker_names[marker]} hidden"
             items.append(Label(words, float(x), float(y), style.color(INK)))
     return items
@@ -72,7 +68,7 @@ def predicted_contours(
 ) -> list[Item]:
     """The contour lines of the body that the motion predicts, dashed."""
     lines = to_region(review.contours[index])
-    parts = [dashes(line, DASH * style.scale, GAP * style.scale) for line in lines]
+    parts = [dashes(line, style.dash * style.scale, style.gap * style.scale) for line in lines]
     return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []
 
 
@@ -98,12 +94,12 @@ def paths(
     items: list[Item] = []
     for name, path in zip(names, positions, strict=True):
         color = style.color(side_color(name))
-        ahead = dashes(path[frames >= index], DASH * style.scale, GAP * style.scale)
+        ahead = dashes(path[frames >= index], style.dash * style.scale, style.gap * style.scale)
         items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
         items.append(Stroke(ahead, color, style.width, style.halo))
-    items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
+    items.append(Fill(circles(dots, style.size(style.dot + 0.5 * style.width), 8), style.color(MIDDLE)))
     # All edges, then all diamonds: alike neighbors are drawn in one call.
-    corners = [diamonds(mark, style.size(DIAMOND)) for mark in marks]
+    corners = [diamonds(mark, style.size(style.diamond)) for mark in marks]
     colors = [style.color(side_color(name)) for name in names]
     pairs = list(zip(corners, colors, strict=True))
     items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]

@@ -2,10 +2,10 @@
 
 import bpy
 
-from . import registry
-
 
 def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from . import registry  # only now: panels and properties are registered before there is anything to draw
+
     registry.try_again()
     registry.redraw(context)
 

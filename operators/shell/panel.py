@@ -8,15 +8,14 @@ from textwrap import wrap
 
 import bpy
 
-from .job_progress import job_is_running
+from .contradictions import contradictions_at
+from .job_progress import job_is_running, steady_frame
 from .steps import is_open
 from .takes import active_take, find_take
 
-ESCAPE_UNITS = 2.9  # width of the label Esc with its icon
 ROOMY_PX = 270.0
 """Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""
 LINE_HEIGHT = 0.8  # height of a line of a sentence, in rows
-FEWEST_LETTERS = 16
 LETTER_PX, MARGIN_PX = 6.2, 80.0
 """Width of a label's letter, and of what stands beside its text, at a UI scale of 1."""
 
@@ -90,7 +89,7 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     percent = f"{100.0 * progress.fraction:.0f}%  {progress.stage}"  # a narrow sidebar cuts the end off
     row.progress(factor=progress.fraction, text=(job and progress.time_left) or percent)
     escape = row.row()
-    escape.ui_units_x = ESCAPE_UNITS
+    escape.ui_units_x = 2.9
     escape.label(text="Esc", icon="CANCEL")
     return True
 
@@ -138,15 +137,22 @@ def sentence_height(context: bpy.types.Context, sentence: str) -> float:
 
 
 def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = None) -> list[str]:
-    letters = max(FEWEST_LETTERS, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
+    letters = max(16, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
 
 
+def draw_contradictions(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw what contradicts in the current frame, if anything does."""
+    names = contradictions_at(take, steady_frame(context))
+    if names:
+        said = f"No plausible pose explains {', '.join(names)} here"
+        draw_sentence(layout, context, said, "ERROR")
+
+
 # --- Bases of the panels inside What to Follow
-
-
-MOST_LETTERS = 7  # of what fits beside a name in the header of a narrow sidebar: `13 of 17`, and no more
 
 
 class FollowPanel(TakePanel):
@@ -171,7 +177,7 @@ def draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, switch: 
 
 def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
     """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
-    if not is_roomy(bpy.context) and len(text) > MOST_LETTERS:
+    if not is_roomy(bpy.context) and len(text) > 7:
         return
     row = layout.row()
     row.active = False

@@ -152,7 +152,6 @@ def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) ->
 
 
 FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
-SETTLING_S = 0.1  # delay after which everything has been drawn once
 
 
 def areas(context: bpy.types.Context, *kinds: str) -> Iterator[bpy.types.Area]:
@@ -186,7 +185,7 @@ def redraw_sidebars_soon() -> None:
     Blender moves sub-panels only when it draws once more after the panel above them has grown or shrunk.
     """
     if not bpy.app.background and not timers.is_registered(_redraw_once):
-        timers.register(_redraw_once, first_interval=SETTLING_S)
+        timers.register(_redraw_once, first_interval=0.1)
 
 
 def refresh_asset_browsers(context: bpy.types.Context) -> None:
@@ -207,7 +206,6 @@ def _redraw_once() -> None:
 
 
 NO_GUESS = (0.0, 0.0, 0.0)  # height, tilt and roll of a take whose camera was not put anywhere by guess
-SAME = 1e-4  # difference from the guess [m, rad] that still counts as rounding
 
 
 def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
@@ -215,7 +213,7 @@ def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
     if take.camera is None or tuple(take.guessed_placement) == NO_GUESS or may_move(take.camera):
         return False
     now = as_numbers(read_placement(take.camera))
-    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < SAME
+    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < 1e-4
 
 
 def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:

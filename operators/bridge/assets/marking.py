@@ -15,8 +15,6 @@ from ....core.take.motion import Motion
 from ..actor_lengths import read_body
 from ..rig import motion_frames, read_rig, read_values, shown_postures
 
-DRAWN_FRAMES = 25  # frames of the motion that the picture is drawn from
-
 
 @dataclass(frozen=True)
 class AssetDetails:
@@ -63,7 +61,7 @@ def action_picture(
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
     every = motion_frames(armature_object, action, body)
-    frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
+    frames = every[np.unique(np.linspace(0, len(every) - 1, 25).astype(np.intp))]
     values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
     posture = shown_postures(armature_object, rig, rig.pose(values), body)
     points = body.points(body.pose(posture))

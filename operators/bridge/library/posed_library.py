@@ -24,8 +24,6 @@ from ..posture_curves import read_posture_curves
 from ..rig import motion_frames, read_rig, read_values, shown_postures
 from .pose_assets import is_posture, library_from_assets
 
-DECIMALS_S = 4
-
 
 def library_of_keyframes(
     scene: bpy.types.Scene,
@@ -47,9 +45,7 @@ def library_of_keyframes(
     postures = _leveled(body, Posture.stack([keyframe.posture for keyframe in posed]))
     names = numbered_names(about.title, len(posed))
     time_s: Array = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
-    steps = tuple(
-        MotionStep(name, round(float(at), DECIMALS_S)) for name, at in zip(names, time_s, strict=True)
-    )
+    steps = tuple(MotionStep(name, round(float(at), 4)) for name, at in zip(names, time_s, strict=True))
     entries = tuple(LibraryPosture(name, postures[row]) for row, name in enumerate(names))
     motion = LibraryMotion(about.title, steps, steps[-1].time_s)
     return _checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
@@ -144,6 +140,4 @@ def library_from_action(
     frames = motion_frames(armature_object, action, body)
     values = run(read_values(armature_object, action, rig, frames))
     posture = shown_postures(armature_object, rig, rig.pose(values), body)
-    library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
-    Library.from_json(library.to_json(), f"library '{about.title}'")  # checks what was typed
-    return library
+    return _checked(learn_library(body, posture, (frames - frames[0]) * frame_s, about, count))

@@ -18,8 +18,8 @@ from keymark.operators.overlays.keypoint_marks import (
     not_yet_compared,
     seen_marks,
 )
-from keymark.operators.overlays.motion import ClipView
 from keymark.operators.overlays.outlines import predicted_contours
+from keymark.operators.overlays.views import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 

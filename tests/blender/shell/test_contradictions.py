@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.contradictions import contradictions_at, draw_contradictions, note_contradictions
+from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
+from keymark.operators.shell.panel import draw_contradictions
 from keymark.operators.shell.takes import active_take
 
 Group = bpy.types.PropertyGroup
