@@ -42,9 +42,6 @@ def _turns(bag: bpy.types.ActionChannelbag, bone: str) -> bool:
     return any(bag.fcurves.find(f'pose.bones["{bone}"].{turn}') is not None for turn in TURNS)
 
 
-# --- Colors of an actor's bones by the side of the body
-
-
 WHITER = 0.55  # share of white in the color of the active bone, which outshines the selected ones
 EARLIER = {"L": "THEME01", "R": "THEME04", "": "THEME09"}
 """Palettes that actors of earlier versions have: red on the left and blue on the right."""

@@ -1,4 +1,4 @@
-"""Read an actor's lengths from an armature's bones, in any rest pose."""
+"""An actor's lengths, read from an armature's bones in any rest pose, and set."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager

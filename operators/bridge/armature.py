@@ -128,9 +128,6 @@ def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Arra
     return np.array([1.0, 0.0, 0.0])
 
 
-# --- Build the actor's armature from a body's lengths
-
-
 COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}  # bone collection of each side
 
 

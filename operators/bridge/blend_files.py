@@ -1,4 +1,4 @@
-"""A scene for the time being: what the running Blender has open is not touched."""
+""".blend files, written and looked at, and scenes for the time being: what is open is not touched."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,9 +39,6 @@ def showing_scene(scene: bpy.types.Scene) -> Iterator[None]:
         window.scene = before
 
 
-# --- .blend files from strangers, looked at before Blender opens them
-
-
 BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
 """First bytes of .blend files: plain, Zstandard and gzip."""
 
@@ -66,9 +63,6 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
         )
     if not magic.startswith(BLEND_MAGIC):
         raise InputError(f"{path}: is no .blend; it must be a file that Blender saved")
-
-
-# --- .blend files
 
 
 def write_blend(

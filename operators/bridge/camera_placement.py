@@ -1,4 +1,4 @@
-"""The footage's camera read from a scene: core's camera from Blender's camera and movie clip."""
+"""The footage's camera in a scene: core's camera from Blender's, and height, tilt and roll of a still one."""
 
 from dataclasses import replace
 

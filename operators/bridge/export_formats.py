@@ -1,4 +1,4 @@
-"""Registry of export formats: names, suffix, the exporter Blender needs, and the writer of each.
+"""Export of a motion by Blender's own exporters: names, suffix, add-on and writer of each format.
 
 A new format is one entry of `FORMATS`, with its writer beside it: the export panel, the operator's menu, its
 tooltip and the filter of its file browser are made from these.
@@ -134,9 +134,6 @@ FORMATS = {
     ),
 }
 """By identifier, in the order in which the export panel shows them."""
-
-
-# --- Export of an actor's motion by Blender's own exporters
 
 
 def export_motion(

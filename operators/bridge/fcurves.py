@@ -1,4 +1,4 @@
-"""Bone channels from postures over time: rotations, and the root's location, relative to the rest pose."""
+"""Postures over time as bone channels, relative to the rest pose, and as F-curves of an Action."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -89,9 +89,6 @@ def _joint_frame(postures: Posture, model: BoneModel, frames: dict[str, Array]) 
         else:
             frame = frame @ postures.rotations[..., skeleton.ball_joints.index(joint), :, :]
     return frame
-
-
-# --- F-curves of a motion, in an Action that animates the actor's armature
 
 
 def posture_columns(

@@ -147,9 +147,6 @@ def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = 
     return red, green, blue
 
 
-# --- Attach a clip to a camera, with a guessed lens where none is known
-
-
 @dataclass(frozen=True, eq=False)
 class AttachedFootage:
     """The camera that a clip was attached to."""

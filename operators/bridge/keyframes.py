@@ -1,4 +1,4 @@
-"""Postures of candidates, as a scene's properties hold them."""
+"""Keyframes of an actor, posed by the animator or found in the footage, read and written."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Similarity transform of an armature object: rotation, location and one scale."""
+"""Similarity transform of an armature object, and where an actor's joints are in the scene."""
 
 from dataclasses import dataclass
 
@@ -62,9 +62,6 @@ def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     layer.update()
     return blender_object.evaluated_get(layer.depsgraph)
-
-
-# --- Where the joints of an actor are in the scene, read from its bones alone
 
 
 _ENDS = {

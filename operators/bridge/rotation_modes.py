@@ -1,4 +1,4 @@
-"""Rotations in the rotation mode of a bone, which the animator chooses and Keymark never changes."""
+"""Rotations in the mode of a bone, which the animator chooses, and postures fitted to joints' rotations."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""The performer's keypoints in a scene, before there are keyframes or even an actor."""
+"""A scene as core's take, and the performer's keypoints before there is an actor."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Drawing primitives for a region: lines, polygons, textures and text, on Blender 4.5 to 5.2.
+"""What overlays draw: lines, polygons, textures, text, items of these, and their style; Blender 4.5 to 5.2.
 
 For draw functions of `registry`, which has enabled blending. Colors are red, green, blue and alpha in sRGB,
 0 to 1, as users pick them. Shaders are made at the first call: without a window Blender has none.

@@ -1,4 +1,4 @@
-"""Plane figures as arrays: line segments, dashes, circles, diamonds; nothing is drawn here.
+"""Plane figures as arrays: line segments, dashes, circles, diamonds, a body's limbs; nothing is drawn.
 
 Points are region pixels unless stated otherwise. A point that is not finite breaks a line.
 """

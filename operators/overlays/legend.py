@@ -90,9 +90,8 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
     whole = line[None]
     if sample in (Sample.LEFT, Sample.RIGHT):
         limb = Stroke(whole, style.color(LEFT if sample is Sample.LEFT else RIGHT), THICK, style.halo)
-        return (
-            [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), style.core * THICK)]
-        )
+        core = Stroke(whole, style.color(CORE), style.core * THICK)
+        return [limb] if sample is Sample.LEFT else [limb, core]
     if sample in (Sample.RING, Sample.EXPECTED):
         rim = segments(circles(middle, style.joint * style.scale, 16), closed=True)
         return [Stroke(rim, color, THIN, style.halo)]

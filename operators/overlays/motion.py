@@ -1,4 +1,4 @@
-"""The reconstructed body as lines between its 13 points, with each point's uncertainty."""
+"""Overlay of the reconstructed motion: body, markers, keypoints, paths, and their legend."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -106,9 +106,6 @@ def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
     return tuple(
         (sample, f"Keypoint of {source}") for sample, source in zip(SOURCE_SAMPLES, sources, strict=False)
     )
-
-
-# --- The reconstructed motion as items to draw, whichever editor they are drawn in
 
 
 @dataclass(frozen=True, eq=False)

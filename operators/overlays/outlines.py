@@ -1,4 +1,4 @@
-"""Outlines of marker regions: observed ones solid, predicted ones dashed, as are contours of the body."""
+"""Outlines of marker regions, observed ones solid and predicted ones dashed, and paths of points."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Figures of the timeline overlay as arrays: graph, strip, squares, triangles [region px]."""
+"""Overlay of Timeline and Dope Sheet: speed, confidence, proposed and found keyframes, weak frames."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -68,13 +68,8 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
     right = np.concatenate([middles, [x[-1] + reach]])
     top = floor + height * confidence
     bottom = np.where(np.isfinite(top), floor, np.nan)
-    bars = np.stack(
-        [
-            np.stack(corner, axis=-1)
-            for corner in ((left, bottom), (right, bottom), (right, top), (left, top))
-        ],
-        axis=1,
-    )
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+    bars = np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
     return bars, np.column_stack([confidence_color(confidence), np.ones(len(x))])
 
 
@@ -91,17 +86,12 @@ def pointers(x: Array, tip: float, size: float) -> Array:
     return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
 
 
-# --- Overlay of Timeline and Dope Sheet
-
-
-MODES = ("TIMELINE", "DOPESHEET", "ACTION")
-
-
 @dataclass(frozen=True)
 class Sizes:
     """Unscaled sizes [px]."""
 
     graph: float  # largest height of the graph
+    least: float  # smallest height of the graph
     ruler: float  # height kept free at the top
     headroom: float  # height between graph and ruler, for triangles and text
     strip: float
@@ -111,11 +101,9 @@ class Sizes:
     pointer: float
 
 
-ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
-SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
+ROOMY = Sizes(80.0, 16.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
+SLIM = Sizes(40.0, 6.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
 """Sizes for a Timeline as low as its ruler, as Blender 5 opens it."""
-LEAST_ROOMY = 16.0  # height of a graph [px] for which the ruler is kept free
-LEAST = 6.0
 SPEED: Color = (0.35, 0.68, 0.92, 1.0)
 PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
 MATCHED: Color = (0.55, 0.88, 0.60, 1.0)
@@ -164,10 +152,10 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
     # Positions are whole pixels: far apart, they still give an exact scale.
     far = 100_000.0
     start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
-    for sizes, least in ((ROOMY, LEAST_ROOMY), (SLIM, LEAST)):
+    for sizes in (ROOMY, SLIM):
         taken = sizes.foot + sizes.strip + sizes.gap + sizes.headroom + sizes.ruler
         height = min(sizes.graph, region.height / pixel - taken)
-        if height >= least and end > start:
+        if height >= sizes.least and end > start:
             middle, scale = 0.5 * (start + end), (end - start) / (2.0 * far)
             return Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
     return None
@@ -175,7 +163,7 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
 
 def draw(context: bpy.types.Context) -> None:
     """Draw into the region that Blender is drawing."""
-    if context.space_data.mode not in MODES:
+    if context.space_data.mode not in ("TIMELINE", "DOPESHEET", "ACTION"):
         return
     take = find_take(context.scene)
     timeline = timeline_of(context.region, drawing.ui_scale())

@@ -1,4 +1,4 @@
-"""Reports of operators: notes of core and errors, as sentences with a capital letter."""
+"""Base of Keymark's operators, and their reports: sentences with a capital letter."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
@@ -30,9 +30,6 @@ def capitalized(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:] if sentence.partition(" ")[0].isalpha() else sentence
 
 
-# --- Expected failures as error reports in Blender's status bar
-
-
 @contextmanager
 def reported(operator: bpy.types.Operator) -> Iterator[None]:
     """Turn expected failures into the operator's error report.
@@ -53,9 +50,6 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
         operator.report({"ERROR"}, capitalized(str(error)))
     except ReferenceError:
         operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")
-
-
-# --- Base of Keymark's operators
 
 
 class BaseOperator:

@@ -1,4 +1,4 @@
-"""Operators that wait for a click on the footage: events they pass on, and whether footage is shown."""
+"""Operators that wait for clicks on the footage, and what lies under the mouse."""
 
 from abc import abstractmethod
 from collections.abc import Callable

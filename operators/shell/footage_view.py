@@ -144,9 +144,6 @@ def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))
 
 
-# --- Which frame of a take's clip a scene frame shows, as panels and overlays need it
-
-
 def clip_index(take: bpy.types.PropertyGroup, scene_frame: int | None = None) -> int:
     """Index of the clip's frame that is shown in a scene frame, the current one by default; -1 for none.
 

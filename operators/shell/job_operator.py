@@ -1,4 +1,4 @@
-"""Esc in Keymark's modal operators: a running job, and an operator that waits for a click.
+"""Operators of long jobs, and Esc in them and in operators that wait for a click.
 
 Both are ended by their own `cancel`, which Blender also calls when it closes a window or opens another file.
 A job's generator is closed in the middle; only `JobOperator.finish` writes to the scene, so the scene is as
@@ -37,9 +37,6 @@ def cancel_click(operator: Any, context: bpy.types.Context, event: bpy.types.Eve
         return False
     operator.cancel(context)
     return True
-
-
-# --- Operators of long jobs
 
 
 TIMER_S = 0.01

@@ -1,4 +1,4 @@
-"""A take's keyframe Action: it must animate the actor while the animator poses."""
+"""A take's keyframes: the Action that animates the actor while it is posed, and what is posed or found."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -59,9 +59,6 @@ def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
     action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
     action.use_fake_user = True
     return action
-
-
-# --- Scene frames of keyframes, posed and found, cached so that redraws need not read the keys
 
 
 SAME_FRAME = 0.5  # a key nearer to a frame than this [frames] counts as that frame's

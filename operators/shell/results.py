@@ -1,4 +1,4 @@
-"""Cache of the results last used, which also remembers that a result is absent."""
+"""A take's results, cached in memory and on disk, and what a new motion makes outdated."""
 
 from collections import OrderedDict
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Blender's file of asset catalogs, `blender_assets.cats.txt`: catalogs found in it, or added.
+"""Blender's file of asset catalogs, `blender_assets.cats.txt`, and .blend files of assets beside it.
 
 Each line is `UUID:path/of/catalog:simple name`; empty lines and lines that begin with `#` are ignored.
 """

@@ -1,4 +1,4 @@
-"""Characters' Actions out of results, as they were made."""
+"""Motions as assets: Actions and actors, and characters' Actions out of results."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -55,9 +55,6 @@ def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Acti
     if action_digest(action) != curves:
         raise InputError(f"{blend}: is not the file that the conversion wrote; convert the take again")
     return action
-
-
-# --- Motions as assets
 
 
 MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"

@@ -1,4 +1,4 @@
-"""Keyframe libraries as .blend files of pose assets with catalogs: written, and read from untrusted files."""
+"""Keyframe libraries in files: .json, or .blend files of pose assets, written and read with suspicion."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""Keyframe libraries of what was posed: of keyframes, and of pose assets."""
+"""Keyframe libraries of keyframes, of pose assets, and learned from a motion."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -119,9 +119,6 @@ def _checked(library: Library) -> Library:
     """The library, which is what a file may hold: names are typed by people."""
     Library.from_json(library.to_json(), f"library '{library.title}'")
     return library
-
-
-# --- A keyframe library learned from the motion in an Action, the animator's changes included
 
 
 def library_from_action(
