@@ -7,8 +7,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..shell.base_operator import BaseOperator, warn
-from ..shell.file_browser import browse, chosen_path
+from ..shell.base_operator import BaseOperator, browse, chosen_path, warn
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage

@@ -86,6 +86,9 @@ def pointers(x: Array, tip: float, size: float) -> Array:
     return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
 
 
+MODES = ("TIMELINE", "DOPESHEET", "ACTION")
+
+
 @dataclass(frozen=True)
 class Sizes:
     """Unscaled sizes [px]."""
@@ -163,7 +166,7 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
 
 def draw(context: bpy.types.Context) -> None:
     """Draw into the region that Blender is drawing."""
-    if context.space_data.mode not in ("TIMELINE", "DOPESHEET", "ACTION"):
+    if context.space_data.mode not in MODES:
         return
     take = find_take(context.scene)
     timeline = timeline_of(context.region, drawing.ui_scale())

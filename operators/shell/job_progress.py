@@ -2,8 +2,6 @@
 
 import bpy
 
-from .file_browser import is_browsing
-
 OPERATOR_PREFIX = "KEYMARK_OT_"
 TOOLS = ("KEYMARK_OT_drag_joints",)
 """Modal operators that wait for the mouse in a view, and let everything else go on meanwhile."""
@@ -73,3 +71,10 @@ def unregister() -> None:
     """Remove it."""
     del bpy.types.WindowManager.keymark_progress
     bpy.utils.unregister_class(KEYMARK_PG_progress)
+
+
+def is_browsing(operator: bpy.types.Operator, manager: bpy.types.WindowManager) -> bool:
+    """Whether a modal operator waits for its file browser alone, in whichever window that is."""
+    areas = (area for window in manager.windows for area in window.screen.areas)
+    asking = (area.spaces.active.active_operator for area in areas if area.type == "FILE_BROWSER")
+    return any(each is not None and each.as_pointer() == operator.as_pointer() for each in asking)

@@ -9,7 +9,6 @@ from collections.abc import Iterable
 import bpy
 
 from .keyed_frames import has_frame, keyframes_of
-from .panel import draw_sentence
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
@@ -62,14 +61,6 @@ def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[str]:
         for entry in take.notices
         if entry.step == step and (not entry.of_keyframe or has_frame(posed, entry.frame))
     ]
-
-
-def draw_notices(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup, step: str
-) -> None:
-    """Draw the notices of a step."""
-    for sentence in notices_of(take, step):
-        draw_sentence(layout, context, sentence, "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_notice,))

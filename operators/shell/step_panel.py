@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import bpy
 
-from .notices import draw_notices, notices_of
-from .panel import TakePanel, is_roomy, property_column
+from .notices import notices_of
+from .panel import TakePanel, draw_sentence, is_roomy, property_column
 from .steps import is_behind
 from .takes import active_take
 
@@ -29,7 +29,9 @@ class StepPanel(TakePanel):
         self._draw_state(header, context, take)
         if body is None:
             return
-        draw_notices(body.column(), context, take, self.step)
+        column = body.column()
+        for sentence in notices_of(take, self.step):
+            draw_sentence(column, context, sentence, "ERROR")
         self._body = body
         self.draw_step(context)
 
