@@ -80,7 +80,7 @@ def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy
     numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
     places = np.array([[number.x, number.y] for number in numbers])
     apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(4, 1)]
-    assert len(numbers) == 4 and apart.min() >= candidates.BESIDE
+    assert len(numbers) == 4 and apart.min() >= 16.0
     tiny = 0.01 * many
     tiny[1:, 0] += 1.0
     numbers = [item for item in candidates.picture(tiny, 0, settings) if isinstance(item, Label)]
