@@ -118,9 +118,14 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
     axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
     models = bone_models(body)
     scale = object_space(armature_object).scale
-    _check_own(armature_object)
+    data = armature_object.data
+    if armature_object.library is not None or data.library is not None or data.override_library is not None:
+        raise InputError(
+            f"armature '{armature_object.name}' comes from another file; change its lengths there, or "
+            "make it local (Object > Relations > Make Local)"
+        )
     segments = {segment.name: segment for segment in body.skeleton.segments}
-    bones = armature_object.data.bones
+    bones = data.bones
     heads: dict[str, Array] = {}
     tails: dict[str, Array] = {}
     frames: dict[str, Array] = {}
@@ -139,15 +144,6 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
         for model in models:
             edit_bones[model.name].head = heads[model.name]
             edit_bones[model.name].tail = tails[model.name]
-
-
-def _check_own(armature_object: bpy.types.Object) -> None:
-    data = armature_object.data
-    if armature_object.library is not None or data.library is not None or data.override_library is not None:
-        raise InputError(
-            f"armature '{armature_object.name}' comes from another file; change its lengths there, or "
-            "make it local (Object > Relations > Make Local)"
-        )
 
 
 @contextmanager

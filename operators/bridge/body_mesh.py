@@ -51,7 +51,9 @@ def build_body_mesh(
         quads = ring_quads(len(rings), SIDES_OF_RING)
         vertices.append(placed)
         faces.append(quads.reshape(-1, 4) + count)
-        bands = _colored_bands(colored_caps.get(piece.segment, set()))
+        caps = colored_caps.get(piece.segment, set())
+        first = 0 if 0 in caps else RINGS_OF_CAP
+        bands = range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
         material = color_of.get(piece.segment, 0)
         colors += [
             material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
@@ -62,12 +64,6 @@ def build_body_mesh(
     for material_data in materials:
         mesh.materials.append(material_data)
     return _skinned(armature_object, mesh, groups)
-
-
-def _colored_bands(caps: set[int]) -> range:
-    """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
-    first = 0 if 0 in caps else RINGS_OF_CAP
-    return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
 
 
 def _mesh(name: str, vertices: Array, faces: IndexArray, colors: list[int]) -> bpy.types.Mesh:

@@ -62,15 +62,15 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
             10.0,
         ),
     ]
-    for point, name in enumerate(review.point_names):
-        curves.append(
-            ReviewCurve(
-                f"Sigma {name} mm",
-                f"Standard deviation of the point {name}, in millimeters",
-                1e3 * review.sigma_m[:, point],
-                100.0,
-            )
+    curves += [
+        ReviewCurve(
+            f"Sigma {name} mm",
+            f"Standard deviation of the point {name}, in millimeters",
+            1e3 * sigma_m,
+            100.0,
         )
+        for name, sigma_m in zip(review.point_names, review.sigma_m.T, strict=True)
+    ]
     return tuple(curves)
 
 

@@ -160,7 +160,10 @@ def fit_to_frame(
             or a bone is missing.
     """
     body = read_body(armature_object, HUMAN)
-    keyframes = _keyframes(frame, armature_object, action, body, matches)
+    keyframes: tuple[Keyframe, ...] = ()  # at other frames
+    if action is not None:
+        read = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
+        keyframes = tuple(keyframe for keyframe in read.keyframes if keyframe.index != frame.index)
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
     keypoints = frame.keypoints(body, keyframes)
@@ -210,20 +213,6 @@ def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
         name for name, has in (("markers", frame.styles), ("keypoints", keypoints.names)) if has
     )
     return InputError(f"none of the {wanted} is seen in frame {shown}; pose the actor by hand")
-
-
-def _keyframes(
-    frame: FrameInFootage,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action | None,
-    body: Body,
-    matches: Matches,
-) -> tuple[Keyframe, ...]:
-    """The keyframes at other frames."""
-    if action is None:
-        return ()
-    found = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
-    return tuple(keyframe for keyframe in found.keyframes if keyframe.index != frame.index)
 
 
 def measured_in_frame(

@@ -60,7 +60,6 @@ class FootageSpeed:
     values: "Array"  # (F,) [px per frame]
 
 
-FOLDER = "results"
 EXTENSION = (__package__ or "").partition(".operators")[0]
 """Name under which Blender knows Keymark, and gives it a folder of its own."""
 
@@ -166,9 +165,9 @@ def _save(key: str, arrays: Arrays) -> None:
 
 def _store() -> ArrayCache:
     try:
-        folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
+        folder = Path(bpy.utils.extension_path_user(EXTENSION, path="results"))
     except ValueError:  # not installed as an extension
-        folder = Path(bpy.app.tempdir) / FOLDER
+        folder = Path(bpy.app.tempdir) / "results"
     return ArrayCache(folder)
 
 
