@@ -9,14 +9,8 @@ from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_bones import recolor_earlier
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.overlays.drawing import SIDES
 from mathutils import Matrix
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    return build_armature(bpy.context.scene, body)
 
 
 def test_there_is_one_bone_a_segment_with_its_parent(actor: bpy.types.Object) -> None:

@@ -8,14 +8,8 @@ import pytest
 from keymark.core.body.body_volume import body_pieces
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.body_mesh import build_body_mesh
 from keymark.operators.bridge.pose import write_posture
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    return build_armature(bpy.context.scene, body)
 
 
 def places(mesh_object: bpy.types.Object, group: str) -> np.ndarray:

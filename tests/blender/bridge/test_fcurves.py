@@ -9,17 +9,11 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import existing_channelbag
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from mathutils import Euler, Matrix, Vector
 
 CHANNELS = 7 + 4 * 6 + 3 * 6 + 4 * 4
 """Pelvis: 3 + 4. Chest, head, 2 upper arms, 2 thighs are balls; 2 girdles, forearms, shins have angles."""
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    return build_armature(bpy.context.scene, body)
 
 
 def curves(actor: bpy.types.Object, action: bpy.types.Action) -> dict[tuple[str, int], bpy.types.FCurve]:

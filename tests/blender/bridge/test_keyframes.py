@@ -11,17 +11,11 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose, write_keyframes
 from keymark.operators.bridge.pose import write_posture
 
 CLIP = np.arange(1.0, 31.0)
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    return build_armature(bpy.context.scene, body)
 
 
 @pytest.fixture

@@ -10,18 +10,12 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.pose import read_posture, write_posture
 from mathutils import Euler, Matrix, Quaternion, Vector
 
 EXACT_M = 1e-5
 MODES = ["QUATERNION", "AXIS_ANGLE", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
 Points = Callable[[bpy.types.Object], np.ndarray]
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    return build_armature(bpy.context.scene, body)
 
 
 def assert_round_trip(actor: bpy.types.Object, posture: Posture, shown_points: Points) -> None:
