@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike
 
 from ...core.arrays import Array, SingleArray
 from ...core.body.human import LIGHT, Rgb, side_of
-from . import drawing
 from .figures import triangles
 
 Color = tuple[float, float, float, float]
@@ -248,7 +247,7 @@ class Label:
     words: str
     x: float
     y: float
-    color: Color = drawing.INK
+    color: Color = INK
     align: Literal["left", "middle", "right"] = "left"
 
 
@@ -259,11 +258,11 @@ def paint(items: Iterable[Item]) -> None:
     """Draw all items, the first at the bottom; alike neighbors in one draw call."""
     for item in merged(items):
         if isinstance(item, Stroke):
-            drawing.lines(item.segments, item.color, item.width, item.halo)
+            lines(item.segments, item.color, item.width, item.halo)
         elif isinstance(item, Fill):
-            drawing.polygons(item.corners, item.color)
+            polygons(item.corners, item.color)
         else:
-            drawing.text(item.words, item.x, item.y, item.color, align=item.align)
+            text(item.words, item.x, item.y, item.color, align=item.align)
 
 
 def merged(items: Iterable[Item]) -> list[Item]:
