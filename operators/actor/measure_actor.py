@@ -3,7 +3,7 @@
 import bpy
 
 from ..follow.evidence import scene_evidence
-from ..overlays.legend import Clicks, show
+from ..overlays.tools import Clicks, show_clicks
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import pixel_under
@@ -56,7 +56,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
         self._clicks = Clicks()
-        show(self._clicks)
+        show_clicks(self._clicks)
         context.window.cursor_modal_set("CROSSHAIR")
         self._ask(context)
         context.window_manager.modal_handler_add(self)
@@ -93,7 +93,7 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Restore the cursor and the status bar; Blender calls this as well."""
-        show(None)
+        show_clicks(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             redraw_footage(context)
             context.window.cursor_modal_restore()

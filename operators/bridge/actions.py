@@ -6,8 +6,7 @@ from collections.abc import Iterable
 import bpy
 import numpy as np
 
-SLOT = "Actor"
-"""Name of the slot of an Action that is made for no armature in particular."""
+SLOT = "Actor"  # name of the slot of an Action that is made for no armature in particular
 
 
 def new_channelbag(action: bpy.types.Action) -> bpy.types.ActionChannelbag:
@@ -62,7 +61,10 @@ def curve_digest(animated: bpy.types.Object) -> str:
 
     It is the same in every run, unlike a .blend, which holds memory addresses.
     """
-    return _digest(_curves(animated))
+    animation = animated.animation_data
+    action = None if animation is None else animation.action
+    bag = None if action is None else existing_channelbag(action, animated)
+    return _digest(() if bag is None else bag.fcurves)
 
 
 def action_digest(action: bpy.types.Action) -> str:
@@ -80,11 +82,3 @@ def _digest(curves: Iterable[bpy.types.FCurve]) -> str:
         hashed.update(f"{curve.data_path} {curve.array_index} {len(points)}:".encode())
         hashed.update(points.tobytes())
     return hashed.hexdigest()
-
-
-def _curves(animated: bpy.types.Object) -> list[bpy.types.FCurve]:
-    animation = animated.animation_data
-    if animation is None or animation.action is None:
-        return []
-    bag = existing_channelbag(animation.action, animated)
-    return [] if bag is None else list(bag.fcurves)

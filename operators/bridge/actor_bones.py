@@ -9,8 +9,7 @@ from ...core.body.human import HUMAN, LIGHT, SHADED, Rgb, side_of
 
 ACTOR_BONES = frozenset(segment.name for segment in HUMAN.segments)
 ROOT = "pelvis"
-TELLING = (ROOT, "girdle.L")
-"""Bones that every motion of an actor moves; other rigs have hardly both."""
+TELLING = (ROOT, "girdle.L")  # bones that every motion of an actor moves; other rigs have hardly both
 TURNS = ("rotation_quaternion", "rotation_euler", "rotation_axis_angle")
 
 
@@ -43,11 +42,7 @@ def _turns(bag: bpy.types.ActionChannelbag, bone: str) -> bool:
     return any(bag.fcurves.find(f'pose.bones["{bone}"].{turn}') is not None for turn in TURNS)
 
 
-# --- Colors of an actor's bones by the side of the body
-
-
-WHITER = 0.55
-"""Share of white in the color of the active bone, which outshines the selected ones."""
+WHITER = 0.55  # share of white in the color of the active bone, which outshines the selected ones
 EARLIER = {"L": "THEME01", "R": "THEME04", "": "THEME09"}
 """Palettes that actors of earlier versions have: red on the left and blue on the right."""
 

@@ -1,4 +1,4 @@
-"""Read an actor's lengths from an armature's bones, in any rest pose."""
+"""An actor's lengths, read from an armature's bones in any rest pose, and set."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -16,16 +16,7 @@ from ...core.errors import InputError
 from .armature import BoneModel, bone_models
 from .object_space import object_space
 
-LARGEST_MISFIT = 0.01
-"""Share of stature by which bones may lie off the skeleton before the armature counts as another one."""
-ANY_STATURE_M = 1.7
-"""Stature of the actor from which bone axes are taken; they do not depend on it."""
-
-
-SAME_DIRECTION = 1e-3
-"""Length of the difference of two unit vectors that still point the same way."""
-LEAST_ROLL_RAD = 1e-4
-"""A smaller roll is rounding."""
+ANY_STATURE_M = 1.7  # stature of the actor from which bone axes are taken; they do not depend on it
 
 
 def skeleton_bones(armature_object: bpy.types.Object, skeleton: Skeleton) -> tuple[BoneModel, ...]:
@@ -59,11 +50,11 @@ def _as_rolled(
     for model in models:
         rest = np.array(bones[model.name].matrix_local, dtype=np.float64)[:3, :3]
         turn = model.axes.T @ rest  # at rest in a T pose all joints' frames are the object's own
-        if model.chain and np.linalg.norm(turn[:, 1] - [0.0, 1.0, 0.0]) > SAME_DIRECTION:
+        if model.chain and np.linalg.norm(turn[:, 1] - [0.0, 1.0, 0.0]) > 1e-3:
             return models
         roll = float(np.arctan2(turn[0, 2], turn[0, 0]))
         about = hinge(np.array([0.0, 1.0, 0.0]), np.array(roll))
-        rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > LEAST_ROLL_RAD else model)
+        rolled.append(replace(model, axes=model.axes @ about) if abs(roll) > 1e-4 else model)
     return tuple(rolled)
 
 
@@ -97,7 +88,7 @@ def read_body(armature_object: bpy.types.Object, skeleton: Skeleton) -> Body:
     lengths = np.linalg.lstsq(matrix, vector, rcond=None)[0]
     body = Body(Actor(dict(zip(names, map(float, lengths), strict=True))), skeleton)
     misfit = float(np.abs(matrix @ lengths - vector).max())
-    if misfit > LARGEST_MISFIT * body.actor.stature_m:
+    if misfit > 0.01 * body.actor.stature_m:
         raise InputError(
             f"armature '{armature_object.name}' has bones {1000 * misfit:.0f} mm off Keymark's "
             "skeleton; build an actor with Keymark and change its lengths only"
@@ -123,20 +114,18 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
 
     Every bone keeps its direction at rest, whatever the rest pose is, and the hips keep their location, so
     that keyed poses stay where they were posed.
-
-    Args:
-        armature_object: An armature with the skeleton's bones, of even scale.
-        body: Skeleton and sizes in the world.
-
-    Raises:
-        InputError: A bone is missing, the object is scaled unevenly, or the armature is not the file's own.
     """
     axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
     models = bone_models(body)
     scale = object_space(armature_object).scale
-    _check_own(armature_object)
+    data = armature_object.data
+    if armature_object.library is not None or data.library is not None or data.override_library is not None:
+        raise InputError(
+            f"armature '{armature_object.name}' comes from another file; change its lengths there, or "
+            "make it local (Object > Relations > Make Local)"
+        )
     segments = {segment.name: segment for segment in body.skeleton.segments}
-    bones = armature_object.data.bones
+    bones = data.bones
     heads: dict[str, Array] = {}
     tails: dict[str, Array] = {}
     frames: dict[str, Array] = {}
@@ -155,15 +144,6 @@ def set_lengths(armature_object: bpy.types.Object, body: Body) -> None:
         for model in models:
             edit_bones[model.name].head = heads[model.name]
             edit_bones[model.name].tail = tails[model.name]
-
-
-def _check_own(armature_object: bpy.types.Object) -> None:
-    data = armature_object.data
-    if armature_object.library is not None or data.library is not None or data.override_library is not None:
-        raise InputError(
-            f"armature '{armature_object.name}' comes from another file; change its lengths there, or "
-            "make it local (Object > Relations > Make Local)"
-        )
 
 
 @contextmanager

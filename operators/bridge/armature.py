@@ -26,8 +26,6 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import JointKind, Segment, Skeleton
 from .actor_bones import color_bones
 
-STRAIGHT = 1.0 - 1e-6
-"""Cosine above which a segment continues another."""
 HINGE_ORDER = "YZX"
 
 
@@ -37,16 +35,12 @@ class BoneModel:
 
     name: str
     parent: str | None
-    joint: int
-    """The joint whose frame the bone moves with."""
+    joint: int  # the joint whose frame the bone moves with
     chain: tuple[int, ...]
     """Elementary joints between the parent's frame and this one's, outermost last; empty for rigid leaves."""
-    axes: Array
-    """(3, 3) the bone's axes at rest as columns, in the joint's frame."""
-    start: Array
-    """(3,) the bone's head in its joint's frame [m]."""
-    end: Array
-    """(3,) the bone's tail in its joint's frame [m]."""
+    axes: Array  # (3, 3) the bone's axes at rest as columns, in the joint's frame
+    start: Array  # (3,) the bone's head in its joint's frame [m]
+    end: Array  # (3,) the bone's tail in its joint's frame [m]
 
     @property
     def is_root(self) -> bool:
@@ -55,11 +49,7 @@ class BoneModel:
 
 
 def bone_models(body: Body) -> tuple[BoneModel, ...]:
-    """The body's bones, parents first.
-
-    Args:
-        body: Skeleton and sizes; lengths in meters.
-    """
+    """The body's bones, parents first."""
     skeleton = body.skeleton
     axes: dict[str, Array] = {}
     models = []
@@ -129,7 +119,7 @@ def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Arra
         return axis
     along = _direction(body, segment)
     for other in body.skeleton.segments:
-        if other.parent == segment.name and _direction(body, other) @ along > STRAIGHT:
+        if other.parent == segment.name and _direction(body, other) @ along > 1.0 - 1e-6:
             follower = _first_hinge(body.skeleton, other)
             if follower is not None:
                 return follower
@@ -138,22 +128,11 @@ def _bending_axis(body: Body, segment: Segment, known: dict[str, Array]) -> Arra
     return np.array([1.0, 0.0, 0.0])
 
 
-# --- Build the actor's armature from a body's lengths
-
-
-COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}
-"""Bone collection of each side."""
-CONNECTED_M = 1e-6
+COLLECTIONS = {"L": "Left", "R": "Right", "": "Middle"}  # bone collection of each side
 
 
 def build_armature(scene: bpy.types.Scene, body: Body, name: str = "Actor") -> bpy.types.Object:
-    """Add an armature for `body` to a scene and make it the active object of its first view layer.
-
-    Args:
-        scene: The scene to link it to.
-        body: Skeleton and sizes.
-        name: Name of object and armature data; Blender makes it unique.
-    """
+    """Add an armature for `body` to a scene and make it the active object of its first view layer."""
     armature = bpy.data.armatures.new(name)
     armature_object = bpy.data.objects.new(name, armature)
     scene.collection.objects.link(armature_object)
@@ -193,7 +172,7 @@ def _add_bones(
             bone.align_roll(Vector(model.axes[:, 2]))
             if model.parent:
                 bone.parent = edit_bones[model.parent]
-                bone.use_connect = (bone.head - bone.parent.tail).length < CONNECTED_M
+                bone.use_connect = (bone.head - bone.parent.tail).length < 1e-6
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
@@ -216,10 +195,7 @@ def _set_freedoms(pose_bone: bpy.types.PoseBone, skeleton: Skeleton, model: Bone
 
 
 def _limit_ik(
-    pose_bone: bpy.types.PoseBone,
-    model: BoneModel,
-    axis: ArrayLike,
-    limits_deg: tuple[float, float],
+    pose_bone: bpy.types.PoseBone, model: BoneModel, axis: ArrayLike, limits_deg: tuple[float, float]
 ) -> None:
     along = model.axes.T @ np.asarray(axis)  # the bone's own axes are the joint's up to order and sign
     column = int(np.argmax(np.abs(along)))

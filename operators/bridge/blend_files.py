@@ -1,4 +1,4 @@
-"""A scene for the time being: what the running Blender has open is not touched."""
+""".blend files, written and looked at, and scenes for the time being: what is open is not touched."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,20 +39,12 @@ def showing_scene(scene: bpy.types.Scene) -> Iterator[None]:
         window.scene = before
 
 
-# --- .blend files from strangers, looked at before Blender opens them
-
-
 BLEND_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
 """First bytes of .blend files: plain, Zstandard and gzip."""
 
 
 def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None:
-    """Refuse a file that is no .blend, or too large for what it should hold.
-
-    Args:
-        path: The file.
-        what: What it holds, with its article, for the sentence.
-        largest_bytes: A larger one is refused.
+    """Refuse a file that is no .blend, or too large for `what` it should hold.
 
     Raises:
         InputError: It is missing, no regular file, no .blend, or too large.
@@ -73,9 +65,6 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
         raise InputError(f"{path}: is no .blend; it must be a file that Blender saved")
 
 
-# --- .blend files
-
-
 def write_blend(
     path: Path,
     blocks: set[bpy.types.ID],
@@ -83,14 +72,7 @@ def write_blend(
     named: Path | None = None,
     **options: object,
 ) -> None:
-    """Write datablocks and all that they use into a compressed .blend.
-
-    Args:
-        path: The file.
-        blocks: The datablocks.
-        data: Where they are; by default in the open file.
-        named: The file's name in sentences, where it will have another.
-        options: More for `bpy.data.libraries.write`.
+    """Write datablocks and all that they use into a compressed .blend; sentences call it `named`.
 
     Raises:
         ConversionError: Blender could not write the file, or not all of it.

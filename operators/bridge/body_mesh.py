@@ -14,32 +14,18 @@ from .actor_lengths import skeleton_bones
 
 SIDES_OF_RING = 20
 RINGS_OF_CAP = 4
-SKIN_SRGB = (178, 164, 150)
-SKIN_NAME = "Body"
-LINEAR_SRGB = 0.04045
-"""Below this share of full scale sRGB is linear (IEC 61966-2-1)."""
 
 
 def build_body_mesh(
     armature_object: bpy.types.Object, body: Body, markers: Sequence[MarkerStyle]
 ) -> bpy.types.Object:
-    """Add a mesh that the armature moves, each vertex with one bone.
+    """Add a mesh that the armature moves, each vertex with one bone; returns its object.
 
     The shaft of a marker's segment has the marker's color, without shading from lights or view transform
-    beyond what the renderer adds; caps and all other segments are a plain skin.
-
-    Args:
-        armature_object: The actor, built for `body`.
-        body: Skeleton and sizes.
-        markers: The performer's markers; `trunk` covers pelvis and chest.
-
-    Returns:
-        The mesh object, parented to the armature with an Armature modifier.
-
-    Raises:
-        InputError: The armature lacks bones.
+    beyond what the renderer adds; caps and all other segments are a plain skin. `trunk` covers pelvis and
+    chest.
     """
-    materials = [_material(SKIN_NAME, SKIN_SRGB)]
+    materials = [_material("Body", (178, 164, 150))]
     color_of: dict[str, int] = {}
     colored_caps: dict[str, set[int]] = {}
     for marker in markers:
@@ -65,7 +51,9 @@ def build_body_mesh(
         quads = ring_quads(len(rings), SIDES_OF_RING)
         vertices.append(placed)
         faces.append(quads.reshape(-1, 4) + count)
-        bands = _colored_bands(colored_caps.get(piece.segment, set()))
+        caps = colored_caps.get(piece.segment, set())
+        first = 0 if 0 in caps else RINGS_OF_CAP
+        bands = range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
         material = color_of.get(piece.segment, 0)
         colors += [
             material if band in bands else 0 for band in range(len(quads)) for _ in range(SIDES_OF_RING)
@@ -76,12 +64,6 @@ def build_body_mesh(
     for material_data in materials:
         mesh.materials.append(material_data)
     return _skinned(armature_object, mesh, groups)
-
-
-def _colored_bands(caps: set[int]) -> range:
-    """Bands between rings that are the shaft, and the caps at the given ends (0 start, 1 end)."""
-    first = 0 if 0 in caps else RINGS_OF_CAP
-    return range(first, RINGS_OF_CAP + 1 + (RINGS_OF_CAP if 1 in caps else 0))
 
 
 def _mesh(name: str, vertices: Array, faces: IndexArray, colors: list[int]) -> bpy.types.Mesh:
@@ -123,4 +105,4 @@ def _material(name: str, color_srgb: tuple[int, int, int]) -> bpy.types.Material
 def _linear(color_srgb: tuple[int, int, int]) -> tuple[float, ...]:
     share = np.array(color_srgb) / 255.0
     curve = ((share + 0.055) / 1.055) ** 2.4
-    return tuple(float(value) for value in np.where(share <= LINEAR_SRGB, share / 12.92, curve))
+    return tuple(float(value) for value in np.where(share <= 0.04045, share / 12.92, curve))

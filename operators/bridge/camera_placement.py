@@ -1,4 +1,4 @@
-"""The footage's camera read from a scene: core's camera from Blender's camera and movie clip."""
+"""The footage's camera in a scene: core's camera from Blender's, and height, tilt and roll of a still one."""
 
 from dataclasses import replace
 
@@ -15,20 +15,9 @@ from .footage_camera import may_move
 from .object_space import evaluated
 from .scene_frames import at_scene_frame
 
-STILL = 1e-6
-"""Largest change of the camera's matrix [m or 1] that still counts as rounding."""
-
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
-    """The camera that took the footage, with its lens and poses.
-
-    Args:
-        footage: A clip, which gives size and lens distortion, and its perspective camera.
-        frames: (F,) scene frames of the footage, at which a moving camera is read.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """The camera that took the footage, with its lens, and its poses at scene frames (F,) if it moves."""
     return replace(read_lens(footage), matrix_world=_poses(footage.scene, footage.camera, frames))
 
 
@@ -93,21 +82,21 @@ def _distortion(clip: bpy.types.MovieClip) -> tuple[float, float, float]:
 def _poses(scene: bpy.types.Scene, camera_object: bpy.types.Object, frames: Array) -> Array:
     """Camera to world: (4, 4) of a still camera, (F, 4, 4) of a moving one."""
     if not may_move(camera_object):
-        return _rigid(camera_object)
+        return _rigid(evaluated(camera_object).matrix_world)
     poses = np.empty((len(frames), 4, 4))
     with at_scene_frame(scene) as go_to:
         for row, frame in enumerate(frames):
             go_to(float(frame))
-            poses[row] = _rigid(camera_object)
-    still = np.abs(poses - poses[0]).max() < STILL
+            poses[row] = _rigid(evaluated(camera_object).matrix_world)
+    still = np.abs(poses - poses[0]).max() < 1e-6
     return poses[0] if still else poses
 
 
-def _rigid(camera_object: bpy.types.Object) -> Array:
-    """Camera to world without scale, which Blender's camera ignores as well."""
-    matrix = np.array(evaluated(camera_object).matrix_world, dtype=np.float64)
-    matrix[:3, :3] /= np.linalg.norm(matrix[:3, :3], axis=0)
-    return matrix
+def _rigid(matrix: Matrix) -> Array:
+    """(4, 4) without scale, which Blender's camera ignores as well."""
+    rigid = np.array(matrix, dtype=np.float64)
+    rigid[:3, :3] /= np.linalg.norm(rigid[:3, :3], axis=0)
+    return rigid
 
 
 # --- Height, tilt and roll of a still camera in a scene
@@ -126,31 +115,23 @@ def fixed_reason(camera_object: bpy.types.Object | None) -> str | None:
 
 def read_placement(camera_object: bpy.types.Object) -> CameraPlacement:
     """The placement of a camera, in the scene's current frame."""
-    return CameraPlacement.of(_pose(camera_object))
+    return CameraPlacement.of(_rigid(_matrix(camera_object)))
 
 
 def write_placement(camera_object: bpy.types.Object, placement: CameraPlacement) -> None:
     """Give a still camera another placement; its place on the floor, heading and display size stay."""
-    pose = Matrix(placement.applied_to(_pose(camera_object)).tolist())
+    pose = Matrix(placement.applied_to(_rigid(_matrix(camera_object))).tolist())
     scale = _matrix(camera_object).to_scale()
     camera_object.matrix_world = Matrix.LocRotScale(pose.to_translation(), pose.to_quaternion(), scale)
 
 
 def still_camera(footage: Footage) -> Camera:
-    """Lens and pose of the footage's camera in the scene's current frame.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
-    return replace(read_lens(footage), matrix_world=_pose(footage.camera))
+    """Lens and pose of the footage's camera in the scene's current frame."""
+    return replace(read_lens(footage), matrix_world=_rigid(_matrix(footage.camera)))
 
 
 def write_found_camera(footage: Footage, camera: Camera) -> None:
-    """Give the footage's camera another height, tilt, roll and focal length; nothing else of it changes.
-
-    Raises:
-        InputError: There is no camera or clip.
-    """
+    """Give the footage's camera another height, tilt, roll and focal length; nothing else of it changes."""
     data = footage.camera.data
     # Where Blender measures the sensor along the other side, the same factor applies.
     data.lens *= camera.lens_mm / read_lens(footage).lens_mm
@@ -162,10 +143,3 @@ def _matrix(camera_object: bpy.types.Object) -> Matrix:
     own = camera_object.parent is None and not may_move(camera_object)
     shifted = any(camera_object.delta_location) or any(camera_object.delta_rotation_euler)
     return camera_object.matrix_basis if own and not shifted else camera_object.matrix_world
-
-
-def _pose(camera_object: bpy.types.Object) -> Array:
-    """(4, 4) camera to world without scale."""
-    matrix = np.array(_matrix(camera_object), dtype=np.float64)
-    matrix[:3, :3] /= np.linalg.norm(matrix[:3, :3], axis=0)
-    return matrix

@@ -1,4 +1,4 @@
-"""Registry of export formats: names, suffix, the exporter Blender needs, and the writer of each.
+"""Export of a motion by Blender's own exporters: names, suffix, add-on and writer of each format.
 
 A new format is one entry of `FORMATS`, with its writer beside it: the export panel, the operator's menu, its
 tooltip and the filter of its file browser are made from these.
@@ -15,9 +15,6 @@ from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_atomically
 from .scene_frames import showing_action
 
-BVH_ORDER = "ZXY"
-"""One order of rotation channels for all joints: some readers take the first joint's for all."""
-
 
 @dataclass(frozen=True)
 class ExportFormat:
@@ -25,14 +22,12 @@ class ExportFormat:
 
     name: str
     suffix: str
-    description: str
-    """Tooltip: what the format is for."""
+    description: str  # tooltip: what the format is for
     write: Callable[[bpy.types.Object, Path], None]
     """Write the motion of an armature over its scene's frames, with the other selected objects."""
     operator_type: str = ""
     """Class name of the exporter that an add-on registers; empty where Blender has it built in."""
-    addon: str = ""
-    """Name of the add-on, as in the Preferences."""
+    addon: str = ""  # name of the add-on, as in the Preferences
 
     def missing(self) -> str | None:
         """Why this Blender cannot write the format; None where it can."""
@@ -62,52 +57,22 @@ def write_bvh(armature_object: bpy.types.Object, path: Path) -> None:
                 filepath=str(path),
                 frame_start=scene.frame_start,
                 frame_end=scene.frame_end,
-                rotate_mode=BVH_ORDER,
+                rotate_mode="ZXY",  # one order for all joints: some readers take the first one's for all
                 root_transform_only=True,
             )
         except (RuntimeError, AttributeError) as error:
             raise ConversionError(f"{path}: Blender's BVH exporter failed ({str(error).strip()})") from error
 
 
-def _write_fbx(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.fbx(
-        filepath=str(path),
-        use_selection=True,
-        object_types={"ARMATURE", "MESH", "EMPTY"},
-        add_leaf_bones=False,
-        bake_anim=True,
-        bake_anim_use_nla_strips=False,
-        bake_anim_use_all_actions=False,
-        bake_anim_simplify_factor=0.0,
-        check_existing=False,
-    )
+def _written_by(exporter: str, **options: object) -> Callable[[bpy.types.Object, Path], None]:
+    """The writer by an operator such as `export_scene.fbx`."""
+    group, name = exporter.split(".")
 
+    def write(_: bpy.types.Object, path: Path) -> None:
+        operator = getattr(getattr(bpy.ops, group), name)
+        operator(filepath=str(path), check_existing=False, **options)
 
-def _write_gltf(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.export_scene.gltf(
-        filepath=str(path),
-        export_format="GLB",
-        use_selection=True,
-        export_animations=True,
-        export_animation_mode="ACTIVE_ACTIONS",
-        export_frame_range=True,
-        export_force_sampling=True,
-        export_anim_slide_to_zero=True,
-        export_def_bones=False,
-        check_existing=False,
-    )
-
-
-def _write_usd(_: bpy.types.Object, path: Path) -> None:
-    bpy.ops.wm.usd_export(
-        filepath=str(path),
-        selected_objects_only=True,
-        export_animation=True,
-        export_armatures=True,
-        only_deform_bones=False,
-        export_materials=False,
-        check_existing=False,
-    )
+    return write
 
 
 FORMATS = {
@@ -123,7 +88,16 @@ FORMATS = {
         "FBX",
         ".fbx",
         "Write for game engines and other animation programs",
-        _write_fbx,
+        _written_by(
+            "export_scene.fbx",
+            use_selection=True,
+            object_types={"ARMATURE", "MESH", "EMPTY"},
+            add_leaf_bones=False,
+            bake_anim=True,
+            bake_anim_use_nla_strips=False,
+            bake_anim_use_all_actions=False,
+            bake_anim_simplify_factor=0.0,
+        ),
         "EXPORT_SCENE_OT_fbx",
         "FBX",
     ),
@@ -131,18 +105,35 @@ FORMATS = {
         "glTF",
         ".glb",
         "Write one binary file for engines and the web",
-        _write_gltf,
+        _written_by(
+            "export_scene.gltf",
+            export_format="GLB",
+            use_selection=True,
+            export_animations=True,
+            export_animation_mode="ACTIVE_ACTIONS",
+            export_frame_range=True,
+            export_force_sampling=True,
+            export_anim_slide_to_zero=True,
+            export_def_bones=False,
+        ),
         "EXPORT_SCENE_OT_gltf",
         "glTF 2.0",
     ),
     "USD": ExportFormat(
-        "USD", ".usdc", "Write for film pipelines: a skeleton with its animation", _write_usd
+        "USD",
+        ".usdc",
+        "Write for film pipelines: a skeleton with its animation",
+        _written_by(
+            "wm.usd_export",
+            selected_objects_only=True,
+            export_animation=True,
+            export_armatures=True,
+            only_deform_bones=False,
+            export_materials=False,
+        ),
     ),
 }
 """By identifier, in the order in which the export panel shows them."""
-
-
-# --- Export of an actor's motion by Blender's own exporters
 
 
 def export_motion(
@@ -154,16 +145,10 @@ def export_motion(
     path: Path,
     along: Sequence[bpy.types.Object] = (),
 ) -> None:
-    """Write an actor's or a character's motion; scene, selection and frame are as before afterwards.
+    """Write an actor's or a character's motion over `frames`, first to last, into a whole file or none.
 
-    Args:
-        scene: The scene that holds the actor.
-        armature_object: The actor.
-        action: The motion.
-        frames: First and last scene frame.
-        export_format: The format to write.
-        path: The file; it appears complete or not at all.
-        along: Other objects that are written too, where the format has any; nothing else is.
+    The objects `along` are written too, where the format has any; nothing else is. Scene, selection and frame
+    are as before afterwards.
 
     Raises:
         InputError: The actor is hidden with its collection.
@@ -189,15 +174,13 @@ def export_motion(
 @contextmanager
 def _frame_range(scene: bpy.types.Scene, frames: tuple[int, int]) -> Iterator[None]:
     """Set the scene's range to `frames`, without a preview range; then restore range and current frame."""
-    names = ("frame_start", "frame_end", "use_preview_range")
-    before = {name: getattr(scene, name) for name in names}
+    before = scene.frame_start, scene.frame_end, scene.use_preview_range
     at = scene.frame_current, scene.frame_subframe
     scene.frame_start, scene.frame_end, scene.use_preview_range = *frames, False
     try:
         yield
     finally:
-        scene.use_preview_range = before["use_preview_range"]
-        scene.frame_start, scene.frame_end = before["frame_start"], before["frame_end"]
+        scene.frame_start, scene.frame_end, scene.use_preview_range = before
         scene.frame_set(at[0], subframe=at[1])
 
 

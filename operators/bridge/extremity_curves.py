@@ -17,8 +17,7 @@ from .rotation_modes import ALL_PATHS, bone_path, rotation_path
 
 AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": (0.0, None, None, None)}
 """Values of channels that do not turn a bone, None for any; Euler angles are all zero."""
-SAME_VALUE = 1e-4
-"""Channels that differ by less [rad, m] are the same."""
+SAME_VALUE = 1e-4  # channels that differ by less [rad, m] are the same
 
 
 def extremity_paths(skeleton: Skeleton) -> dict[str, str]:
@@ -50,13 +49,9 @@ def turned_extremities(
     action: bpy.types.Action,
     keyframe_action: bpy.types.Action | None,
 ) -> dict[str, Array]:
-    """Frames of the unchanged keys that a motion has turned hands and feet with by itself, by name.
+    """Frames of the unchanged keys by which a motion has turned hands and feet by itself, by name.
 
-    Args:
-        armature_object: The actor.
-        skeleton: The skeleton its bones belong to.
-        action: The motion.
-        keyframe_action: The animator's keyframes; what is posed there, the motion only copies.
+    What is posed in the keyframe Action, the motion only copies.
     """
     given = existing_channelbag(action, armature_object)
     if given is None:
@@ -93,17 +88,10 @@ def straighten_extremities(
     keyframe_action: bpy.types.Action | None,
     frame: float,
 ) -> None:
-    """Put hands and feet back to rest that stand as a motion has turned them: nobody has posed them.
+    """Put hands and feet back to rest that stand, at a scene frame, as the Action of a motion turned them.
 
-    Blender leaves a channel without keys as it was, so that they would stay turned under the next Action, and
-    would be keyed with the next pose.
-
-    Args:
-        armature_object: The actor.
-        skeleton: The skeleton its bones belong to.
-        action: The Action that it shows, reconstructed or final.
-        keyframe_action: The animator's keyframes; what is posed there stays.
-        frame: The scene frame that it shows.
+    Nobody has posed them: Blender leaves a channel without keys as it was, so that they would stay turned
+    under the next Action, and would be keyed with the next pose. What is posed in the keyframe Action stays.
     """
     given = existing_channelbag(action, armature_object)
     posed = posed_extremities(armature_object, skeleton, keyframe_action)

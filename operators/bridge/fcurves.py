@@ -1,4 +1,4 @@
-"""Bone channels from postures over time: rotations, and the root's location, relative to the rest pose."""
+"""Postures over time as bone channels, relative to the rest pose, and as F-curves of an Action."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -27,24 +27,16 @@ class BoneChannels:
     """Channels of one bone over F postures."""
 
     bone: str
-    rotation: Array
-    """(F, 3, 3) relative to the bone's rest."""
-    location: Array | None
-    """(F, 3) [m, before the object's scale]; None for all but the root."""
+    rotation: Array  # (F, 3, 3) relative to the bone's rest
+    location: Array | None  # (F, 3) [m, before the object's scale]; None for all but the root
 
 
 def bone_channels(
     armature_object: bpy.types.Object, postures: Posture, extremities: Extremities = RIGID
 ) -> tuple[BoneChannels, ...]:
-    """Channels of bones that show a batch of postures in the world.
+    """Channels of bones that show F postures in the world; hands and feet that are not listed get none.
 
-    Args:
-        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
-        postures: A batch of F.
-        extremities: Hands and feet; those that are not listed get no channels.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    The armature may have any location, even scale and rest pose.
     """
     models = skeleton_bones(armature_object, postures.skeleton)
     bones = armature_object.data.bones
@@ -61,14 +53,10 @@ def channels_at_rest(
 ) -> tuple[BoneChannels, ...]:
     """Channels as `bone_channels`, of bones that need not be in an armature.
 
-    Args:
-        models: The skeleton's bones, parents first.
-        rest: (4, 4) rest matrix of each bone, in the object's space.
-        space: From the object's space to the world.
-        postures: A batch of F.
-        extremities: Hands and feet; those that are not listed get no channels.
+    `models` are parents first; `rest` has each bone's rest matrix (4, 4) in the object's space.
     """
     frames: dict[str, Array] = {}
+    axes: dict[str, Array] = {}  # the bones' in the object's space
     channels = []
     for model in models:
         frames[model.name] = _joint_frame(postures, model, frames)
@@ -76,16 +64,14 @@ def channels_at_rest(
             frames[model.name] = frames[model.name] @ extremities.turns[model.name]
         elif not model.chain:
             continue
-        turn = rest[model.name][:3, :3]
-        posed = _posed(frames, model, space.rotation)
-        location = None
+        axes[model.name] = posed = np.asarray(space.rotation.T @ frames[model.name] @ model.axes)
+        turn, location = rest[model.name][:3, :3], None
         if model.parent is None:
             head = space.from_world(postures.translation + frames[model.name] @ model.start)
             location = (head - rest[model.name][:3, 3]) @ turn
         else:
-            above = next(other for other in models if other.name == model.parent)
             turn = rest[model.parent][:3, :3].T @ turn
-            posed = np.swapaxes(_posed(frames, above, space.rotation), -1, -2) @ posed
+            posed = np.swapaxes(axes[model.parent], -1, -2) @ posed
         channels.append(BoneChannels(model.name, turn.T @ posed, location))
     return tuple(channels)
 
@@ -105,26 +91,12 @@ def _joint_frame(postures: Posture, model: BoneModel, frames: dict[str, Array]) 
     return frame
 
 
-def _posed(frames: dict[str, Array], model: BoneModel, object_rotation: Array) -> Array:
-    """(F, 3, 3) the bone's axes in the object's space."""
-    return np.asarray(object_rotation.T @ frames[model.name] @ model.axes)
-
-
-# --- F-curves of a motion, in an Action that animates the actor's armature
-
-
 def posture_columns(
     armature_object: bpy.types.Object, postures: Posture, extremities: Extremities = RIGID
 ) -> list[tuple[str, int, str, Array]]:
-    """Contents of the F-curves of a batch of F postures, and of the hands and feet that are given.
+    """Data path, array index, bone and values (F,) of the F-curves of F postures and their extremities.
 
     Every bone keeps the rotation mode that the animator has chosen.
-
-    Returns:
-        Data path, array index, bone and values (F,) of each F-curve.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
     """
     bones = armature_object.pose.bones
     channels = bone_channels(armature_object, postures, extremities)
@@ -164,21 +136,12 @@ def write_motion(
     keyframe_action: bpy.types.Action | None = None,
     frames: Array | None = None,
 ) -> bpy.types.Action:
-    """Write a motion as an Action and let it animate the armature.
+    """Write a motion as an Action, a new one by default, and let it animate the armature.
 
     A group for each bone, a GENERATED key for each frame and channel, in the bone's own rotation mode.
     Written again into the same Action, it replaces only such keys; the animator's stay and win their frames.
-
-    Args:
-        armature_object: The actor, with any location and even scale; it shows the motion's world positions.
-        motion: The motion to write.
-        action: The Action to write into; a new one by default.
-        keyframe_action: Where the animator may have posed hands and feet; those that are move as their curves
-            there say, the others naturally.
-        frames: (F,) scene frames; the motion's own by default.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    Hands and feet that are posed in `keyframe_action` move as their curves there say, the others naturally.
+    `frames` (F,) are scene frames; the motion's own by default.
     """
     skeleton = motion.body.skeleton
     posed = posed_extremities(armature_object, skeleton, keyframe_action)

@@ -1,133 +1,36 @@
-"""Read the actor's armature as core's `Rig`: from channels to the world."""
+"""The final motion: planted feet and few keys, made of a reconstructed motion with the animator's changes."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from ...core.arrays import Array
-from ...core.body.body_volume import sole_offsets
+from ...core.arrays import Array, BoolArray, IndexArray
 from ...core.body.human import HUMAN
-from ...core.body.kinematics import Body
+from ...core.body.kinematics import RIGID, Body, Extremities
 from ...core.body.posture import Posture
-from ...core.body.skeleton import SIDES
+from ...core.body.skeleton import Skeleton
 from ...core.finish.hermite import Spline
 from ...core.finish.key_reduction import reduce_keys
 from ...core.finish.natural_extremities import natural_extremities
 from ...core.finish.planted_feet import Contact, PlantedFeet, plant_feet, point_tolerances
-from ...core.finish.rig import Rig, RigBone, RigPose
+from ...core.finish.rig import Rig, RigPose
 from ...core.progress import Job, Progress, within
-from .actor_lengths import read_body, skeleton_bones
-from .armature import BoneModel, bone_models
+from .actions import channelbag_for, existing_channelbag
+from .actor_lengths import read_body
 from .extremity_curves import turned_extremities
-from .final_motion import (
-    largest_leg_distance_m,
-    motion_frames,
-    posed_indices,
-    read_values,
-    shown_postures,
-    with_planted_legs,
-    with_turned_extremities,
-    write_final,
-)
-from .object_space import ObjectSpace, object_space
-
-
-def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
-    """Read the bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
-
-    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels.
-
-    Args:
-        armature_object: An armature with the skeleton's bones, with any location, even scale and rest pose.
-        body: The skeleton, with the sizes that `read_body` finds in the armature.
-        extremities: Names of hands and feet that turn; the others are rigid with their limbs.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
-    """
-    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
-    names = list(axes)
-    bones = armature_object.data.bones
-    rest = {name: np.array(bones[name].matrix_local, dtype=np.float64) for name in names}
-    modes = {name: armature_object.pose.bones[name].rotation_mode for name in names}
-    return rig_at_rest(body, axes, rest, modes, object_space(armature_object), extremities)
-
-
-def rig_at_rest(
-    body: Body,
-    axes: Mapping[str, np.ndarray],
-    rest: Mapping[str, np.ndarray],
-    modes: Mapping[str, str],
-    space: ObjectSpace,
-    extremities: Collection[str] = (),
-) -> Rig:
-    """A rig as `read_rig` gives it, of bones that need not be in an armature.
-
-    Args:
-        body: Skeleton and sizes.
-        axes: (3, 3) each bone's axes in its joint's frame.
-        rest: (4, 4) rest matrix of each bone, in the object's space.
-        modes: Rotation mode of each bone.
-        space: From the object's space to the world.
-        extremities: Names of hands and feet that turn.
-    """
-    models = bone_models(body)
-    turning = [model for model in models if model.chain or model.name in extremities]
-    names = [model.name for model in turning]
-    bones = []
-    for model in turning:
-        own = rest[model.name][:3, :3]
-        origin, location_axes = _joint_place(model, body), None
-        if model.parent is None:
-            left = space.rotation @ own
-            origin, location_axes = (
-                space.to_world(rest[model.name][:3, 3]),
-                space.scale * space.rotation @ own,
-            )
-        else:
-            left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
-        bones.append(
-            RigBone(
-                name=model.name,
-                parent=-1 if model.parent is None else names.index(model.parent),
-                mode=modes[model.name],
-                left=left,
-                right=axes[model.name].T,
-                origin=origin,
-                points=_fixed_points(model, body, models, names),
-                location_axes=location_axes,
-            )
-        )
-    return Rig(tuple(bones))
-
-
-def _joint_place(model: BoneModel, body: Body) -> np.ndarray:
-    """(3,) the bone's joint in its parent's joint's frame; a hand's is the wrist, a foot's the ankle [m]."""
-    return body.offsets[model.chain[0]] if model.chain else model.start
-
-
-def _fixed_points(
-    model: BoneModel, body: Body, models: tuple[BoneModel, ...], turning: Collection[str]
-) -> np.ndarray:
-    """(N, 3) the bone's own end, a foot's heel, and the ends of rigid hands and feet, in its frame [m]."""
-    if not model.chain:
-        kind, _, side = model.name.partition(".")
-        heel = [sole_offsets(body)[SIDES.index(side), 0]] if kind == "foot" else []
-        return np.stack([model.end - model.start, *heel])
-    leaves = [m.end for m in models if m.parent == model.name and not m.chain and m.name not in turning]
-    return np.stack([model.end, *leaves])
-
-
-# --- Finish the reconstructed motion of an Action
-
+from .fcurves import moved_paths, posture_columns
+from .keyframes import keyed_frames, untouched_frames
+from .keys import copy_keys, ensure_fcurve, write_linear_keys, write_smooth_keys
+from .review_curves import is_review_curve
+from .rig import motion_frames, read_rig, read_values, rig_channels, shown_postures, unit_quaternions
+from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"
 READ, SEEN, PLANTED = 0.1, 0.3, 0.4
 """Shares of the job at which the motion is read, its postures are known, and the feet are planted."""
-NOTICEABLE_M = 0.005
-"""Distance between a pose and its nearest posture above which a note is made [m]."""
+NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
 @dataclass(frozen=True)
@@ -136,8 +39,7 @@ class FinishOptions:
 
     tolerance_m: float | None
     """Largest distance of the body from the motion [m]; None for a key on every frame."""
-    whole_pose: bool
-    """Whether all bones are keyed on the same frames."""
+    whole_pose: bool  # whether all bones are keyed on the same frames
     stray_m: float | None
     """Distance that a resting foot may stray and still be held [m]; None to leave feet alone."""
 
@@ -148,14 +50,11 @@ class Finished:
 
     body: Body
     rig: Rig
-    frames: Array
-    """(F,) scene frames."""
+    frames: Array  # (F,) scene frames
     motion: Sequence[Array] | Sequence[Spline]
     """For each bone of the rig its values on every frame, or few keys."""
-    furthest_m: float
-    """The largest distance from the motion that reducing the keys makes [m]."""
-    contacts: tuple[Contact, ...]
-    """The planted feet."""
+    furthest_m: float  # the largest distance from the motion that reducing the keys makes [m]
+    contacts: tuple[Contact, ...]  # the planted feet
     notes: tuple[str, ...]
 
     @property
@@ -167,13 +66,7 @@ class Finished:
     def write(
         self, armature_object: bpy.types.Object, motion_action: bpy.types.Action, action: bpy.types.Action
     ) -> int:
-        """Write the motion into an Action; returns how many keys it has now.
-
-        Args:
-            armature_object: The actor.
-            motion_action: The reconstructed motion.
-            action: The final Action.
-        """
+        """Write the motion into a final Action; returns how many keys it has now."""
         return write_final(
             armature_object, motion_action, action, self.body, self.rig, self.frames, self.motion
         )
@@ -186,17 +79,9 @@ def finish_motion(
     options: FinishOptions,
     frame_s: float,
 ) -> Job[Finished]:
-    """Finish the motion that an Action holds, with the animator's changes.
+    """Finish the motion that an Action holds, with the animator's changes; nothing in Blender is changed.
 
-    Args:
-        armature_object: The actor.
-        action: The motion.
-        keyframe_action: The animator's keyframes; their frames stay keys.
-        options: Tolerance, keys and feet.
-        frame_s: Time from one scene frame to the next [s].
-
-    Yields:
-        Progress; nothing in Blender is changed.
+    Frames of the animator's keyframes stay keys; `frame_s` is the time from one scene frame to the next [s].
 
     Raises:
         InputError: The Action has no motion of the actor, or the armature is not an actor's.
@@ -220,12 +105,17 @@ def finish_motion(
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
         notes = _planting_notes(rig, shown, body, before, planted)
         if planted.contacts:
-            values = with_planted_legs(armature_object, rig, values, planted.posture)
+            every = np.ones(len(frames), dtype=bool)
+            moved = {bone.name: every for bone in rig.bones if _is_moved_by_feet(bone.name)}
+            values = _replaced(armature_object, rig, values, planted.posture, moved)
     if turned:
         contacts = planted.contacts or None
         natural = natural_extremities(body, planted.posture, time_s, contacts)
         where = {name: np.isin(frames, np.round(own, 3)) for name, own in turned.items()}
-        values = with_turned_extremities(armature_object, rig, values, planted.posture, natural, where)
+        values = _replaced(armature_object, rig, values, planted.posture, where, natural)
+        for held, bone in zip(values, rig.bones, strict=True):
+            if bone.name in where and bone.mode == "QUATERNION":
+                held[:, :4] = unit_quaternions(held[:, :4])
     if options.tolerance_m is None:
         return Finished(body, rig, frames, values, 0.0, planted.contacts, notes)
     allowed = point_tolerances(rig, len(frames), options.tolerance_m, planted.contacts)
@@ -248,3 +138,91 @@ def _planting_notes(
             "planting the feet uses the nearest posture"
         ),
     )
+
+
+def _is_moved_by_feet(bone: str) -> bool:
+    return bone.partition(".")[0] in ("pelvis", "thigh", "shin")
+
+
+def _replaced(
+    armature_object: bpy.types.Object,
+    rig: Rig,
+    values: Sequence[Array],
+    posture: Posture,
+    where: Mapping[str, BoolArray],
+    extremities: Extremities = RIGID,
+) -> list[Array]:
+    """Values with those of postures in the frames `where` (F,) says of each bone; the rest stays."""
+    columns = posture_columns(armature_object, posture, extremities)
+    stored = {(path, index): column for path, index, _, column in columns}
+    changed = [column.copy() for column in values]
+    for bone, column, path, index in rig_channels(rig):
+        rows = where.get(rig.bones[bone].name)
+        if rows is not None:
+            changed[bone][rows, column] = stored[path, index][rows]
+    return changed
+
+
+def largest_leg_distance_m(rig: Rig, shown: RigPose, body: Body, posture: Posture) -> float:
+    """The largest distance of a leg's joint or end between a rig's poses and postures [m]."""
+    pose = body.pose(posture)
+    worst = 0.0
+    for index, bone in enumerate(rig.bones):
+        if _is_moved_by_feet(bone.name):
+            end = body.segment_ends(pose, bone.name)[1]
+            there = shown.points[:, rig.point_slices[index].start + 1]
+            worst = max(worst, float(np.linalg.norm(end - there, axis=-1).max()))
+    return worst
+
+
+def posed_indices(
+    armature_object: bpy.types.Object,
+    keyframe_action: bpy.types.Action | None,
+    skeleton: Skeleton,
+    frames: Array,
+) -> IndexArray:
+    """Indices of the frames that the animator posed."""
+    if keyframe_action is None:
+        return np.zeros(0, dtype=np.intp)
+    keyed = keyed_frames(armature_object, keyframe_action, skeleton)
+    matched = untouched_frames(armature_object, keyframe_action, skeleton)
+    posed = np.array(sorted(set(keyed) - set(matched)))
+    return np.flatnonzero(np.isin(frames, np.round(posed)))
+
+
+def write_final(
+    armature_object: bpy.types.Object,
+    source: bpy.types.Action,
+    action: bpy.types.Action,
+    body: Body,
+    rig: Rig,
+    frames: Array,
+    motion: Sequence[Array] | Sequence[Spline],
+) -> int:
+    """Write a finished motion as ordinary keys, replacing all that the Action held for the actor.
+
+    Other curves of `source`, from which the motion was read (posed hands and feet, properties), are copied,
+    but for review curves. Returns the number of keys on the bones' curves.
+    """
+    channelbag = channelbag_for(action, armature_object)
+    for fcurve in list(channelbag.fcurves):
+        channelbag.fcurves.remove(fcurve)
+    count = 0
+    for bone, column, path, index in rig_channels(rig):
+        fcurve = ensure_fcurve(channelbag, path, index, rig.bones[bone].name)
+        held = motion[bone]
+        if isinstance(held, Spline):
+            write_smooth_keys(fcurve, frames[held.keys], held.values[:, column], held.slopes[:, column])
+        else:
+            write_linear_keys(fcurve, frames, held[:, column])
+        count += len(fcurve.keyframe_points)
+    written = set(moved_paths(armature_object, body.skeleton))
+    written |= {bone_path(bone.name, channel) for bone in rig.bones for channel in ALL_PATHS}
+    given = existing_channelbag(source, armature_object)
+    for fcurve in given.fcurves if given is not None else ():
+        if fcurve.data_path not in written and not is_review_curve(fcurve):
+            group = fcurve.group.name if fcurve.group is not None else armature_object.name
+            copy_keys(fcurve, ensure_fcurve(channelbag, fcurve.data_path, fcurve.array_index, group))
+    action.use_frame_range = True
+    action.frame_start, action.frame_end = float(frames[0]), float(frames[-1])
+    return count

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...core.errors import InputError
 from ...core.footage.camera import Camera, default_camera_pose, guess_lens
@@ -71,28 +72,16 @@ class Footage:
 
     @property
     def shown_s(self) -> float:
-        """Time [s] of the scene's current frame from the clip's first.
-
-        Raises:
-            InputError: There is no clip.
-        """
+        """Time [s] of the scene's current frame from the clip's first."""
         return (self.scene.frame_current - self.first_frame) / self.rate
 
     @property
     def path(self) -> Path:
-        """The clip's file.
-
-        Raises:
-            InputError: There is no clip, or its file is missing.
-        """
+        """The clip's file."""
         return clip_path(self.clip)
 
     def open(self) -> "Clip":
-        """Open the clip's file.
-
-        Raises:
-            InputError: There is no clip, its file is missing or cannot be decoded.
-        """
+        """Open the clip's file."""
         # This module is imported while the extension registers, when OpenCV may be missing.
         from ...core.footage.clips.clip import Clip
 
@@ -136,7 +125,26 @@ def set_scene_range(
     scene.frame_end = frame_start + frame_count - 1
 
 
-# --- Attach a clip to a camera, with a guessed lens where none is known
+def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = None) -> tuple[int, int, int]:
+    """Red, green, blue (0 to 255) at a pixel (2,) of the footage, by default in the scene's current frame.
+
+    Raises:
+        InputError: There is no footage, no frame of it at the scene's, or the pixel lies outside.
+    """
+    from ...core.footage.clips.clip import FrameReader
+
+    width, height = footage.clip.size
+    x, y = np.floor(np.asarray(pixel, dtype=np.float64)).astype(int)
+    if not (0 <= x < width and 0 <= y < height):
+        raise InputError(f"pixel ({x}, {y}) lies outside the footage, which is {width} x {height} pixels")
+    at = footage.scene.frame_current if scene_frame is None else scene_frame
+    image = FrameReader(footage.open()).image_at((at - footage.first_frame) / footage.rate)
+    if image is None:
+        raise InputError(f"the footage has no frame at scene frame {at}; go to one it has")
+    # The median of 5 x 5 is free of noise and chroma subsampling.
+    around = image[max(0, y - 2) : y + 3, max(0, x - 2) : x + 3]
+    blue, green, red = (round(float(value)) for value in np.median(around.reshape(-1, 3), axis=0))
+    return red, green, blue
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,8 +152,7 @@ class AttachedFootage:
     """The camera that a clip was attached to."""
 
     camera: bpy.types.Object
-    guessed_lens_mm: float
-    """Focal length, where it is a guess [mm]; 0 where it is known."""
+    guessed_lens_mm: float  # focal length, where it is a guess [mm]; 0 where it is known
     guessed_placement: CameraPlacement | None = None
     """Where a new camera was put; None for one that was there already."""
 
@@ -156,16 +163,11 @@ def attach_footage(
     camera_object: bpy.types.Object | None = None,
     guessed_lens_mm: float = 0.0,
 ) -> AttachedFootage:
-    """Put a clip behind a camera and give the scene the clip's size, rate and range.
+    """Put a clip behind a camera and give the scene the clip's size, rate and range, if its file is there.
 
     A lens set in the clip's tracking camera is used, and the camera follows a solved clip. A lens that was
-    never set is guessed; one that the animator set stays, as does the camera's pose.
-
-    Args:
-        scene: The scene to change.
-        clip: A clip that Blender has; where its file is missing, the scene keeps size, rate and range.
-        camera_object: The camera; by default a new one at eye height that looks at the world's origin.
-        guessed_lens_mm: Focal length that was guessed for that camera before and may be guessed anew [mm].
+    never set is guessed, anew where it is `guessed_lens_mm` [mm]; one that the animator set stays, as does
+    the camera's pose. A new camera, the default, stands at eye height and looks at the world's origin.
     """
     size = (clip.size[0], clip.size[1])
     if clip.frame_duration and all(size):
@@ -184,9 +186,15 @@ def attach_footage(
     stays = is_new or not may_move(camera_object)
     follows = bool(solved and (stays or solver_constraint(scene, camera_object, clip)))
     placement = None
-    lens, guessed = _lens(clip, size, camera_object.data, is_new, stays, follows, guessed_lens_mm)
+    data = camera_object.data
+    lens, guessed = clip_lens(clip), 0.0
+    if lens is None or not (stays or follows):
+        lens = None
+        if is_new or is_guess(data, guessed_lens_mm) or (stays and lens_is_untouched(data)):
+            guess = guess_lens(size)
+            lens, guessed = Camera(guess.lens_mm, guess.sensor_width_mm, size, np.eye(4)), guess.lens_mm
     if lens is not None:
-        set_lens(camera_object.data, lens)
+        set_lens(data, lens)
         if is_new:
             stand = default_camera_pose(lens.lens_mm, lens.sensor_width_mm, size)
             set_still_pose(camera_object, replace(lens, matrix_world=stand))
@@ -194,26 +202,6 @@ def attach_footage(
     if follows:
         follow_solution(scene, camera_object, clip)
     return AttachedFootage(camera_object, guessed, None if follows else placement)
-
-
-def _lens(
-    clip: bpy.types.MovieClip,
-    size: tuple[int, int],
-    data: bpy.types.Camera,
-    is_new: bool,
-    stays: bool,
-    follows: bool,
-    guessed_before_mm: float,
-) -> tuple[Camera | None, float]:
-    """The lens to set, None for the camera's own, and its focal length if guessed, else 0 [mm]."""
-    known = clip_lens(clip)
-    if known is not None and (stays or follows):
-        return known, 0.0
-    was_guessed = is_guess(data, guessed_before_mm)
-    if is_new or was_guessed or (stays and lens_is_untouched(data)):
-        guess = guess_lens(size)
-        return Camera(guess.lens_mm, guess.sensor_width_mm, size, np.eye(4)), guess.lens_mm
-    return None, 0.0
 
 
 def is_guess(data: bpy.types.Camera, guessed_lens_mm: float) -> bool:

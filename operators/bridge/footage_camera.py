@@ -8,13 +8,9 @@ from ...core.footage.camera import Camera
 
 CAMERA_NAME = "Footage Camera"
 
-UNTOUCHED_CLIP_MM = (24.0, 35.0)
-"""Default focal length and sensor width of a clip's tracking camera [mm]."""
-UNTOUCHED_CAMERA_MM = (50.0, 36.0)
-"""Default focal length and sensor width of a camera object [mm]."""
-STARTUP_LOCATION_M = (7.3589, -6.9258, 4.9583)
-"""Location of the camera in Blender's startup file [m]."""
-SAME = 1e-3
+UNTOUCHED_CLIP_MM = (24.0, 35.0)  # default focal length and sensor width of a clip's tracking camera [mm]
+UNTOUCHED_CAMERA_MM = (50.0, 36.0)  # default focal length and sensor width of a camera object [mm]
+STARTUP_LOCATION_M = (7.3589, -6.9258, 4.9583)  # location of the camera in Blender's startup file [m]
 SYMBOL_M = 0.3
 """Display size of the camera [m]: the default of 1 m would be in the picture of every other view."""
 
@@ -157,4 +153,4 @@ def set_still_pose(camera_object: bpy.types.Object, camera: Camera) -> None:
 
 
 def _same(values: tuple[float, ...], others: tuple[float, ...]) -> bool:
-    return bool(np.abs(np.subtract(values, others)).max() < SAME)
+    return bool(np.abs(np.subtract(values, others)).max() < 1e-3)

@@ -39,11 +39,7 @@ def load_footage(path: Path) -> bpy.types.MovieClip:
 
 
 def clip_file(path: Path) -> Path:
-    """The file that Blender opens as a clip: the video, or the first image of a sequence.
-
-    Raises:
-        InputError: A folder or pattern without an image.
-    """
+    """The file that Blender opens as a clip: the video, or the first image of a sequence."""
     images = find_images(path)
     return path if images is None else images[0]
 
@@ -69,25 +65,11 @@ def show_footage(
     frames: Array | None = None,
     camera_object: bpy.types.Object | None = None,
 ) -> bpy.types.Object:
-    """Show a clip behind a camera with the pose of the footage's camera.
+    """Show a clip behind a camera, a new one by default, with the lens and pose of the footage's camera.
 
-    The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame.
-
-    Args:
-        scene: The scene to change.
-        camera: Lens and pose; one pose a frame animates it.
-        clip_path: The clip.
-        fps: Frames per second; Blender's own reading of the clip counts where it has one (see `clip_rate`).
-        frame_start: Scene frame of the clip's first frame.
-        frame_count: Number of the clip's frames.
-        frames: (F,) scene frames at which a moving camera has its poses; one after the other by default.
-        camera_object: The camera to use; a new one by default.
-
-    Returns:
-        The camera object, which is the scene's camera now.
-
-    Raises:
-        InputError: Blender cannot read the clip.
+    The scene takes the clip's size, rate and range, so that scene frame `frame_start` shows its first frame;
+    Blender's own reading of the clip's rate counts where it has one (see `clip_rate`). A moving camera has
+    its poses at scene frames (F,), one after the other by default.
     """
     clip = load_footage(clip_path)
     clip.frame_start = frame_start

@@ -1,6 +1,6 @@
-"""Postures of candidates, as a scene's properties hold them."""
+"""Keyframes of an actor, posed by the animator or found in the footage, read and written."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -15,11 +15,12 @@ from ...core.body.skeleton import Skeleton
 from ...core.prior.keyframes import Keyframe, Matched
 from .actions import channelbag_for, existing_channelbag
 from .actor_lengths import skeleton_bones
+from .armature import BoneModel
 from .fcurves import moved_paths, posture_columns
 from .keys import (
     animator_frames,
+    generated_frames,
     give_to_animator,
-    matched_frames_of,
     remove_keys,
     set_matched_keys,
     set_posed_keys,
@@ -37,27 +38,24 @@ def candidate_posture(candidate: bpy.types.PropertyGroup) -> Posture:
 # --- Found keyframes, on the keyframe Action beside the animator's own
 
 
-DIGITS = 3
-"""Decimals to which frames are told apart, as in `keyed_frames`."""
+DIGITS = 3  # decimals to which frames are told apart, as in `keyed_frames`
 
 
 def untouched_frames(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton
 ) -> tuple[float, ...]:
-    """Scene frames whose found posture is unchanged, in order.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Scene frames whose found posture is unchanged, in order."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is None:
         return ()
     found: set[float] | None = None
-    for path, index in _curves(armature_object, skeleton):
+    for model, path, index, _ in _channels(armature_object, skeleton):
+        if not model.chain:
+            continue
         fcurve = channelbag.fcurves.find(path, index=index)
         if fcurve is None:
             return ()
-        frames = set(np.round(matched_frames_of(fcurve), DIGITS).tolist())
+        frames = set(np.round(generated_frames(fcurve, matched=True), DIGITS).tolist())
         found = frames if found is None else found & frames
         if not found:
             return ()
@@ -65,22 +63,9 @@ def untouched_frames(
 
 
 def write_matched(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    frames: Array,
-    postures: Sequence[Posture],
+    armature_object: bpy.types.Object, action: bpy.types.Action, frames: Array, postures: Sequence[Posture]
 ) -> None:
-    """Key postures as found keyframes; what is keyed on the same frames is replaced, all else stays.
-
-    Args:
-        armature_object: The actor.
-        action: The Action to key.
-        frames: (K,) scene frames, rising.
-        postures: K single postures, at least one.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
-    """
+    """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced."""
     channelbag = channelbag_for(action, armature_object)
     columns = posture_columns(armature_object, Posture.stack(list(postures)))
     turned = _turned_to_neighbors(channelbag, columns, frames)
@@ -90,49 +75,32 @@ def write_matched(
 
 
 def remove_keyframes(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    frames: Collection[float],
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
 ) -> None:
-    """Remove keyframes; keys of hands and feet stay.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Remove keyframes; keys of hands and feet stay."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is not None:
         remove_keys(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
 
 
 def take_over(
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action,
-    skeleton: Skeleton,
-    frames: Collection[float],
+    armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frames: Collection[float]
 ) -> None:
-    """Turn found keyframes into the animator's own, as if posed by hand.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Turn found keyframes into the animator's own, as if posed by hand."""
     channelbag = existing_channelbag(action, armature_object)
     if channelbag is not None:
         give_to_animator(channelbag, moved_paths(armature_object, skeleton), np.array(sorted(frames)))
 
 
-def _curves(armature_object: bpy.types.Object, skeleton: Skeleton) -> list[tuple[str, int]]:
-    """Data path and array index of all channels of a posture, in the bones' present rotation modes."""
-    curves = []
+def _channels(
+    armature_object: bpy.types.Object, skeleton: Skeleton
+) -> Iterator[tuple[BoneModel, str, int, float]]:
+    """Bone, data path, array index and value of all channels, in the bones' present rotation modes."""
     for model in skeleton_bones(armature_object, skeleton):
-        if not model.chain:
-            continue
         bone = armature_object.pose.bones[model.name]
-        channels = [rotation_path(bone.rotation_mode), *(["location"] if model.is_root else [])]
-        for channel in channels:
-            count = len(getattr(bone, channel))
-            curves += [(bone_path(model.name, channel), index) for index in range(count)]
-    return curves
+        for channel in (rotation_path(bone.rotation_mode), *(("location",) if model.is_root else ())):
+            for index, value in enumerate(getattr(bone, channel)):
+                yield model, bone_path(model.name, channel), index, value
 
 
 def _turned_to_neighbors(
@@ -159,20 +127,16 @@ Matches = Mapping[float, Matched]
 """What found keyframes resemble, by scene frame as `untouched_frames` gives them."""
 
 NOT_MATCHED: Matches = MappingProxyType({})
-NEAREST = 0.5
-"""A key farther than this [frames] from every frame of the clip belongs to none."""
-NOTICEABLE_M = 0.005
-"""Distance between a pose and its nearest posture above which a note is made [m]."""
+NEAREST = 0.5  # a key farther than this [frames] from every frame of the clip belongs to none
+NOTICEABLE_M = 0.005  # distance between a pose and its nearest posture above which a note is made [m]
 
 
 @dataclass(frozen=True, eq=False)
 class PosedKeyframes:
     """Keyframes read from an armature."""
 
-    keyframes: tuple[Keyframe, ...]
-    """In order of frame."""
-    notes: tuple[str, ...]
-    """Notes for the animator, one sentence each."""
+    keyframes: tuple[Keyframe, ...]  # in order of frame
+    notes: tuple[str, ...]  # notes for the animator, one sentence each
 
 
 def keyed_frames(
@@ -203,18 +167,8 @@ def read_keyframes(
     """The postures that the armature shows at the frames keyed in `action`.
 
     Each is the whole pose as Blender evaluates it there, so a bone without a key of its own on that frame
-    counts as the animator sees it. Scene, Action and pose are as before afterwards.
-
-    Args:
-        scene: The scene that holds the armature.
-        armature_object: The actor.
-        action: The animator's Action.
-        body: Skeleton, with the sizes that `read_body` finds.
-        clip_frames: (F,) scene frame of every frame of the clip; keys elsewhere are left out with a note.
-        matches: The matched keyframes, and what they were matched with.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    counts as the animator sees it. Keys beside `clip_frames` (F,), the scene frames of the clip's, are left
+    out with a note. Scene, Action and pose are as before afterwards.
     """
     notes: list[str] = []
     found: dict[int, tuple[float, Keyframe]] = {}
@@ -244,19 +198,11 @@ def read_keyframes(
 def store_pose(
     armature_object: bpy.types.Object, action: bpy.types.Action, skeleton: Skeleton, frame: float
 ) -> None:
-    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame.
-
-    Raises:
-        InputError: A bone is missing.
-    """
+    """Key the armature's pose as it stands, hands and feet included, in `action` at a scene frame."""
     channelbag = channelbag_for(action, armature_object)
-    for model in skeleton_bones(armature_object, skeleton):
-        bone = armature_object.pose.bones[model.name]
-        channels = [rotation_path(bone.rotation_mode), *(["location"] if model.is_root else [])]
-        for channel in channels:
-            path = bone_path(model.name, channel)
-            for index, value in enumerate(getattr(bone, channel)):
-                set_posed_keys(channelbag, path, index, model.name, np.array([frame]), np.array([value]))
+    at = np.array([frame])
+    for model, path, index, value in _channels(armature_object, skeleton):
+        set_posed_keys(channelbag, path, index, model.name, at, np.array([value]))
 
 
 def write_keyframes(
@@ -267,14 +213,7 @@ def write_keyframes(
 ) -> None:
     """Key postures in `action`, as if the animator had posed them; matched ones as `write_matched` does.
 
-    Args:
-        armature_object: The actor.
-        action: The Action to key.
-        keyframes: At least one, in order of frame.
-        clip_frames: (F,) scene frame of every frame of the clip.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
+    `clip_frames` (F,) are the scene frames of the clip's.
     """
     frames = clip_frames[[keyframe.index for keyframe in keyframes]]
     channelbag = channelbag_for(action, armature_object)

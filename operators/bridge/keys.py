@@ -14,16 +14,11 @@ from numpy.typing import NDArray
 
 from ...core.arrays import Array, BoolArray, SingleArray
 
-Keys = dict[str, NDArray[np.generic]]
-"""Properties of N keys by name: (N,), or (N, 2) for coordinates."""
+Keys = dict[str, NDArray[np.generic]]  # properties of N keys by name: (N,), or (N, 2) for coordinates
 
-UNMARKED = 0.0
-"""`back` of a key without a record of its first value, as earlier versions made all."""
-MARK_OF_ZERO = 1e-30
-MATCH_AMPLITUDE = -1.0
-"""`amplitude` of the keys of a found keyframe; users cannot set one below zero."""
-SAME_FRAME = 1e-3
-"""Keys nearer than this [frames] lie on the same frame."""
+UNMARKED = 0.0  # `back` of a key without a record of its first value, as earlier versions made all
+MATCH_AMPLITUDE = -1.0  # `amplitude` of the keys of a found keyframe; users cannot set one below zero
+SAME_FRAME = 1e-3  # keys nearer than this [frames] lie on the same frame
 FLOATS = ("back", "amplitude", "period")
 PAIRS = ("co", "handle_left", "handle_right")
 ENUMS = ("interpolation", "easing", "handle_left_type", "handle_right_type", "type")
@@ -41,7 +36,7 @@ def _generated(keys: Keys) -> BoolArray:
 def _value_mark(keys: Keys) -> SingleArray:
     """(N,) `back` of keys that records their present values."""
     values = keys["co"][:, 1].astype(np.float32)
-    return np.where(values == UNMARKED, np.float32(MARK_OF_ZERO), values)
+    return np.where(values == UNMARKED, np.float32(1e-30), values)
 
 
 def _as_generated(keys: Keys) -> Keys:
@@ -70,8 +65,10 @@ def _read_keys(fcurve: bpy.types.FCurve) -> Keys:
     points = fcurve.keyframe_points
     keys: Keys = {}
     for name in (*PAIRS, *FLOATS, *ENUMS, *FLAGS):
-        count = len(points) * (2 if name in PAIRS else 1)
-        values = np.empty(count, _dtype(name))
+        values = np.empty(
+            len(points) * (2 if name in PAIRS else 1),
+            np.bool_ if name in FLAGS else np.int32 if name in ENUMS else np.float32,
+        )
         points.foreach_get(name, values)
         keys[name] = values.reshape(-1, 2) if name in PAIRS else values
     return keys
@@ -85,13 +82,6 @@ def _write_keys(fcurve: bpy.types.FCurve, keys: Keys) -> None:
     for name in (*ENUMS, *FLOATS, *PAIRS, *FLAGS):
         points.foreach_set(name, keys[name].ravel())
     fcurve.update()
-
-
-def _dtype(name: str) -> type[np.generic]:
-    """The type in which Blender stores a property of keys."""
-    if name in FLAGS:
-        return np.bool_
-    return np.int32 if name in ENUMS else np.float32
 
 
 def _new_keys(frames: Array, values: Array, key_type: str, interpolation: str) -> Keys:
@@ -131,21 +121,15 @@ def animator_frames(fcurve: bpy.types.FCurve) -> Array:
     return np.asarray(coordinates[counted, 0], dtype=np.float64)
 
 
-def matched_frames_of(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the keys of found keyframes that are unchanged."""
+def generated_frames(fcurve: bpy.types.FCurve, matched: bool = False) -> Array:
+    """Frames (N,) of the GENERATED keys that are unchanged, or of those of found keyframes among them."""
     if not len(fcurve.keyframe_points):
         return np.zeros(0)
     keys = _read_keys(fcurve)
-    unchanged = _generated(keys) & (keys["amplitude"] == MATCH_AMPLITUDE)
+    unchanged = _generated(keys)
+    if matched:
+        unchanged &= keys["amplitude"] == MATCH_AMPLITUDE
     return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
-
-
-def generated_frames(fcurve: bpy.types.FCurve) -> Array:
-    """Frames (N,) of the GENERATED keys that are unchanged."""
-    if not len(fcurve.keyframe_points):
-        return np.zeros(0)
-    keys = _read_keys(fcurve)
-    return np.asarray(keys["co"][_generated(keys), 0], dtype=np.float64)
 
 
 def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str]) -> None:
@@ -166,16 +150,7 @@ def remove_generated_keys(channelbag: bpy.types.ActionChannelbag, paths: Iterabl
 def add_generated_keys(
     channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
 ) -> None:
-    """Add GENERATED keys, linear between frames; where the animator has a key, that key stays alone.
-
-    Args:
-        channelbag: The channel bag that has the curve, or gets it.
-        path: Data path of the animated property.
-        index: Component of the property.
-        group: Name of the curve's group.
-        frames: (F,) scene frames, fractional ones allowed.
-        values: (F,) values of the property.
-    """
+    """Add GENERATED keys at scene frames (F,), linear between them; the animator's keys there stay alone."""
     fcurve = ensure_fcurve(channelbag, path, index, group)
     _add_between(fcurve, _as_generated(_new_keys(frames, values, "GENERATED", "LINEAR")))
 
@@ -192,17 +167,9 @@ def _add_between(fcurve: bpy.types.FCurve, keys: Keys) -> None:
 def set_posed_keys(
     channelbag: bpy.types.ActionChannelbag, path: str, index: int, group: str, frames: Array, values: Array
 ) -> None:
-    """Set keys of the animator's own type with Blender's usual smooth interpolation.
+    """Set keys of the animator's own type at scene frames (K,), with Blender's usual smooth interpolation.
 
     Keys on the same frames are replaced, all others stay.
-
-    Args:
-        channelbag: Where the curve lies or is added.
-        path: Data path of the posed property.
-        index: Component of the property.
-        group: Name of the curve's group.
-        frames: (K,) scene frames.
-        values: (K,) values of the property.
     """
     _set_keys(ensure_fcurve(channelbag, path, index, group), _new_keys(frames, values, "KEYFRAME", "BEZIER"))
 
@@ -242,11 +209,9 @@ def give_to_animator(channelbag: bpy.types.ActionChannelbag, paths: Iterable[str
             given = _as_animators(keys)
             usual = bpy.types.Keyframe.bl_rna.properties["amplitude"].default
             given["amplitude"] = np.full(len(there), usual, np.float32)
-            changed = {
-                name: np.where(there if column.ndim == 1 else there[:, None], given[name], column)
-                for name, column in keys.items()
-            }
-            _write_keys(fcurve, changed)
+            for name, column in keys.items():
+                column[there] = given[name][there]
+            _write_keys(fcurve, keys)
 
 
 def _keys_on(
@@ -264,16 +229,10 @@ def _keys_on(
 
 
 def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, slopes: Array) -> None:
-    """Replace a curve's keys by ones of the animator's own type, with smooth interpolation of given slopes.
+    """Replace a curve's keys by the animator's own at rising frames (K,), with slopes (K,) per frame.
 
     The handles lie at a third of the way to the next key and are aligned: between two keys the curve is the
     cubic that has the keys' values and slopes.
-
-    Args:
-        fcurve: The curve.
-        frames: (K,) scene frames, rising.
-        values: (K,) values of the property.
-        slopes: (K,) change of the property per frame.
     """
     keys = _new_keys(frames, values, "KEYFRAME", "BEZIER")
     third = np.diff(frames) / 3.0
@@ -286,13 +245,7 @@ def write_smooth_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array, sl
 
 
 def write_linear_keys(fcurve: bpy.types.FCurve, frames: Array, values: Array) -> None:
-    """Replace a curve's keys by ones of the animator's own type, linear between frames.
-
-    Args:
-        fcurve: The curve.
-        frames: (K,) scene frames, rising.
-        values: (K,) values of the property.
-    """
+    """Replace a curve's keys by the animator's own at rising frames (K,), linear between them."""
     _write_keys(fcurve, _new_keys(frames, values, "KEYFRAME", "LINEAR"))
 
 

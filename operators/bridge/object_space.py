@@ -1,4 +1,4 @@
-"""Similarity transform of an armature object: rotation, location and one scale."""
+"""Similarity transform of an armature object, and where an actor's joints are in the scene."""
 
 from dataclasses import dataclass
 
@@ -9,18 +9,13 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
 
-UNEVEN = 1e-4
-"""Relative difference of the scales along the axes that still counts as rounding."""
-
 
 @dataclass(frozen=True, eq=False)
 class ObjectSpace:
     """A similarity from an object's own space to the world."""
 
-    rotation: Array
-    """(3, 3)."""
-    location: Array
-    """(3,) [m]."""
+    rotation: Array  # (3, 3)
+    location: Array  # (3,) [m]
     scale: float
 
     def to_world(self, points: Array) -> Array:
@@ -45,7 +40,7 @@ def object_space(armature_object: bpy.types.Object) -> ObjectSpace:
     linear = matrix[:3, :3]
     squared = linear.T @ linear
     scale = float(np.sqrt(np.trace(squared) / 3.0))
-    uneven = np.abs(squared - scale**2 * np.eye(3)).max() > UNEVEN * scale**2
+    uneven = np.abs(squared - scale**2 * np.eye(3)).max() > 1e-4 * scale**2
     if scale <= 0.0 or uneven or np.linalg.det(linear) < 0.0:
         scales = ", ".join(f"{value:.4g}" for value in np.sqrt(np.diag(squared)))
         raise InputError(
@@ -67,9 +62,6 @@ def evaluated(blender_object: bpy.types.Object) -> bpy.types.Object:
     layer = bpy.context.view_layer if bpy.context.scene == scene else scene.view_layers[0]
     layer.update()
     return blender_object.evaluated_get(layer.depsgraph)
-
-
-# --- Where the joints of an actor are in the scene, read from its bones alone
 
 
 _ENDS = {

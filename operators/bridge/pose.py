@@ -18,10 +18,8 @@ from .rotation_modes import posture_from_frames, set_rotation
 class PoseReading:
     """An armature's pose as a posture, and the distance between both."""
 
-    posture: Posture
-    """The nearest posture the skeleton can take."""
-    distance_m: Array
-    """(13,) distance of each principal point between the pose and the posture [m]."""
+    posture: Posture  # the nearest posture the skeleton can take
+    distance_m: Array  # (13,) distance of each principal point between the pose and the posture [m]
 
     @property
     def furthest_m(self) -> float:
@@ -30,17 +28,10 @@ class PoseReading:
 
 
 def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
-    """The posture an armature shows now, constraints and parents included.
+    """The posture an armature shows now, constraints and parents included; `body` as `read_body` finds it.
 
     Exact where the pose keeps to the skeleton's freedoms; otherwise the nearest posture, and the distance
     says by how much the armature went beyond them.
-
-    Args:
-        armature_object: An armature with the skeleton's bones, any rotation modes, location and even scale.
-        body: The skeleton, with the sizes that `read_body` finds in the armature.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
     """
     models = skeleton_bones(armature_object, body.skeleton)
     space = object_space(armature_object)
@@ -66,16 +57,9 @@ def read_posture(armature_object: bpy.types.Object, body: Body) -> PoseReading:
 
 
 def write_posture(armature_object: bpy.types.Object, posture: Posture) -> None:
-    """Pose an armature, in each bone's own rotation mode; nothing is keyed.
+    """Show a single posture, in each bone's own rotation mode; nothing is keyed.
 
     Bones without degrees of freedom (hands, feet) keep what they have.
-
-    Args:
-        armature_object: An armature with the skeleton's bones.
-        posture: A single posture.
-
-    Raises:
-        InputError: A bone is missing, or the object is scaled unevenly.
     """
     batch = Posture.stack([posture])
     for channels in bone_channels(armature_object, batch):

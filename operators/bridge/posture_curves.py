@@ -18,48 +18,35 @@ from ...core.finish.rig import channel_count
 from .actions import new_channelbag
 from .armature import BoneModel, bone_models, rest_matrices, usual_mode
 from .fcurves import channels_at_rest
-from .finish_motion import rig_at_rest
 from .keys import set_posed_keys
 from .object_space import AT_ORIGIN
-from .rotation_modes import bone_path, posture_from_frames, rotation_path, rotation_values
+from .rig import nearest_postures, rig_at_rest
+from .rotation_modes import bone_path, rotation_path, rotation_values
 
-Values = dict[str, Array]
-"""Channel values by bone: the rotation's, for the root then the location's."""
+Values = dict[str, Array]  # channel values by bone: the rotation's, for the root then the location's
 
-FRAME = 1.0
-"""The only frame of a pose asset."""
-SAME = 2e-6
-"""Largest relative error of channels by single precision."""
-LARGEST_LOCATION_M = 1000.0
+SAME = 2e-6  # largest relative error of channels by single precision
 
 
 def write_posture_curves(action: bpy.types.Action, body: Body, posture: Posture) -> None:
-    """Give an empty Action the curves of a posture: one key a channel.
-
-    Args:
-        action: The Action.
-        body: The body that was posed.
-        posture: A single posture, the floor at z = 0.
-    """
+    """Give an empty Action the curves of a single posture, the floor at z = 0: one key a channel."""
     channelbag = new_channelbag(action)
     values = channel_values(body, posture)
     for model in _models(body):
         if model.chain:
-            for (path, index), value in zip(_channels(body, model), values[model.name], strict=True):
-                set_posed_keys(channelbag, path, index, model.name, np.array([FRAME]), np.array([value]))
+            channels = _channels(model, usual_mode(body.skeleton, model))
+            for (path, index), value in zip(channels, values[model.name], strict=True):
+                set_posed_keys(channelbag, path, index, model.name, np.array([1.0]), np.array([value]))
 
 
 def read_posture_curves(
     action: bpy.types.Action, body: Body, stored: Posture | None = None
 ) -> Posture | None:
-    """The posture that an Action's curves show; None where it has no curve of a bone of the skeleton.
+    """The posture that a pose asset's curves show; None where it has no curve of a bone of the skeleton.
 
-    Args:
-        action: A pose asset. Curves of anything but the skeleton's bones are ignored; bones without curves
-            are as in `stored`, or at rest.
-        body: The body it was posed on.
-        stored: The posture that the curves were once written from. Joints whose curves are unchanged
-            are taken from it, to the last digit.
+    Curves of anything but the skeleton's bones are ignored; bones without curves are as in `stored`, or at
+    rest. `stored` is the posture that the curves were once written from: joints whose curves are unchanged
+    are taken from it, to the last digit.
     """
     curves = {(curve.data_path, curve.array_index): curve for curve in _fcurves(action) if not curve.is_empty}
     known = channel_values(body, stored if stored is not None else Posture.rest(body.skeleton))
@@ -68,14 +55,14 @@ def read_posture_curves(
     changed: list[str] = []
     found = False
     for model in _models(body):
-        modes[model.name] = usual_mode(body.skeleton, model)
+        mode = usual_mode(body.skeleton, model)
+        modes[model.name] = mode
         if not model.chain:
             continue
-        mode, there, column = _read_bone(curves, model, modes[model.name], known[model.name])
-        found |= there
-        modes[model.name] = mode
-        values[model.name] = column
         before = known[model.name]
+        modes[model.name], there, column = _read_bone(curves, model, mode, before)
+        values[model.name] = column
+        found |= there
         slack = SAME * np.maximum(1.0, np.abs(before))
         if len(column) != len(before) or (np.abs(column - before) > slack).any():
             changed.append(model.name)
@@ -100,11 +87,10 @@ def channel_values(body: Body, posture: Posture) -> Values:
     return values
 
 
-def _channels(body: Body, model: BoneModel) -> list[tuple[str, int]]:
-    """Data path and index of each of a bone's values."""
-    mode = usual_mode(body.skeleton, model)
-    path = bone_path(model.name, rotation_path(mode))
+def _channels(model: BoneModel, mode: str) -> list[tuple[str, int]]:
+    """Data path and index of each of a bone's values in a rotation mode."""
     location = [(bone_path(model.name, "location"), index) for index in range(3 if model.is_root else 0)]
+    path = bone_path(model.name, rotation_path(mode))
     return [*((path, index) for index in range(channel_count(mode))), *location]
 
 
@@ -135,9 +121,7 @@ def _read_bone(
     modes = [mode, *(other for other in ("QUATERNION", "AXIS_ANGLE", euler) if other != mode)]
     keyed = [m for m in modes if any((bone_path(name, rotation_path(m)), i) in curves for i in range(4))]
     chosen = keyed[0] if keyed else mode
-    path, count = bone_path(name, rotation_path(chosen)), channel_count(chosen)
-    location = [(bone_path(name, "location"), index) for index in range(3 if model.is_root else 0)]
-    channels = [*((path, index) for index in range(count)), *location]
+    count, channels = channel_count(chosen), _channels(model, chosen)
     usual = known[:count] if chosen == mode else np.eye(4)[0][:count] * (chosen == "QUATERNION")
     otherwise = np.concatenate([usual, known[channel_count(mode) :]])
     values = [
@@ -151,7 +135,7 @@ def _read_bone(
 def _value(curve: bpy.types.FCurve, default: float) -> float:
     """A curve's value at its first key; an untrusted file may hold any number."""
     value = float(curve.keyframe_points[0].co[1]) if len(curve.keyframe_points) else default
-    return value if abs(value) < LARGEST_LOCATION_M else default
+    return value if abs(value) < 1000.0 else default
 
 
 def _usable(values: Array, otherwise: Array, mode: str) -> Array:
@@ -170,10 +154,7 @@ def _shown(body: Body, modes: Mapping[str, str], values: Values) -> Posture:
     axes = {model.name: model.axes for model in models}
     rig = rig_at_rest(body, axes, _rest(body), modes, AT_ORIGIN)
     shown = rig.pose([values[bone.name][None] for bone in rig.bones])
-    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
-    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
-    hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
-    return posture_from_frames(body.skeleton, models, turns, hips)[0]
+    return nearest_postures(models, rig, shown, body)[0]
 
 
 def _with_joints(body: Body, stored: Posture, shown: Posture, bones: list[str]) -> Posture:

@@ -27,21 +27,12 @@ VIEW_TRANSFORM = "Standard"
 
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:
-    """Write a motion as a .blend and, if asked for, as a BVH.
+    """Write a motion as a .blend and, if asked for, as a BVH; returns the SHA-256 of the Action's curves.
 
     The .blend holds the actor's armature with the motion as its Action, a simple body in the markers'
     colors, and the camera with the clip behind it; the clip's path is relative where the drives allow.
     A failure may leave half a file at these paths: the caller passes a staging folder and moves the files
     when both are complete, as `operators/cli/conversion` does.
-
-    Args:
-        take: Clip, camera, body and markers.
-        motion: The motion to write.
-        blend_path: Path of the .blend; its folder exists.
-        bvh_path: Path of the BVH; None writes none.
-
-    Returns:
-        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
 
     Raises:
         InputError: Blender cannot read the clip.
@@ -56,11 +47,7 @@ def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | N
 
 
 def show_take(scene: bpy.types.Scene, take: Take, motion: Motion) -> Array:
-    """Put footage and camera into a scene, with rate, range and look; returns the motion's scene frames (F,).
-
-    Raises:
-        InputError: Blender cannot read the clip.
-    """
+    """Put footage and camera into a scene, with rate, range and look; the motion's scene frames (F,)."""
     clip = load_footage(take.clip)
     rate = clip_rate(clip, motion.fps)
     frames = scene_frames(motion.time_s, motion.frame_start, rate)

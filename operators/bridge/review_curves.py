@@ -15,21 +15,17 @@ from .actions import channelbag_for
 from .keys import add_generated_keys, remove_generated_keys
 
 GROUP = "Keymark Confidence"
-SUFFIX = " (Keymark)"
-"""Suffix of all custom properties' names, which tells them from others."""
+SUFFIX = " (Keymark)"  # suffix of all custom properties' names, which tells them from others
 
 
 @dataclass(frozen=True, eq=False)
 class ReviewCurve:
     """One curve and the property it animates."""
 
-    name: str
-    """The quantity, with its unit."""
+    name: str  # the quantity, with its unit
     description: str
-    values: Array
-    """(F,) values; frames that are NaN get no key."""
-    soft_max: float
-    """Upper end of the property's slider; the lower is 0."""
+    values: Array  # (F,) values; frames that are NaN get no key
+    soft_max: float  # upper end of the property's slider; the lower is 0
 
     @property
     def property_name(self) -> str:
@@ -66,15 +62,15 @@ def review_curves(review: Review) -> tuple[ReviewCurve, ...]:
             10.0,
         ),
     ]
-    for point, name in enumerate(review.point_names):
-        curves.append(
-            ReviewCurve(
-                f"Sigma {name} mm",
-                f"Standard deviation of the point {name}, in millimeters",
-                1e3 * review.sigma_m[:, point],
-                100.0,
-            )
+    curves += [
+        ReviewCurve(
+            f"Sigma {name} mm",
+            f"Standard deviation of the point {name}, in millimeters",
+            1e3 * sigma_m,
+            100.0,
         )
+        for name, sigma_m in zip(review.point_names, review.sigma_m.T, strict=True)
+    ]
     return tuple(curves)
 
 
@@ -93,11 +89,6 @@ def write_review_curves(armature_object: bpy.types.Object, action: bpy.types.Act
     """Write all curves into the motion's Action; those of an earlier review are replaced.
 
     An object that cannot take custom properties, being linked from another file, gets no curves.
-
-    Args:
-        armature_object: The actor.
-        action: The motion's Action.
-        review: The review of that motion.
     """
     channelbag = channelbag_for(action, armature_object)
     curves = review_curves(review)

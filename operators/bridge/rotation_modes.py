@@ -1,4 +1,4 @@
-"""Rotations in the rotation mode of a bone, which the animator chooses and Keymark never changes."""
+"""Rotations in the mode of a bone, which the animator chooses, and postures fitted to joints' rotations."""
 
 from collections.abc import Mapping
 
@@ -13,8 +13,6 @@ from ...core.body.rotations import continuous_quaternions, to_quaternions
 from ...core.body.skeleton import JointKind, Skeleton
 from .armature import BoneModel
 
-SMALL_TURN = 1e-7
-"""Below this angle [rad] a rotation has no axis of its own and keeps the one before."""
 PATHS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 ALL_PATHS = ("rotation_quaternion", "rotation_axis_angle", "rotation_euler")
 
@@ -30,14 +28,9 @@ def bone_path(bone: str, channel: str) -> str:
 
 
 def rotation_values(rotation: Array, mode: str) -> Array:
-    """The values of the property `rotation_path(mode)` over time, without jumps.
+    """Values of the property `rotation_path(mode)` that show rotations (F, 3, 3) from rest, without jumps.
 
-    Args:
-        rotation: (F, 3, 3) rotations relative to the bone's rest.
-        mode: Blender's rotation mode: QUATERNION, AXIS_ANGLE, or the order of Euler angles such as XYZ.
-
-    Returns:
-        (F, 4) quaternion w, x, y, z or angle [rad] and axis x, y, z; or (F, 3) Euler angles x, y, z [rad].
+    (F, 4) quaternion w, x, y, z or angle [rad] and axis x, y, z; or (F, 3) Euler angles x, y, z [rad].
     """
     if mode == "QUATERNION":
         return continuous_quaternions(to_quaternions(rotation))
@@ -55,7 +48,7 @@ def set_rotation(pose_bone: bpy.types.PoseBone, rotation: Array) -> None:
 def _continuous_axis_angles(rotation: Array) -> Array:
     vectors = Rotation.from_matrix(rotation).as_rotvec()
     angles = np.linalg.norm(vectors, axis=-1)
-    turned = angles >= SMALL_TURN
+    turned = angles >= 1e-7
     axes = np.concatenate([[[0.0, 1.0, 0.0]], vectors / np.where(turned, angles, 1.0)[:, None]])
     # Where it hardly turns, the axis stays the last one; before the first turn it is Y, as of new bones.
     rows = np.maximum.accumulate(np.where(turned, 1 + np.arange(len(angles)), 0))
@@ -86,23 +79,13 @@ def _continuous_eulers(rotation: Array, order: str) -> Array:
 # --- Postures fitted to joint frames
 
 
-SWEEPS = 50
-CONVERGED_RAD = 1e-12
-
-
 def posture_from_frames(
     skeleton: Skeleton, models: tuple[BoneModel, ...], frames: Mapping[str, Array], hips: Array
 ) -> Posture:
-    """The posture nearest to given orientations of the bones' joints.
+    """The posture nearest to world orientations (..., 3, 3) of joints, by bone, and hips (..., 3) [m].
 
     Every joint is fitted against the frame its parent was fitted to, so that what a hinge cannot follow
-    does not turn the limb beyond it.
-
-    Args:
-        skeleton: The skeleton the bones belong to.
-        models: Its bones, parents first.
-        frames: World orientation (..., 3, 3) of each bone's joint, by name of bone.
-        hips: (..., 3) world position of the root [m].
+    does not turn the limb beyond it. `models` are parents first.
     """
     still = np.broadcast_to(np.eye(3), (*hips.shape[:-1], 3, 3))
     turns = {joint: still for joint in skeleton.ball_joints}
@@ -132,22 +115,15 @@ def posture_from_frames(
 
 
 def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
-    """Angles of a chain of hinges whose product is nearest to a rotation (least angle between both).
+    """Angles (...,) of a chain of hinges whose product is nearest to rotations (..., 3, 3).
 
     Each angle has a closed form when the others are held; alternating settles within a few sweeps and
-    at once where the rotation is within reach.
-
-    Args:
-        axes: Unit axis (3,) of each hinge, in the order of the product.
-        rotation: (..., 3, 3).
-
-    Returns:
-        Angle (...,) of each hinge [rad].
+    at once where the rotation is within reach. `axes` are unit vectors in the order of the product.
     """
     angles = [np.zeros(rotation.shape[:-2]) for _ in axes]
     if len(axes) == 2:  # start where the chain is exact, so that no other local optimum is found
         angles[0] = _first_angle(axes[0], axes[1], rotation)
-    for _ in range(SWEEPS):
+    for _ in range(50):
         before = list(angles)
         for i, axis in enumerate(axes):
             left, right = np.eye(3), np.eye(3)
@@ -160,7 +136,7 @@ def nearest_hinges(axes: list[Array], rotation: Array) -> list[Array]:
             angles[i] = _nearest_angle(
                 axis, np.swapaxes(left, -1, -2) @ rotation @ np.swapaxes(right, -1, -2)
             )
-        if np.abs(np.subtract(before, angles)).max() < CONVERGED_RAD:
+        if np.abs(np.subtract(before, angles)).max() < 1e-12:
             break
     return angles
 

@@ -16,26 +16,15 @@ from ...core.footage.clips.clip_timing import is_variable_frame_rate
 from .actions import assign_action
 from .object_space import evaluated
 
-Pose = dict[str, list[tuple[float, ...]]]
-"""Values of all channels, by bone."""
-SAME_FRAME = 1e-3
-"""What a scene frame may lie below one of the clip and still show it [frames]."""
+Pose = dict[str, list[tuple[float, ...]]]  # values of all channels, by bone
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 
 
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:
-    """Scene frames that show the frames of a clip.
+    """Scene frames (F,) that show the frames of a clip, whose times are (F,) [s] from the first.
 
     Whole steps for a constant rate, however the container rounds its times; by their times, and so
     fractional, for a variable rate, as Blender shows them.
-
-    Args:
-        time_s: (F,) time of each frame from the first [s].
-        first: Scene frame of the first frame.
-        rate: Frames per second of the clip in Blender.
-
-    Returns:
-        (F,) scene frames.
     """
     if is_variable_frame_rate(time_s):
         return np.asarray(first + time_s * rate)
@@ -43,14 +32,9 @@ def scene_frames(time_s: Array, first: float, rate: float) -> Array:
 
 
 def shown_index(frames: Array, at: ArrayLike) -> IndexArray:
-    """Index of the clip's frame that Blender shows at scene frames; -1 before the clip and after it.
-
-    Args:
-        frames: (F,) scene frame of each frame of the clip.
-        at: (...) scene frames.
-    """
+    """Index of the clip's frame, of (F,), shown at scene frames (...); -1 before the clip and after it."""
     asked = np.asarray(at, dtype=np.float64)
-    index = np.searchsorted(frames, asked + SAME_FRAME, side="right") - 1
+    index = np.searchsorted(frames, asked + 1e-3, side="right") - 1
     return np.asarray(np.where(asked < frames[-1] + 1.0, index, -1), dtype=np.intp)
 
 
@@ -61,7 +45,8 @@ def at_scene_frame(scene: bpy.types.Scene) -> Iterator[Callable[[float], None]]:
     Poses without keys, of any armature in the scene, are restored as well.
     """
     before = scene.frame_current, scene.frame_subframe
-    poses = [(actor, pose_of(actor)) for actor in scene.objects if _is_animated(actor)]
+    armatures = [one for one in scene.objects if one.type == "ARMATURE" and one.is_editable]
+    poses = [(actor, pose_of(actor)) for actor in armatures if actor.animation_data is not None]
 
     def go_to(frame: float) -> None:
         whole = floor(frame)
@@ -94,10 +79,6 @@ def showing_action(armature_object: bpy.types.Object, action: bpy.types.Action |
                 data.action_slot = before[1]
             evaluated(armature_object)  # a new Action is evaluated once, which would undo the unkeyed changes
         restore_pose(armature_object, pose)
-
-
-def _is_animated(item: bpy.types.Object) -> bool:
-    return item.type == "ARMATURE" and item.animation_data is not None and item.is_editable
 
 
 def pose_of(armature_object: bpy.types.Object) -> Pose:

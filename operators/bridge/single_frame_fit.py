@@ -36,9 +36,9 @@ from .camera_placement import read_camera
 from .footage import Footage
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
 from .pose import read_posture
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
 from .take_from_scene import performers_keypoints
-from .track_keypoints import SceneEvidence
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,14 +46,11 @@ class FrameInFootage:
     """The scene's current frame as a frame of the footage."""
 
     footage: Footage
-    evidence: SceneEvidence
-    """What is followed."""
-    reading: Reading | None
-    """An earlier reading of the clip, if it is of this footage and these markers."""
+    evidence: SceneEvidence  # what is followed
+    reading: Reading | None  # an earlier reading of the clip, if it is of this footage and these markers
     clip_frames: Array
     """(F,) scene frame of every frame of the clip; estimated from its header where it was not read."""
-    index: int
-    """Index of the current frame in the clip."""
+    index: int  # index of the current frame in the clip
 
     @property
     def styles(self) -> tuple[MarkerStyle, ...]:
@@ -68,11 +65,7 @@ class FrameInFootage:
     def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
         """The markers' regions in the frame: from the reading, else found now.
 
-        Args:
-            expected: Expected regions (1, M), which tell markers of similar color apart.
-
-        Raises:
-            InputError: A color does not occur in the clip, or the clip cannot be read.
+        Expected regions (1, M) tell markers of similar color apart.
         """
         if self.reading is not None:
             return self.reading.tracks.frame(self.index)
@@ -84,15 +77,7 @@ class FrameInFootage:
         )
 
     def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
-        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed.
-
-        Args:
-            body: The actor's.
-            keyframes: Those known, which tell the performer from other people.
-
-        Raises:
-            InputError: A file of keypoints cannot be used.
-        """
+        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed."""
         return performers_keypoints(
             self.footage, self.evidence, self.clip_frames, body, keyframes, self.tracks
         )
@@ -109,12 +94,7 @@ class FrameInFootage:
 def frame_in_footage(
     footage: Footage, evidence: SceneEvidence, reading: Reading | None = None
 ) -> FrameInFootage:
-    """The scene's current frame in the footage.
-
-    Args:
-        footage: Clip and camera in their scene.
-        evidence: What is followed.
-        reading: An earlier reading of the clip; used if it is of this footage and these markers.
+    """The scene's current frame in the footage; a reading is used if it is of this footage and these markers.
 
     Raises:
         InputError: The clip is missing, or the current frame lies outside it.
@@ -153,12 +133,10 @@ class FrameResult:
 
     candidates: tuple[Candidate, ...]
     """Postures that the frame may show, the likeliest first; a single one near a pose."""
-    contradictions: tuple[str, ...]
-    """Names of the markers and keypoints that the first one does not explain."""
+    contradictions: tuple[str, ...]  # names of the markers and keypoints that the first one does not explain
     residual_px: Array
     """(M + N,) distances of markers and keypoints from where the first one has them [px]; NaN if hidden."""
-    cost: float = 0.0
-    """Near a pose, what tells the likelier of several poses apart, as in `FramePoses`."""
+    cost: float = 0.0  # near a pose, what tells the likelier of several poses apart, as in `FramePoses`
 
 
 def fit_to_frame(
@@ -172,22 +150,20 @@ def fit_to_frame(
 ) -> FrameResult:
     """Fit the actor's posture to the frame; scene, Action and pose are as before.
 
-    Args:
-        frame: The frame.
-        armature_object: The actor.
-        action: The animator's keyframes; None for none.
-        start: KEYFRAMES for any posture that the frame shows, of which the nearest keyframes tell too, ANEW
-            for any without asking keyframes, POSE for one near the actor's pose as it is.
-        matches: The matched keyframes; marker placements are not calibrated on these.
-        libraries: What is known of postures; not asked near a pose.
-        floor_m: Height of the floor [m]; None for that of the posed keyframes.
+    `start` is KEYFRAMES for any posture that the frame shows, of which the nearest keyframes tell too, ANEW
+    for any without asking keyframes, POSE for one near the actor's pose as it is, when no library is asked.
+    Marker placements are not calibrated on matched keyframes. The floor's height [m] is by default that of
+    the posed keyframes.
 
     Raises:
         InputError: Neither a marker nor a keypoint is seen in the frame, there is no library, or clip, camera
             or a bone is missing.
     """
     body = read_body(armature_object, HUMAN)
-    keyframes = _keyframes(frame, armature_object, action, body, matches)
+    keyframes: tuple[Keyframe, ...] = ()  # at other frames
+    if action is not None:
+        read = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
+        keyframes = tuple(keyframe for keyframe in read.keyframes if keyframe.index != frame.index)
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     indices = np.array([keyframe.index for keyframe in posed], dtype=np.intp)
     keypoints = frame.keypoints(body, keyframes)
@@ -239,20 +215,6 @@ def _nothing_seen(frame: FrameInFootage, keypoints: Keypoints) -> InputError:
     return InputError(f"none of the {wanted} is seen in frame {shown}; pose the actor by hand")
 
 
-def _keyframes(
-    frame: FrameInFootage,
-    armature_object: bpy.types.Object,
-    action: bpy.types.Action | None,
-    body: Body,
-    matches: Matches,
-) -> tuple[Keyframe, ...]:
-    """The keyframes at other frames."""
-    if action is None:
-        return ()
-    found = read_keyframes(frame.footage.scene, armature_object, action, body, frame.clip_frames, matches)
-    return tuple(keyframe for keyframe in found.keyframes if keyframe.index != frame.index)
-
-
 def measured_in_frame(
     frame: FrameInFootage,
     stature_m: float,
@@ -260,11 +222,7 @@ def measured_in_frame(
     ground_px: tuple[float, ...],
     arms_stretched: bool,
 ) -> MeasuredActor:
-    """Measure the performer in a frame in which they stand; see `measure_standing`.
-
-    Raises:
-        InputError: The two pixels cannot be those of a person.
-    """
+    """Measure the performer in a frame in which they stand; see `measure_standing`."""
     camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
     regions = frame.regions() if frame.styles else None
     keypoints = frame.keypoints(Body(Actor.from_stature(stature_m))).frame(frame.index)

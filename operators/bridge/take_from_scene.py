@@ -1,4 +1,4 @@
-"""The performer's keypoints in a scene, before there are keyframes or even an actor."""
+"""A scene as core's take, and the performer's keypoints before there is an actor."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,24 +20,14 @@ from .actor_lengths import read_body
 from .camera_placement import read_camera, read_lens
 from .footage import Footage
 from .keyframes import NOT_MATCHED, Matches, read_keyframes
+from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
-from .track_keypoints import SceneEvidence
 
 
 def keypoints_without_keyframes(
     footage: Footage, evidence: SceneEvidence, tracks: RegionTracks, stature_m: float
 ) -> Keypoints:
-    """The keypoints of the performer as clicks, markers or else size tell who that is.
-
-    Args:
-        footage: Clip and camera in their scene.
-        evidence: What is followed.
-        tracks: The markers' regions.
-        stature_m: Roughly the performer's height.
-
-    Raises:
-        InputError: A file of keypoints cannot be used, or there is no camera.
-    """
+    """The keypoints of the performer as clicks, markers or else size tell who that is."""
     frames = scene_frames(tracks.time_s, footage.first_frame, footage.rate)
     return performers_keypoints(footage, evidence, frames, Body(Actor.from_stature(stature_m)), (), tracks)
 
@@ -52,16 +42,7 @@ def performers_keypoints(
 ) -> Keypoints:
     """The keypoints of the performer, whom keyframes tell from other people where there are some.
 
-    Args:
-        footage: Clip and camera in their scene.
-        evidence: What is followed.
-        frames: (F,) scene frame of each frame of the clip.
-        body: The performer's, about.
-        keyframes: Those known.
-        tracks: The markers' regions, or of none where the clip has not been read.
-
-    Raises:
-        InputError: A file of keypoints cannot be used, or there is no camera.
+    `frames` (F,) are scene frames of the clip's; `tracks` are those of no marker where it has not been read.
     """
     if not evidence.has_keypoints:
         return Keypoints.none(len(frames))
@@ -87,28 +68,14 @@ def performers_keypoints(
 # --- Read a take from a scene
 
 
-READING = "Reading the footage's times"
-
-
 def clip_frames(footage: Footage, evidence: SceneEvidence, kept: Reading | None) -> Job[Array]:
-    """Find the scene frame that shows each frame of the clip.
+    """Find the scene frames (F,) that show the frames of the clip, fractional for variable frame rates.
 
-    Args:
-        footage: The clip.
-        evidence: What is followed in it, ...
-        kept: ... and a cached reading of any clip, which knows the times where it is one of that.
-
-    Yields:
-        Progress; a video is read once a session for its time stamps, since its header may be wrong.
-
-    Returns:
-        (F,) scene frames, fractional for variable frame rates.
-
-    Raises:
-        InputError: The clip cannot be read.
+    A video is read once a session for its time stamps, since its header may be wrong; `kept`, a reading of
+    any clip, knows them where it is one of this.
     """
     times = clip_times(footage.open(), kept, evidence.markers, evidence.ignored_regions)
-    time_s = yield from within(READING, times, 0.0, 1.0)
+    time_s = yield from within("Reading the footage's times", times, 0.0, 1.0)
     return scene_frames(time_s, footage.first_frame, footage.rate)
 
 
@@ -120,21 +87,9 @@ def read_scene_take(
     matches: Matches = NOT_MATCHED,
     kept: Reading | None = None,
 ) -> Job[tuple[Take, tuple[str, ...]]]:
-    """Read a scene as core's take; the scene is as before afterwards.
+    """Read a scene as core's take, with notes for the animator; the scene is as before afterwards.
 
-    Args:
-        footage: Clip and camera in their scene.
-        armature_object: The actor.
-        keyframe_action: The animator's keyframes; None for none.
-        evidence: What is followed in the footage.
-        matches: The matched keyframes, and what they were matched with.
-        kept: A cached reading of any clip, for the times of its frames.
-
-    Yields:
-        Progress.
-
-    Returns:
-        The take, and notes for the animator.
+    `kept` is a cached reading of any clip, for the times of its frames.
 
     Raises:
         InputError: Something is missing or unusable.

@@ -5,8 +5,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator, reported
-from ..shell.file_browser import browse, chosen_file
+from ..shell.base_operator import BaseOperator, browse, chosen_file, reported
 from ..shell.requirements import idle
 from .characters import active_character
 from .map_conversion import map_of, show_map

@@ -180,7 +180,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Write the file."""
         from ..bridge.actor_lengths import read_body
-        from ..bridge.final_motion import motion_frames
+        from ..bridge.rig import motion_frames
 
         if not self.filepath:
             raise InputError("no file is named to export to; give filepath")

@@ -4,9 +4,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..bridge.clicked_keypoints import ClickedPoint
 from ..bridge.footage_camera import may_move
-from ..bridge.track_keypoints import SceneEvidence
+from ..bridge.scene_evidence import ClickedPoint, SceneEvidence
 from ..shell.takes import find_take
 from .ignored_regions import ignored_regions
 from .keypoint_paths import keypoint_path

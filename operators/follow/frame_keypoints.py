@@ -11,9 +11,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.footage.keypoints.keypoints import People
-from ..bridge.clicked_keypoints import SOURCE as CLICKS
-from ..bridge.track_keypoints import SOURCE as TRACKS
-from ..bridge.track_keypoints import read_keypoint_file, tracks_at
+from ..bridge.scene_evidence import CLICKS, TRACKS, read_keypoint_file, tracks_at
 from ..shell.footage_view import clip_index
 from ..shell.results import LruCache
 from ..shell.takes import footage_of

@@ -5,7 +5,7 @@ from time import monotonic
 
 import bpy
 
-from ..bridge.track_keypoints import file_state
+from ..bridge.scene_evidence import file_state
 
 LOOKED_S = 2.0
 """Time for which a file's state on disk is taken to be what it was: drawing reads no folder each time."""

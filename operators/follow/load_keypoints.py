@@ -7,8 +7,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..shell.base_operator import BaseOperator, warn
-from ..shell.file_browser import browse, chosen_path
+from ..shell.base_operator import BaseOperator, browse, chosen_path, warn
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage
@@ -75,8 +74,8 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
     Raises:
         InputError: The clip or the file is missing or unusable, or they do not belong together.
     """
+    from ..bridge.scene_evidence import read_keypoint_file
     from ..bridge.take_from_scene import clip_frames
-    from ..bridge.track_keypoints import read_keypoint_file
 
     source = footage_of(scene, take)
     frames = run(clip_frames(source, scene_evidence(take), reading_of(take)))

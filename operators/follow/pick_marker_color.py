@@ -119,7 +119,7 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
 
         The viewport's own pixel has gone through color management.
         """
-        from ..bridge.footage_color import footage_color
+        from ..bridge.footage import footage_color
 
         take = active_take(scene)
         source, identifier, name = footage_of(scene, take), take.identifier, self._marker(take).name

@@ -108,7 +108,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
         """Take the marker's color from the pixel; the last click ends it."""
-        from ..bridge.footage_color import footage_color
+        from ..bridge.footage import footage_color
 
         name = self._asked[self._here][0]
         with reported(self):
@@ -168,7 +168,7 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
         """Return the job that looks for the markers in their new colors."""
-        from ..bridge.footage_color import footage_color
+        from ..bridge.footage import footage_color
 
         take = active_take(scene)
         source, identifier, ignored = footage_of(scene, take), take.identifier, ignored_regions(take)

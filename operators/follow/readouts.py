@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ..bridge.footage_camera import may_move
-from ..bridge.track_keypoints import tracks_at
+from ..bridge.scene_evidence import tracks_at
 from ..shell.takes import footage_of
 from .click_points import clicked_here
 from .frame_keypoints import FrameKeypoints, keypoints_at

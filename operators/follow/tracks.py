@@ -6,7 +6,7 @@ from ...core.body.human import HUMAN
 from ...core.errors import InputError
 from ...core.footage.keypoints.keypoints import FACE, FEET, HANDS, SPINE
 from ...core.footage.keypoints.layouts import named_point
-from ..bridge.track_keypoints import AssignedTrack, clip_tracks
+from ..bridge.scene_evidence import AssignedTrack, clip_tracks
 from ..shell.base_operator import BaseOperator
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, redraw_footage

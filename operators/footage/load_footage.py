@@ -5,8 +5,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator, warn
-from ..shell.file_browser import browse, chosen_file
+from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
 from ..shell.notices import give_notices
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, add_take, find_take, placement_is_guess

@@ -10,7 +10,7 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
 from ..follow.tracks import point_title
-from ..overlays import handles
+from ..overlays import tools
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
@@ -162,8 +162,8 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the joints, and wait for the mouse."""
-        self._handles = handles.Handles()
-        handles.show(self._handles)
+        self._handles = tools.Handles()
+        tools.show_handles(self._handles)
         context.window_manager.modal_handler_add(self)
         _show_keys(context)
         return {"RUNNING_MODAL"}
@@ -206,7 +206,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """End the tool; a drag that is not finished is taken back. Blender calls this as well."""
         self._restore(context)
-        handles.show(None)
+        tools.show_handles(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             context.workspace.status_text_set(None)
             context.window.cursor_modal_restore()

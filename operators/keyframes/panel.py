@@ -2,7 +2,6 @@
 
 import bpy
 
-from ..shell.contradictions import draw_contradictions
 from ..shell.job_progress import job_is_running, steady_frame
 from ..shell.keyed_frames import (
     has_frame,
@@ -13,7 +12,7 @@ from ..shell.keyed_frames import (
     proposed_frames,
     unposed_proposals,
 )
-from ..shell.panel import TakePanel, draw_progress, draw_sentence, is_roomy, side_by_side
+from ..shell.panel import TakePanel, draw_contradictions, draw_progress, draw_sentence, is_roomy, side_by_side
 from ..shell.step_panel import StepPanel
 from ..shell.takes import active_take
 from .candidate_buttons import draw_candidates, draw_candidates_head

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.errors import InputError
-from ..shell.base_operator import BaseOperator
-from ..shell.file_browser import browse, chosen_file
+from ..shell.base_operator import BaseOperator, browse, chosen_file
 from ..shell.requirements import idle, registered_library
 from ..shell.takes import refresh_asset_browsers
 from .registry import chosen_identifier, refresh

@@ -10,23 +10,26 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ..bridge.camera_placement import read_lens
-from ..bridge.keyframes import candidate_posture
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.keyed_frames import match_at, offered_at, state_of
 from ..shell.results import LruCache
 from ..shell.takes import find_take, footage_of
 from . import drawing
-from .drawing import CANDIDATE_COLORS, CORE, CORE_SHARE, GHOST, LIMB, Color, Style, body_scale
-from .mask import Item, Label, Stroke, paint
-from .motion import limb_lines
-from .registry import world_view
-
-TALL_M = 1.7
-"""Height of a figure by which lines get thinner where it is small [m]."""
-ABOVE = 6.0
-"""Distance of a figure's number from the point that it stands above [px]."""
-BESIDE = 16.0
-"""Distance at which the numbers of two figures, as high as this, can both be read [px]."""
+from .drawing import (
+    CANDIDATE_COLORS,
+    CORE,
+    GHOST,
+    TALL_M,
+    Color,
+    Item,
+    Label,
+    Stroke,
+    Style,
+    body_scale,
+    paint,
+)
+from .figures import limb_lines
+from .views import world_view
 
 _points: "LruCache[Array]" = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
@@ -76,6 +79,7 @@ def candidate_points(armature_object: bpy.types.Object, match: bpy.types.Propert
 
     def found() -> Array:
         from ..bridge.actor_lengths import read_body
+        from ..bridge.keyframes import candidate_posture
 
         body = read_body(armature_object, HUMAN)
         return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
@@ -98,42 +102,35 @@ def over_footage(
 def picture(positions: Array, chosen: int, settings: bpy.types.PropertyGroup) -> list[Item]:
     """The figures of all candidates but the chosen one, each with its number where it differs from that.
 
-    Args:
-        positions: (N, 13, 2) region pixels of the candidates' points, NaN where not seen.
-        chosen: Index of the one that the frame has.
-        settings: The overlays' settings.
+    `positions` (N, 13, 2) are region pixels of the candidates' points, NaN where not seen.
     """
     scale, names = drawing.ui_scale(), HUMAN.point_names
     heights = np.ptp(np.nan_to_num(positions[..., 1]), axis=-1)
     style = Style(settings.opacity, scale, body_scale(heights / TALL_M, scale))
-    width = LIMB * style.width * style.body_scale
+    width = style.limb * style.width * style.body_scale
     items: list[Item] = []
     taken: list[Array] = []
     for index, figure in enumerate(positions):
         if index == chosen:
             continue
         color = style.color(candidate_color(index))
-        lines, is_right = limb_lines(names, figure)
+        lines, sides = limb_lines(names, figure)
         items += [
             Stroke(lines, color, width, GHOST * style.halo),
-            Stroke(lines[is_right], style.color(CORE), CORE_SHARE * width),
+            Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
         ]
         apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
         if apart.max() >= 0.0:
-            x, y = _number_place(figure, apart, taken, BESIDE * scale)
+            x, y = _number_place(figure, apart, taken, 16.0 * scale)
             taken.append(np.array([x, y]))
-            items.append(Label(str(index + 1), x, y + ABOVE * scale, (*color[:3], 1.0), "middle"))
+            items.append(Label(str(index + 1), x, y + 6.0 * scale, (*color[:3], 1.0), "middle"))
     return items
 
 
 def _number_place(figure: Array, apart: Array, taken: list[Array], beside: float) -> tuple[float, float]:
-    """The point [px] of a figure above which its number stands.
+    """The point [px] of a figure (13, 2) above which its number stands, `beside` those already there.
 
-    Args:
-        figure: (13, 2) its points [px].
-        apart: (13,) their distances from those of the chosen figure [px], negative where not seen.
-        taken: Where other figures' numbers stand.
-        beside: Distance from those that is enough [px].
+    `apart` (13,) is the distance from the chosen figure's points [px], negative where not seen.
     """
     order = [point for point in np.argsort(-apart, kind="stable") if apart[point] >= 0.0]
     free = (

@@ -1,11 +1,12 @@
-"""Drawing primitives for a region: lines, polygons, textures and text, on Blender 4.5 to 5.2.
+"""What overlays draw: lines, polygons, textures, text, items of these, and their style; Blender 4.5 to 5.2.
 
 For draw functions of `registry`, which has enabled blending. Colors are red, green, blue and alpha in sRGB,
 0 to 1, as users pick them. Shaders are made at the first call: without a window Blender has none.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import ClassVar, Literal
 
 import blf
@@ -21,15 +22,10 @@ from .figures import triangles
 
 Color = tuple[float, float, float, float]
 
-HALO: Color = (0.0, 0.0, 0.0, 0.75)
-"""Dark edge that sets lines off from footage of any brightness."""
+HALO: Color = (0.0, 0.0, 0.0, 0.75)  # dark edge that sets lines off from footage of any brightness
 INK: Color = (1.0, 1.0, 1.0, 1.0)
-HALO_PX = 1.25
-"""Width of a halo on each side of its line."""
 FONT = 0
 TEXT_SIZE = 11.0
-OUTLINED_TEXT = 6
-"""The blur level that blf draws as an outline instead of a shadow."""
 ALIGNMENTS = {"left": 0.0, "middle": 0.5, "right": 1.0}
 
 
@@ -45,18 +41,14 @@ def faded(color: Sequence[float], opacity: float) -> Color:
 
 
 def lines(segments: Array, color: ArrayLike, width: float = 1.5, halo: float = 0.0) -> None:
-    """Draw straight segments.
+    """Draw straight segments (S, 2, 2) in region pixels, or (S, 2, 3) in space; colors are (4,) or (S, 4).
 
-    Args:
-        segments: (S, 2, 2) region pixels, or (S, 2, 3) points in the space being drawn.
-        color: (4,) one for all, or (S, 4) one each.
-        width: Thickness, scaled with the user interface.
-        halo: Opacity of a dark edge on both sides, 0 to 1.
+    `halo` is the opacity of a dark edge on both sides.
     """
     if not len(segments):
         return
     if halo > 0.0:
-        _polyline(segments, faded(HALO, halo), width + 2.0 * HALO_PX)
+        _polyline(segments, faded(HALO, halo), width + 2.0 * 1.25)
     _polyline(segments, color, width)
 
 
@@ -76,12 +68,7 @@ def _polyline(segments: Array, color: ArrayLike, width: float) -> None:
 
 
 def polygons(corners: ArrayLike, color: ArrayLike) -> None:
-    """Fill convex polygons.
-
-    Args:
-        corners: (N, K, D) region pixels or points in space; polygons that are not finite are left out.
-        color: (4,) one for all, or (N, 4) one each.
-    """
+    """Fill convex polygons (N, K, D), without those that are not finite; colors are (4,) or (N, 4)."""
     points = np.asarray(corners, dtype=np.float64)
     if not len(points):
         return
@@ -109,11 +96,9 @@ def _positions(points: Array) -> SingleArray:
 
 
 def texture(pixels: ArrayLike) -> gpu.types.GPUTexture:
-    """Upload a picture to the graphics card; keep the texture, as making one takes time.
+    """Upload a picture (height, width, 4) of red, green, blue, alpha in sRGB, 0 to 1, top row first.
 
-    Args:
-        pixels: (height, width, 4) red, green, blue, alpha in sRGB, 0 to 1, top row first; the texture's own
-            coordinates begin at the bottom.
+    Keep the texture, as making one takes time; its own coordinates begin at the bottom.
     """
     rows = np.ascontiguousarray(np.asarray(pixels, dtype=np.float32)[::-1])
     height, width, _ = rows.shape
@@ -131,18 +116,13 @@ def text(
 ) -> None:
     """Draw a line of text, outlined so that it reads on any background.
 
-    Args:
-        words: The text.
-        x: Position of the part of the text that `align` names [region px].
-        y: Base line [region px].
-        color: Color of the text.
-        size: In points, scaled with the user interface.
-        align: `left`, `middle` or `right`.
+    `x` is the position of the part of it that `align` names, `y` the base line [region px]; `size` is in
+    points, scaled with the user interface.
     """
     blf.size(FONT, size * ui_scale())
     blf.color(FONT, *color)
     blf.enable(FONT, blf.SHADOW)
-    blf.shadow(FONT, OUTLINED_TEXT, 0.0, 0.0, 0.0, color[3])
+    blf.shadow(FONT, 6, 0.0, 0.0, 0.0, color[3])
     blf.shadow_offset(FONT, 0, 0)
     blf.position(FONT, round(x - ALIGNMENTS[align] * blf.dimensions(FONT, words)[0]), round(y), 0.0)
     blf.draw(FONT, words)
@@ -168,8 +148,7 @@ def _opaque(rgb: Rgb) -> Color:
 SIDES: Mapping[str, Color] = {side: _opaque(rgb) for side, rgb in LIGHT.items()}
 LEFT, RIGHT, MIDDLE = SIDES["L"], SIDES["R"], SIDES[""]
 """Colors of the performer's sides, and of what has none."""
-CORE: Color = (0.08, 0.08, 0.08, 1.0)
-"""Color of the core of a hollow line."""
+CORE: Color = (0.08, 0.08, 0.08, 1.0)  # color of the core of a hollow line
 SOURCES: tuple[Color, ...] = (
     (0.90, 0.55, 0.78, 1.0),
     (0.94, 0.89, 0.26, 1.0),
@@ -177,41 +156,34 @@ SOURCES: tuple[Color, ...] = (
     (0.72, 0.62, 0.98, 1.0),
 )
 """Colors of keypoints by their source: purple, yellow, green and violet, none of them a side's."""
-THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)
-"""Color of keypoints that are not believed."""
-DASH, GAP = 6.0, 4.0
-JOINT, DOT, DIAMOND = 3.5, 1.4, 5.0
-CORE_SHARE = 0.45
-"""Thickness of the core of a hollow line, as a share of the line's."""
+THROWN_OUT: Color = (1.0, 0.25, 0.2, 1.0)  # color of keypoints that are not believed
 CANDIDATE_COLORS = 8
 """Colors of collections that Blender's themes have, with an icon each: those of a frame's candidates."""
-GHOST = 0.6
-"""Opacity of figures that are only offered."""
-LIMB = 2.4
-"""Thickness of limbs relative to outlines."""
+GHOST = 0.6  # opacity of figures that are only offered
 METER, SMALLEST = 160.0, 0.35
 """Size of a meter below which a body's marks get smaller [px], and the smallest share of their size."""
-PALER = 0.5
-"""Share of white in the prediction's color, so that dashes show over a solid line."""
-HALO_STYLE = 0.9
+TALL_M = 1.7  # height of a figure by which marks get smaller where it is small [m]
 UNCERTAIN_M = 0.05
 """Standard deviation above which a point is drawn as a ring within a circle of that size [m]."""
 PATH_POINTS = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
-PATH_FRAMES = 15
-"""Frames of a path before the current one, and after it."""
+PATH_FRAMES = 15  # frames of a path before the current one, and after it
 
 
 @dataclass(frozen=True)
 class Style:
     """The animator's opacity, and the scales of screen and body."""
 
-    width: ClassVar[float] = 1.5
-    """Thickness of lines."""
+    width: ClassVar[float] = 1.5  # thickness of lines [px]
+    limb: ClassVar[float] = 2.4  # thickness of limbs, relative to that
+    core: ClassVar[float] = 0.45  # thickness of a hollow line's core, relative to the line's
+    dash: ClassVar[float] = 6.0  # [px]
+    gap: ClassVar[float] = 4.0  # [px]
+    joint: ClassVar[float] = 3.5  # radius [px]
+    dot: ClassVar[float] = 1.4  # radius [px]
+    diamond: ClassVar[float] = 5.0  # radius [px]
     opacity: float
-    scale: float
-    """Screen pixels for each unscaled pixel."""
-    body_scale: float = 1.0
-    """Scale of the body's marks, below 1 for a distant body."""
+    scale: float  # screen pixels for each unscaled pixel
+    body_scale: float = 1.0  # scale of the body's marks, below 1 for a distant body
 
     def color(self, color: Color | tuple[float, float, float]) -> Color:
         """A color with the chosen opacity."""
@@ -224,7 +196,7 @@ class Style:
     @property
     def halo(self) -> float:
         """Opacity of lines' dark edges."""
-        return HALO_STYLE * self.opacity
+        return 0.9 * self.opacity
 
 
 def body_scale(pixels_per_meter: Array, scale: float) -> float:
@@ -246,5 +218,79 @@ def side_color(name: str) -> Color:
 
 def paler(color: tuple[float, float, float]) -> tuple[float, float, float]:
     """A color nearer to white."""
-    red, green, blue = (PALER + (1.0 - PALER) * np.asarray(color, dtype=np.float64)).tolist()
+    red, green, blue = (0.5 + (1.0 - 0.5) * np.asarray(color, dtype=np.float64)).tolist()
     return (red, green, blue)
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """Straight lines."""
+
+    segments: Array  # (S, 2, 2) region pixels
+    color: ArrayLike  # (4,) for all, or (S, 4)
+    width: float
+    halo: float = 0.0  # opacity of the dark edge
+
+
+@dataclass(frozen=True, eq=False)
+class Fill:
+    """Filled convex polygons."""
+
+    corners: Array  # (N, K, 2) region pixels
+    color: ArrayLike  # (4,) for all, or (N, 4)
+
+
+@dataclass(frozen=True)
+class Label:
+    """A line of text; `x` is the position of the part that `align` names, `y` the base line [region px]."""
+
+    words: str
+    x: float
+    y: float
+    color: Color = INK
+    align: Literal["left", "middle", "right"] = "left"
+
+
+Item = Stroke | Fill | Label
+
+
+def paint(items: Iterable[Item]) -> None:
+    """Draw all items, the first at the bottom; alike neighbors in one draw call."""
+    for item in merged(items):
+        if isinstance(item, Stroke):
+            lines(item.segments, item.color, item.width, item.halo)
+        elif isinstance(item, Fill):
+            polygons(item.corners, item.color)
+        else:
+            text(item.words, item.x, item.y, item.color, align=item.align)
+
+
+def merged(items: Iterable[Item]) -> list[Item]:
+    """Merge neighboring lines of one thickness, and neighboring polygons of equally many corners."""
+    done: list[Item] = []
+    for _, group in groupby(items, key=_kind):
+        alike = list(group)
+        first = alike[0]
+        if isinstance(first, Stroke) and len(alike) > 1:
+            parts = [(item.segments, item.color) for item in alike if isinstance(item, Stroke)]
+            done.append(Stroke(*_joined(parts), first.width, first.halo))
+        elif isinstance(first, Fill) and len(alike) > 1:
+            done.append(
+                Fill(*_joined([(item.corners, item.color) for item in alike if isinstance(item, Fill)]))
+            )
+        else:
+            done += alike
+    return done
+
+
+def _kind(item: Item) -> tuple[object, ...]:
+    if isinstance(item, Stroke):
+        return ("stroke", item.width, item.halo)
+    return ("fill", item.corners.shape[-2]) if isinstance(item, Fill) else ("label",)
+
+
+def _joined(parts: list[tuple[Array, ArrayLike]]) -> tuple[Array, Array]:
+    """Concatenated points, and a color for each."""
+    points = np.concatenate([part for part, _ in parts])
+    colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(part), 4)) for part, color in parts]
+    return points, np.concatenate(colors)

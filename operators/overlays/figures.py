@@ -1,4 +1,4 @@
-"""Plane figures as arrays: line segments, dashes, circles, diamonds; nothing is drawn here.
+"""Plane figures as arrays: line segments, dashes, circles, diamonds, a body's limbs; nothing is drawn.
 
 Points are region pixels unless stated otherwise. A point that is not finite breaks a line.
 """
@@ -6,24 +6,13 @@ Points are region pixels unless stated otherwise. A point that is not finite bre
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...core.arrays import Array
 
-MOST_DASHES = 1000
-"""Upper limit for a line, which gets longer dashes where it reaches far outside a zoomed view."""
-
 
 def segments(points: ArrayLike, *, closed: bool = False) -> Array:
-    """Cut lines into their segments; those with an end that is not finite are left out.
-
-    Args:
-        points: (..., N, D) lines of N points each.
-        closed: Whether each line returns to its first point.
-
-    Returns:
-        (S, 2, D).
-    """
+    """Cut lines (..., N, D) into segments (S, 2, D); those with an end that is not finite are left out."""
     line = np.asarray(points, dtype=np.float64)
     ends = np.roll(line, -1, axis=-2) if closed else line[..., 1:, :]
     starts = line if closed else line[..., :-1, :]
@@ -32,16 +21,9 @@ def segments(points: ArrayLike, *, closed: bool = False) -> Array:
 
 
 def dashes(points: ArrayLike, dash: float, gap: float, *, closed: bool = False) -> Array:
-    """Cut one line into dashes that run on around its corners.
+    """Cut one line (N, D) into dashes (S, 2, D) that run on around its corners.
 
-    Args:
-        points: (N, D) points; a dash begins anew after one that is not finite.
-        dash: Length of a dash.
-        gap: Length of the gap after it.
-        closed: Whether the line returns to its first point.
-
-    Returns:
-        (S, 2, D) segments of the dashes.
+    A dash begins anew after a point that is not finite.
     """
     line = np.asarray(points, dtype=np.float64)
     if closed and len(line):
@@ -56,7 +38,7 @@ def _dashed_run(line: Array, dash: float, gap: float) -> Array:
     steps = line[1:] - line[:-1]
     along = np.zeros(len(line))
     np.cumsum(np.sqrt(np.einsum("nd,nd->n", steps, steps)), out=along[1:])
-    period = max(dash + gap, along[-1] / MOST_DASHES)
+    period = max(dash + gap, along[-1] / 1000)
     if along[-1] == 0.0:
         return np.empty((0, 2, line.shape[-1]))
     share = dash / (dash + gap)
@@ -94,3 +76,46 @@ def triangles(polygons: ArrayLike) -> Array:
     first = np.broadcast_to(corners[:, :1], (len(corners), count - 2, dimensions))
     fans = np.stack([first, corners[:, 1:-1], corners[:, 2:]], axis=-2).reshape(-1, 3, dimensions)
     return fans[np.isfinite(fans).all(axis=(-2, -1))]
+
+
+def squares(centers: Array, size: float) -> Array:
+    """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
+    half = 0.8 * size
+    corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
+    return np.asarray(centers[:, None] + corners)
+
+
+NECK, PELVIS = "neck", "pelvis"  # the middle between the shoulders, and between the hips
+
+
+LIMBS = (
+    ("", "head", NECK),
+    ("", NECK, PELVIS),
+    ("", "shoulder.L", "shoulder.R"),
+    ("", "hip.L", "hip.R"),
+    *(
+        (side, f"{start}.{side}", f"{end}.{side}")
+        for side in ("L", "R")
+        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
+    ),
+)
+"""Side and ends of each line."""
+
+
+def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, NDArray[np.str_]]:
+    """Lines (N, 2, 2) of a body from its points (13, 2), and their sides (N,): L, R or none.
+
+    A line with an end that is not finite is left out.
+    """
+    at = dict(zip(names, positions, strict=True))
+    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
+    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
+    lines = np.array([[at[start], at[end]] for _, start, end in LIMBS])
+    seen = np.isfinite(lines).all(axis=(-2, -1))
+    return lines[seen], np.array([side for side, _, _ in LIMBS])[seen]
+
+
+UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
+
+
+SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5

@@ -5,6 +5,7 @@ on the other side of the body a cross in a square.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -12,24 +13,15 @@ import numpy as np
 
 from ...core.arrays import Array, BoolArray
 from ...core.footage.keypoints.keypoints import mirrored_point
-from ..follow.frame_keypoints import FrameKeypoints
-from .drawing import SOURCES, THROWN_OUT, Style
-from .figures import circles, segments
-from .mask import Item, Stroke
-from .timeline import squares
+from .drawing import SOURCES, THROWN_OUT, Item, Stroke, Style
+from .figures import SLANTING, UPRIGHT, circles, segments, squares
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
+    from ..follow.frame_keypoints import FrameKeypoints
 
 ToRegion = Callable[[Array], Array]
-ARM, RING = 5.5, 3.5
-"""Half-length of a cross's arms, and radius of a ring [px]."""
-SQUARE = 1.1
-"""Half of a square's side around a cross, in half-lengths of its arms."""
-SAME_PX = 0.5
-"""Distance within which two keypoints of a body point are one [px of the footage]."""
-UPRIGHT = np.array([[1.0, 0.0], [0.0, 1.0]])
-SLANTING = np.array([[1.0, 1.0], [1.0, -1.0]]) / 2.0**0.5
+ARM, RING = 5.5, 3.5  # half-length of a cross's arms, and radius of a ring [px]
 
 
 def source_color(sources: Sequence[str], source: str, style: Style) -> tuple[float, ...]:
@@ -37,7 +29,7 @@ def source_color(sources: Sequence[str], source: str, style: Style) -> tuple[flo
     return style.color(SOURCES[list(dict.fromkeys(sources)).index(source) % len(SOURCES)])
 
 
-def all_sources(keypoints: "ComparedKeypoints | None", seen: Sequence[FrameKeypoints]) -> tuple[str, ...]:
+def all_sources(keypoints: "ComparedKeypoints | None", seen: "Sequence[FrameKeypoints]") -> tuple[str, ...]:
     """The sources of what is drawn, those of the motion's keypoints first."""
     compared = () if keypoints is None else keypoints.sources
     return tuple(dict.fromkeys((*compared, *(each.source for each in seen))))
@@ -46,15 +38,7 @@ def all_sources(keypoints: "ComparedKeypoints | None", seen: Sequence[FrameKeypo
 def compared_marks(
     keypoints: "ComparedKeypoints", index: int, to_region: ToRegion, sources: Sequence[str], style: Style
 ) -> list[Item]:
-    """The keypoints of one frame that a motion was held against.
-
-    Args:
-        keypoints: The keypoints.
-        index: Index of the frame.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        sources: All sources that are drawn, in the order of their colors.
-        style: Colors and sizes.
-    """
+    """The keypoints of one frame that a motion was held against; `sources` in order of color."""
     if not keypoints.names:
         return []
     seen, predicted = to_region(keypoints.seen[index]), to_region(keypoints.predicted[index])
@@ -66,7 +50,7 @@ def compared_marks(
     shown = np.isfinite(seen).all(axis=-1)
     rims = circles(predicted, style.size(RING), 12)
     ringed = np.isfinite(predicted).all(axis=-1)
-    frames = squares(seen, style.size(SQUARE * ARM))
+    frames = squares(seen, style.size(1.1 * ARM))
     return [
         Stroke(links[linked], colors[linked], style.width),
         _outlines(rims, ringed, colors, style),
@@ -77,16 +61,9 @@ def compared_marks(
 
 
 def seen_marks(
-    seen: Sequence[FrameKeypoints], to_region: ToRegion, sources: Sequence[str], style: Style
+    seen: "Sequence[FrameKeypoints]", to_region: ToRegion, sources: Sequence[str], style: Style
 ) -> list[Item]:
-    """The keypoints that a take's sources see in a frame, of everyone.
-
-    Args:
-        seen: Those of each source.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        sources: All sources that are drawn, in the order of their colors.
-        style: Colors and sizes.
-    """
+    """The keypoints that a take's sources see in a frame, of everyone; `sources` in order of color."""
     items: list[Item] = []
     for each in seen:
         places = to_region(each.pixel.reshape(-1, 2))
@@ -97,17 +74,17 @@ def seen_marks(
 
 
 def not_yet_compared(
-    seen: Sequence[FrameKeypoints], keypoints: "ComparedKeypoints", index: int
-) -> tuple[FrameKeypoints, ...]:
+    seen: "Sequence[FrameKeypoints]", keypoints: "ComparedKeypoints", index: int
+) -> "tuple[FrameKeypoints, ...]":
     """What of a frame's keypoints the motion was not held against: clicked since, or other people's."""
     found = []
     for each in seen:
         pixel = each.pixel.copy()
         for column, same in enumerate(_same_points(tuple(each.names), tuple(keypoints.names))):
             apart = np.linalg.norm(pixel[:, column, None] - keypoints.seen[index, same], axis=-1)
-            pixel[(apart < SAME_PX).any(axis=1), column] = np.nan
+            pixel[(apart < 0.5).any(axis=1), column] = np.nan
         if np.isfinite(pixel).any():
-            found.append(FrameKeypoints(each.source, each.names, pixel, each.score))
+            found.append(replace(each, pixel=pixel))
     return tuple(found)
 
 

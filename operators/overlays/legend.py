@@ -1,6 +1,5 @@
-"""Overlay of the measuring operator: the clicked top of the head, and a line to the mouse."""
+"""Legend in a corner of a region."""
 
-from dataclasses import dataclass
 from enum import Enum
 from functools import lru_cache
 
@@ -8,82 +7,26 @@ import bpy
 import numpy as np
 
 from ...core.arrays import Array
-from ..shell.footage_view import footage_view
-from ..shell.takes import find_take
-from . import drawing
 from .drawing import (
     CORE,
-    CORE_SHARE,
-    DASH,
-    DIAMOND,
-    DOT,
-    GAP,
-    JOINT,
     LEFT,
     MIDDLE,
     RIGHT,
     SOURCES,
     THROWN_OUT,
+    Fill,
+    Item,
+    Label,
+    Stroke,
     Style,
     text_size,
 )
-from .figures import circles, dashes, diamonds, segments
-from .keypoint_marks import SLANTING, SQUARE, UPRIGHT
-from .mask import Fill, Item, Label, Stroke
-from .timeline import squares
-
-CROSS_PX = 7.0
-
-
-@dataclass
-class Clicks:
-    """State of the running measurement."""
-
-    head: tuple[float, float] | None = None
-    """Footage pixel of the top of the head."""
-    mouse: tuple[int, int] = (0, 0)
-    """Position of the mouse in the window [px]."""
-
-
-_running: Clicks | None = None
-
-
-def show(clicks: Clicks | None) -> None:
-    """Draw these clicks from now on; None ends the drawing."""
-    global _running
-    _running = clicks
-
-
-def draw(context: bpy.types.Context) -> None:
-    """Draw the first click and the height that a second one at the mouse would give."""
-    take = find_take(context.scene)
-    if _running is None or _running.head is None or take is None:
-        return
-    view = footage_view(context.scene, take, context.area, context.region)
-    if view is None:
-        return
-    scale = drawing.ui_scale()
-    head = view.to_region(_running.head)
-    mouse = np.array(_running.mouse, dtype=np.float64) - (context.region.x, context.region.y)
-    arms = CROSS_PX * scale * np.array([[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]])
-    drawing.lines(head + arms, drawing.INK, halo=1.0)
-    drawing.lines(np.stack([head, mouse])[None], drawing.INK, width=1.0, halo=0.6)
-    words = "Top of Head"
-    drawing.text(words, float(head[0]) + 1.5 * CROSS_PX * scale, float(head[1]) + 0.5 * CROSS_PX * scale)
-
-
-# --- Legend in a corner of a region
-
+from .figures import SLANTING, UPRIGHT, circles, dashes, diamonds, segments, squares
 
 GROUND = (0.0, 0.0, 0.0, 0.35)
-DOTS = 3
 SAMPLE, GAP_AFTER, LINE, MARGIN = 26.0, 8.0, 18.0, 12.0
 """Length of a sample, distance to its text, height of a line, distance from the corner [px]."""
-MIDDLE_OF_LETTERS = 4.0
-"""Height of the middle of letters above their base line [px]."""
 THIN, THICK = 1.5, 3.6
-ABOVE_CACHE = 22.0
-"""Height of the cache bar at the bottom of the Movie Clip editor [px]."""
 
 
 class Sample(Enum):
@@ -117,11 +60,7 @@ Row = tuple[Sample, str]
 def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
     """A legend on a dark background, which sets it off from bright footage.
 
-    Args:
-        rows: Samples and texts, from the top down.
-        x: Left end of the samples.
-        y: Base line of the last row.
-        style: Colors and sizes.
+    Rows are from the top down; x is the left end of the samples, y the base line of the last row.
     """
     if not rows:
         return ()
@@ -130,7 +69,7 @@ def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Ite
     labels: list[Label] = []
     for row, (sample, words) in enumerate(reversed(rows)):
         base = y + row * LINE * style.scale
-        drawn = _sample(sample, x, base + MIDDLE_OF_LETTERS * style.scale, style)
+        drawn = _sample(sample, x, base + 4.0 * style.scale, style)  # the letters' middle
         strokes += [item for item in drawn if isinstance(item, Stroke)]
         fills += [item for item in drawn if isinstance(item, Fill)]
         indent = (SAMPLE + GAP_AFTER) * style.scale if drawn else 0.0
@@ -151,25 +90,24 @@ def _sample(sample: Sample, x: float, y: float, style: Style) -> list[Item]:
     whole = line[None]
     if sample in (Sample.LEFT, Sample.RIGHT):
         limb = Stroke(whole, style.color(LEFT if sample is Sample.LEFT else RIGHT), THICK, style.halo)
-        return (
-            [limb] if sample is Sample.LEFT else [limb, Stroke(whole, style.color(CORE), CORE_SHARE * THICK)]
-        )
+        core = Stroke(whole, style.color(CORE), style.core * THICK)
+        return [limb] if sample is Sample.LEFT else [limb, core]
     if sample in (Sample.RING, Sample.EXPECTED):
-        rim = segments(circles(middle, JOINT * style.scale, 16), closed=True)
+        rim = segments(circles(middle, style.joint * style.scale, 16), closed=True)
         return [Stroke(rim, color, THIN, style.halo)]
     if sample in (*SOURCE_SAMPLES, Sample.THROWN_OUT, Sample.SWAPPED):
         return _keypoint_sample(sample, middle[0], style)
     if sample is Sample.DIAMOND:
-        marks = diamonds(middle, DIAMOND * style.scale)
+        marks = diamonds(middle, style.diamond * style.scale)
         return [Stroke(segments(marks, closed=True), color, THIN, style.halo), Fill(marks, color)]
     if sample is Sample.NONE:
         return []
     dashed = sample in (Sample.DASHED, Sample.FUTURE)
-    parts = dashes(line, DASH * style.scale, GAP * style.scale) if dashed else whole
+    parts = dashes(line, style.dash * style.scale, style.gap * style.scale) if dashed else whole
     items: list[Item] = [Stroke(parts, color, THIN, style.halo)]
     if sample in (Sample.PAST, Sample.FUTURE):
-        dots = np.linspace(line[0], line[1], DOTS + 2)[1:-1]
-        items.append(Fill(circles(dots, (DOT + 1.0) * style.scale, 8), color))
+        dots = np.linspace(line[0], line[1], 5)[1:-1]
+        items.append(Fill(circles(dots, (style.dot + 1.0) * style.scale, 8), color))
     return items
 
 
@@ -177,10 +115,10 @@ def _keypoint_sample(sample: Sample, middle: Array, style: Style) -> list[Item]:
     color = style.color(THROWN_OUT if sample is Sample.THROWN_OUT else MIDDLE)
     if sample in SOURCE_SAMPLES:
         color = style.color(SOURCES[SOURCE_SAMPLES.index(sample)])
-    arms = JOINT * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
+    arms = style.joint * style.scale * (SLANTING if sample is Sample.THROWN_OUT else UPRIGHT)
     items: list[Item] = [Stroke(middle + np.stack([-arms, arms], axis=1), color, THIN, style.halo)]
     if sample is Sample.SWAPPED:
-        square = squares(middle[None], SQUARE * JOINT * style.scale)
+        square = squares(middle[None], 1.1 * style.joint * style.scale)
         items.append(Stroke(segments(square, closed=True), color, THIN, style.halo))
     return items
 
@@ -194,5 +132,5 @@ def corner(area: bpy.types.Area, region: bpy.types.Region, scale: float) -> tupl
             left = max(left, float(other.x + other.width - region.x))
         elif covers and (other.type == "HUD" or (other.alignment == "BOTTOM" and other.y <= region.y)):
             bottom = max(bottom, float(other.y + other.height - region.y))
-    lift = ABOVE_CACHE if area.type == "CLIP_EDITOR" else 0.0
+    lift = 22.0 if area.type == "CLIP_EDITOR" else 0.0  # its cache bar
     return left + MARGIN * scale, bottom + (MARGIN + lift) * scale

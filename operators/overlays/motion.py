@@ -1,12 +1,12 @@
-"""The reconstructed body as lines between its 13 points, with each point's uncertainty."""
+"""Overlay of the reconstructed motion: body, markers, keypoints, paths, and their legend."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
-from ...core.arrays import Array, BoolArray, IndexArray
+from ...core.arrays import Array, BoolArray
 from ..follow.frame_keypoints import FrameKeypoints, keypoints_at
 from ..shell.footage_view import FootageView, footage_view
 from ..shell.results import review_of
@@ -14,22 +14,22 @@ from ..shell.takes import find_take
 from . import drawing
 from .drawing import (
     CORE,
-    CORE_SHARE,
-    JOINT,
-    LIMB,
     PATH_POINTS,
     SIDES,
+    TALL_M,
     UNCERTAIN_M,
+    Fill,
+    Item,
+    Stroke,
     Style,
     body_scale,
+    paint,
     side_color,
 )
-from .figures import circles, segments
+from .figures import circles, limb_lines, segments
 from .keypoint_marks import all_sources, compared_marks, not_yet_compared, seen_marks
 from .legend import SOURCE_SAMPLES, Row, Sample, corner, legend
-from .mask import Fill, Item, Stroke, paint
 from .outlines import (
-    MarkerColor,
     hidden_markers,
     observed_outlines,
     paths,
@@ -37,40 +37,17 @@ from .outlines import (
     predicted_outlines,
     window,
 )
+from .views import MotionView, clip_view, world_view
 
 if TYPE_CHECKING:
     from ...core.review.compared_keypoints import ComparedKeypoints
     from ...core.review.review import Review
 
 
-NECK, PELVIS = "neck", "pelvis"
-"""The middle between the shoulders, and between the hips."""
-LIMBS = (
-    ("", "head", NECK),
-    ("", NECK, PELVIS),
-    ("", "shoulder.L", "shoulder.R"),
-    ("", "hip.L", "hip.R"),
-    *(
-        (side, f"{start}.{side}", f"{end}.{side}")
-        for side in ("L", "R")
-        for start, end in (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
-    ),
-)
-"""Side and ends of each line."""
-
-
 def skeleton(
     review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
 ) -> list[Item]:
-    """The body of one frame.
-
-    Args:
-        review: The review of the motion.
-        index: Index of the frame.
-        positions: (13, 2) region pixels of the points.
-        pixels_per_meter: (13,) size of a meter at each point in the region.
-        style: Colors and sizes.
-    """
+    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each."""
     sigma = review.sigma_m[index]
     uncertain = sigma > UNCERTAIN_M
     colors = np.array([style.color(side_color(name)) for name in review.point_names])
@@ -81,39 +58,20 @@ def skeleton(
     ]
 
 
-def limb_lines(names: tuple[str, ...], positions: Array) -> tuple[Array, BoolArray]:
-    """Lines (N, 2, 2) of a body from its points (13, 2), and which of them (N,) are of the right side.
-
-    A line with an end that is not finite is left out.
-    """
-    lines, sides = _lines(names, positions)
-    seen = np.isfinite(lines).all(axis=(-2, -1))
-    return lines[seen], np.array([side == "R" for side in sides])[seen]
-
-
-def _lines(names: tuple[str, ...], positions: Array) -> tuple[Array, list[str]]:
-    at = dict(zip(names, positions, strict=True))
-    at[NECK] = 0.5 * (at["shoulder.L"] + at["shoulder.R"])
-    at[PELVIS] = 0.5 * (at["hip.L"] + at["hip.R"])
-    return np.array([[at[start], at[end]] for _, start, end in LIMBS]), [side for side, _, _ in LIMBS]
-
-
 def _limbs(names: tuple[str, ...], positions: Array, style: Style) -> list[Item]:
     """Lines in the colors of their sides; those of the right have a dark core."""
-    lines, sides = _lines(names, positions)
-    colors = np.array([style.color(SIDES[side]) for side in sides])
-    seen = np.isfinite(lines).all(axis=(-2, -1))
-    hollow = seen & np.array([side == "R" for side in sides])
-    width = LIMB * style.width * style.body_scale
+    lines, sides = limb_lines(names, positions)
+    colors = np.array([style.color(SIDES[side]) for side in sides.tolist()]).reshape(-1, 4)
+    width = style.limb * style.width * style.body_scale
     return [
-        Stroke(lines[seen], colors[seen], width, style.halo),
-        Stroke(lines[hollow], style.color(CORE), CORE_SHARE * width),
+        Stroke(lines, colors, width, style.halo),
+        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
     ]
 
 
 def _joints(positions: Array, uncertain: BoolArray, colors: Array, style: Style) -> list[Item]:
     """Discs, and rings for uncertain points."""
-    rims = circles(positions, style.size(JOINT), 16)
+    rims = circles(positions, style.size(style.joint), 16)
     seen = np.isfinite(positions).all(axis=-1)
     edges = Stroke(segments(rims[seen], closed=True), np.repeat(colors[seen], 16, axis=0), 1.5, style.halo)
     return [edges, Fill(rims[seen & ~uncertain], colors[seen & ~uncertain])]
@@ -150,37 +108,13 @@ def source_rows(sources: tuple[str, ...]) -> tuple[Row, ...]:
     )
 
 
-# --- The reconstructed motion as items to draw, whichever editor they are drawn in
-
-
-UNKNOWN: MarkerColor = (0.8, 0.8, 0.8)
-"""Color of a marker that was removed since the reconstruction."""
-NEAREST = 0.75
-"""Largest distance of the scene's frame from the clip's frame that it shows [frames]."""
-
-
-class MotionView(Protocol):
-    """A region of an editor as a view of the motion."""
-
-    @property
-    def footage(self) -> FootageView | None:
-        """The footage's view, if the region shows the footage."""
-
-    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
-        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
-
-    def pixels_per_meter(self, review: "Review", index: int) -> Array:
-        """Size (13,) of a meter at each point."""
-
-
 @dataclass(frozen=True, eq=False)
 class Shown:
     """A frame of a take's motion that is drawn."""
 
     take: bpy.types.PropertyGroup
     review: "Review"
-    index: int
-    """Index in the clip of the scene's current frame."""
+    index: int  # index in the clip of the scene's current frame
 
 
 def shown(scene: bpy.types.Scene) -> Shown | None:
@@ -191,7 +125,7 @@ def shown(scene: bpy.types.Scene) -> Shown | None:
         return None
     away = np.abs(review.frames - scene.frame_current_final)
     index = int(away.argmin())
-    return Shown(take, review, index) if away[index] <= NEAREST else None
+    return Shown(take, review, index) if away[index] <= 0.75 else None
 
 
 def picture(
@@ -224,7 +158,7 @@ def _outlines(
     what: Shown, footage: FootageView, settings: bpy.types.PropertyGroup, style: Style
 ) -> list[Item]:
     chosen = {marker.name: tuple(marker.color) for marker in what.take.markers}
-    colors = [chosen.get(name, UNKNOWN) for name in what.review.marker_names]
+    colors = [chosen.get(name, (0.8, 0.8, 0.8)) for name in what.review.marker_names]
     items: list[Item] = []
     if settings.show_observed:
         items += observed_outlines(what.review, what.index, footage.to_region, colors, style)
@@ -260,34 +194,46 @@ def _rows(
         if settings.show_observed:
             hidden = [what.review.marker_names[marker] for marker in hidden_markers(what.review, what.index)]
             if hidden:
-                words = f"Hidden: {', '.join(hidden)}"
-                rows.append((Sample.NONE, words))
+                rows.append((Sample.NONE, f"Hidden: {', '.join(hidden)}"))
             rows.append((Sample.SOLID, "Marker as seen"))
         if settings.show_predicted:
             rows.append((Sample.DASHED, "Marker as the motion predicts it"))
     if view.footage is not None and what.review.contours.shape[1] and settings.show_predicted:
         rows.append((Sample.DASHED, "Contour as the motion predicts it"))
     if settings.show_skeleton:
-        rows.append((Sample.LEFT, "Performer's left"))
-        rows.append((Sample.RIGHT, "Performer's right"))
+        rows += [(Sample.LEFT, "Performer's left"), (Sample.RIGHT, "Performer's right")]
         if (what.review.sigma_m[what.index] > UNCERTAIN_M).any():
             rows.append((Sample.RING, "Uncertain point"))
     if settings.show_paths:
-        rows.append((Sample.PAST, "Path so far"))
-        rows.append((Sample.FUTURE, "Path to come"))
-        rows.append((Sample.DIAMOND, "Keyframe"))
+        rows += [(Sample.PAST, "Path so far"), (Sample.FUTURE, "Path to come"), (Sample.DIAMOND, "Keyframe")]
     return tuple(rows)
+
+
+def draw_viewport(context: bpy.types.Context) -> None:
+    """Draw the motion into a 3D viewport."""
+    what = shown(context.scene)
+    if what is None or not context.space_data.overlay.show_overlays:
+        return
+    footage = footage_view(context.scene, what.take, context.area, context.region)
+    view = world_view(context.region, context.region_data, footage)
+    paint(picture(context, what, view, context.scene.keymark.overlays))
+
+
+def draw_clip_editor(context: bpy.types.Context) -> None:
+    """Draw the motion into a Movie Clip editor."""
+    scene, what = context.scene, shown(context.scene)
+    if what is None or context.space_data.view != "CLIP" or what.take.camera is None:
+        return
+    footage = footage_view(scene, what.take, context.area, context.region)
+    if footage is not None:
+        paint(picture(context, what, clip_view(scene, what.take, footage), scene.keymark.overlays))
 
 
 # --- Overlay of keypoints where there is no motion yet
 
 
-TALL_M = 1.7
-"""Height of a figure by which marks get smaller where it is small [m]."""
-
-
-def draw(context: bpy.types.Context) -> None:
-    """Draw into the region that Blender is drawing."""
+def draw_keypoints(context: bpy.types.Context) -> None:
+    """Draw the keypoints of the scene's frame."""
     scene = context.scene
     settings, take = scene.keymark.overlays, find_take(scene)
     hidden = context.space_data.type == "VIEW_3D" and not context.space_data.overlay.show_overlays
@@ -313,6 +259,5 @@ def picture_keypoints(
     sources = all_sources(None, seen)
     items = seen_marks(seen, view.to_region, sources, style)
     if settings.show_legend:
-        at = corner(context.area, context.region, scale)
-        items += legend(source_rows(sources), *at, style)
+        items += legend(source_rows(sources), *corner(context.area, context.region, scale), style)
     return items

@@ -1,21 +1,24 @@
-"""Outlines of marker regions: observed ones solid, predicted ones dashed, as are contours of the body."""
+"""Outlines of marker regions, observed ones solid and predicted ones dashed, and paths of points."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-import bpy
-import gpu
 import numpy as np
 
-from ...core.arrays import Array, Image, IndexArray, SingleArray
-from ..follow.ignore_region import brush_at_work
-from ..follow.mask_previews import ignored_mask
-from ..shell.footage_view import footage_view
-from ..shell.takes import find_take
-from . import drawing
-from .drawing import DASH, DIAMOND, DOT, GAP, INK, MIDDLE, PATH_FRAMES, Style, paler, side_color
+from ...core.arrays import Array, IndexArray
+from .drawing import (
+    INK,
+    MIDDLE,
+    PATH_FRAMES,
+    Fill,
+    Item,
+    Label,
+    Stroke,
+    Style,
+    paler,
+    side_color,
+)
 from .figures import circles, dashes, diamonds, segments
-from .mask import Fill, Item, Label, Stroke, draw_picture
 
 if TYPE_CHECKING:
     from ...core.review.review import Review
@@ -30,21 +33,9 @@ def hidden_markers(review: "Review", index: int) -> list[int]:
 
 
 def observed_outlines(
-    review: "Review",
-    index: int,
-    to_region: Callable[[Array], Array],
-    colors: list[MarkerColor],
-    style: Style,
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
 ) -> list[Item]:
-    """A solid outline of each region that was found.
-
-    Args:
-        review: The review of the motion.
-        index: Index of the frame.
-        to_region: Converts footage pixels (..., 2) to region pixels.
-        colors: Each marker's color.
-        style: Colors and sizes.
-    """
+    """A solid outline of each region that was found."""
     outlines = to_region(review.observed[index])
     return [
         Stroke(segments(outline, closed=True), style.color(color), style.width, style.halo)
@@ -53,11 +44,7 @@ def observed_outlines(
 
 
 def predicted_outlines(
-    review: "Review",
-    index: int,
-    to_region: Callable[[Array], Array],
-    colors: list[MarkerColor],
-    style: Style,
+    review: "Review", index: int, to_region: Callable[[Array], Array], colors: list[MarkerColor], style: Style
 ) -> list[Item]:
     """A dashed, paler outline of each region that the motion predicts; that of a hidden marker is named."""
     outlines = to_region(review.predicted[index])
@@ -67,10 +54,10 @@ def predicted_outlines(
         whole = outline[np.isfinite(outline).all(axis=-1)]
         if not len(whole):
             continue
-        parts = dashes(whole, DASH * style.scale, GAP * style.scale, closed=True)
+        parts = dashes(whole, style.dash * style.scale, style.gap * style.scale, closed=True)
         items.append(Stroke(parts, style.color(paler(color)), style.width, style.halo))
         if marker in hidden:
-            x, y = whole[:, 0].max() + GAP * style.scale, whole[:, 1].mean()
+            x, y = whole[:, 0].max() + style.gap * style.scale, whole[:, 1].mean()
             words = f"{review.marker_names[marker]} hidden"
             items.append(Label(words, float(x), float(y), style.color(INK)))
     return items
@@ -81,54 +68,8 @@ def predicted_contours(
 ) -> list[Item]:
     """The contour lines of the body that the motion predicts, dashed."""
     lines = to_region(review.contours[index])
-    parts = [dashes(line, DASH * style.scale, GAP * style.scale) for line in lines]
+    parts = [dashes(line, style.dash * style.scale, style.gap * style.scale) for line in lines]
     return [Stroke(np.concatenate(parts), style.color(MIDDLE), style.width, style.halo)] if parts else []
-
-
-# --- Overlay of the regions that are never a marker
-
-
-STRIPE = 6
-"""Pixels of the measuring grid from one stripe to the next."""
-DARK, LIGHT = (0.0, 0.0, 0.0, 0.65), (1.0, 1.0, 1.0, 0.55)
-"""Of any color's look, so that no marker can be taken for it."""
-
-_drawn: dict[int, tuple[Image, gpu.types.GPUTexture]] = {}
-"""Cache of one: the mask that was drawn last, and its texture."""
-
-
-def draw(context: bpy.types.Context) -> None:
-    """Draw into the region that Blender is drawing."""
-    take, brush = find_take(context.scene), brush_at_work()
-    if take is None or (brush is None and not context.window_manager.keymark_show_masks):
-        return
-    view = footage_view(context.scene, take, context.area, context.region)
-    if view is None:
-        return
-    mask = ignored_mask(take, () if brush is None else brush.regions())
-    if mask is None:
-        return
-    if 0 not in _drawn or _drawn[0][0] is not mask:
-        _drawn[0] = (mask, drawing.texture(hatched(mask)))
-    draw_picture(_drawn[0][1], view)
-
-
-def hatched(mask: Image) -> SingleArray:
-    """A mask as a picture (rows, columns, 4) of red, green, blue, alpha in 0 to 1, top row first."""
-    row, column = np.indices(mask.shape)
-    stripe = ((row + column) % STRIPE < STRIPE // 3)[..., None]
-    picture = np.where(stripe, np.array(LIGHT), np.array(DARK))
-    picture[mask == 0] = 0.0
-    return picture.astype(np.float32)
-
-
-def register() -> None:
-    """Nothing is to be done before the first drawing."""
-
-
-def unregister() -> None:
-    """Release the texture."""
-    _drawn.clear()
 
 
 # --- Paths of points over time
@@ -147,27 +88,18 @@ def paths(
     keyframe_indices: IndexArray,
     style: Style,
 ) -> list[Item]:
-    """The paths of N points.
-
-    Args:
-        names: The points' names.
-        positions: (N, I, 2) their region pixels in each frame of the window.
-        frames: (I,) indices of those frames in the clip.
-        index: Index of the current frame in the clip.
-        keyframe_indices: Indices of the keyframes.
-        style: Colors and sizes.
-    """
+    """The paths of N points: `positions` (N, I, 2) at the clip's `frames` (I,), about the frame `index`."""
     keyed = np.isin(frames, keyframe_indices)
     dots, marks = positions[:, ~keyed].reshape(-1, 2), positions[:, keyed]
     items: list[Item] = []
     for name, path in zip(names, positions, strict=True):
         color = style.color(side_color(name))
-        ahead = dashes(path[frames >= index], DASH * style.scale, GAP * style.scale)
+        ahead = dashes(path[frames >= index], style.dash * style.scale, style.gap * style.scale)
         items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
         items.append(Stroke(ahead, color, style.width, style.halo))
-    items.append(Fill(circles(dots, style.size(DOT + 0.5 * style.width), 8), style.color(MIDDLE)))
+    items.append(Fill(circles(dots, style.size(style.dot + 0.5 * style.width), 8), style.color(MIDDLE)))
     # All edges, then all diamonds: alike neighbors are drawn in one call.
-    corners = [diamonds(mark, style.size(DIAMOND)) for mark in marks]
+    corners = [diamonds(mark, style.size(style.diamond)) for mark in marks]
     colors = [style.color(side_color(name)) for name in names]
     pairs = list(zip(corners, colors, strict=True))
     items += [Stroke(segments(mark, closed=True), color, 1.5, style.halo) for mark, color in pairs]

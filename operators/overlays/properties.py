@@ -2,75 +2,58 @@
 
 import bpy
 
-from . import registry
-
 
 def _changed(_settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    from . import registry  # only now: panels and properties are registered before there is anything to draw
+
     registry.try_again()
     registry.redraw(context)
+
+
+def _switch(name: str, description: str, default: bool = True) -> bool:
+    return bpy.props.BoolProperty(name=name, description=description, default=default, update=_changed)
 
 
 class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
     """The overlays' switches and looks."""
 
-    show_observed: bpy.props.BoolProperty(
-        name="Observed Markers",
-        description="Outline each marker's region as it was found in the footage: a solid line",
-        default=True,
-        update=_changed,
+    show_observed: _switch(
+        "Observed Markers", "Outline each marker's region as it was found in the footage: a solid line"
     )
-    show_predicted: bpy.props.BoolProperty(
-        name="Predicted Markers",
-        description="Outline each marker where the reconstructed motion puts it: a dashed line; without "
+    show_predicted: _switch(
+        "Predicted Markers",
+        "Outline each marker where the reconstructed motion puts it: a dashed line; without "
         "markers, the limbs and the trunk",
-        default=True,
-        update=_changed,
     )
-    show_keypoints: bpy.props.BoolProperty(
-        name="Keypoints",
-        description="Mark each keypoint with a cross where it is seen, with a ring where the motion puts it; "
+    show_keypoints: _switch(
+        "Keypoints",
+        "Mark each keypoint with a cross where it is seen, with a ring where the motion puts it; "
         "a slanting cross is not believed, one in a square was seen on the other side of the body",
-        default=True,
-        update=_changed,
     )
-    show_skeleton: bpy.props.BoolProperty(
-        name="Skeleton",
-        description="Draw the body: left limbs solid, right ones hollow, uncertain points as rings",
-        default=True,
-        update=_changed,
+    show_skeleton: _switch(
+        "Skeleton", "Draw the body: left limbs solid, right ones hollow, uncertain points as rings"
     )
-    show_candidates: bpy.props.BoolProperty(
-        name="Candidates",
-        description="Draw what else a found keyframe may show as faint figures, in the colors and with the "
+    show_candidates: _switch(
+        "Candidates",
+        "Draw what else a found keyframe may show as faint figures, in the colors and with the "
         "numbers of the buttons that take them",
-        default=True,
-        update=_changed,
     )
-    show_paths: bpy.props.BoolProperty(
-        name="Paths",
-        description="Draw the paths of wrists and ankles: past solid, future dashed, diamonds at keyframes",
+    show_paths: _switch(
+        "Paths",
+        "Draw the paths of wrists and ankles: past solid, future dashed, diamonds at keyframes",
         default=False,
-        update=_changed,
     )
-    show_floor_grid: bpy.props.BoolProperty(
-        name="Floor Grid",
-        description="Draw the floor as a grid of meters over the footage, and the horizon; if the camera is "
+    show_floor_grid: _switch(
+        "Floor Grid",
+        "Draw the floor as a grid of meters over the footage, and the horizon; if the camera is "
         "right, feet stand on it, and what is parallel on the floor is parallel in the grid",
         default=False,
-        update=_changed,
     )
-    show_legend: bpy.props.BoolProperty(
-        name="Legend",
-        description="Explain lines and marks in a corner, and name the hidden markers",
-        default=True,
-        update=_changed,
-    )
-    show_timeline: bpy.props.BoolProperty(
-        name="In the Timeline",
-        description="Speed in the footage, proposed and found keyframes, confidence and weak frames, in "
+    show_legend: _switch("Legend", "Explain lines and marks in a corner, and name the hidden markers")
+    show_timeline: _switch(
+        "In the Timeline",
+        "Speed in the footage, proposed and found keyframes, confidence and weak frames, in "
         "Timeline and Dope Sheet",
-        default=True,
-        update=_changed,
     )
     opacity: bpy.props.FloatProperty(
         name="Opacity",

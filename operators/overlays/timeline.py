@@ -1,4 +1,4 @@
-"""Figures of the timeline overlay as arrays: graph, strip, squares, triangles [region px]."""
+"""Overlay of Timeline and Dope Sheet: speed, confidence, proposed and found keyframes, weak frames."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,34 +13,24 @@ from ..shell.keyed_frames import doubtful_matches, have_frames, matched_frames, 
 from ..shell.results import FootageSpeed, LruCache, reading_of, review_of, speed_of
 from ..shell.takes import find_take, footage_of
 from . import drawing
-from .drawing import Color, faded
-from .figures import diamonds, segments
-from .mask import Fill, Item, Label, Stroke, paint
+from .drawing import Color, Fill, Item, Label, Stroke, faded, paint
+from .figures import diamonds, segments, squares
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
 
 
-UNSURE = np.array([0.90, 0.42, 0.10])
-HALFWAY = np.array([0.93, 0.83, 0.35])
-SURE = np.array([0.22, 0.55, 0.90])
-"""Colors of low, middle and high confidence, also for color-blind eyes."""
+CONFIDENCE_COLORS = np.array([[0.90, 0.42, 0.10], [0.93, 0.83, 0.35], [0.22, 0.55, 0.90]])
+"""Of low, middle and high confidence, also for color-blind eyes."""
 DOUBTED = 0.5
 """Confidence up to which a frame has the lowest color: no better than chance that a joint is correct."""
-FINEST_PX = 1.5
-"""Frames nearer than this are drawn as one."""
+FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
 def joined(x: Array, values: Array, *, lowest: bool) -> tuple[Array, Array]:
-    """Merge frames that lie closer than can be seen, so that a long clip takes no longer to draw.
+    """Merge frames at rising positions (F,) too close to tell apart; their lowest or highest value is kept.
 
-    Args:
-        x: (F,) increasing positions.
-        values: (F,) values there.
-        lowest: Whether the lowest of the merged values is kept, or the highest.
-
-    Returns:
-        Positions and values, (N,) each.
+    A long clip then takes no longer to draw.
     """
     if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
         return x, values
@@ -57,16 +47,9 @@ def in_view(x: Array, width: float) -> slice:
 
 
 def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A curve and the area under it.
+    """A curve (N, 2) of values 0 to 1 at positions (N,), and the pieces (N - 1, 4, 2) of the area under it.
 
-    Args:
-        x: (N,) positions.
-        values: (N,) heights, 0 to 1; NaN leaves a gap.
-        floor: Height of 0.
-        height: Distance from 0 to 1.
-
-    Returns:
-        The line (N, 2) and the area's pieces (N - 1, 4, 2).
+    NaN leaves a gap; `floor` is the height of 0, `height` the distance from 0 to 1.
     """
     line = np.stack([x, floor + height * values], axis=-1)
     foot = np.stack([x, np.full_like(x, floor)], axis=-1)
@@ -75,16 +58,9 @@ def graph(x: Array, values: Array, floor: float, height: float) -> tuple[Array, 
 
 
 def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Array, Array]:
-    """A bar for each frame: the higher and bluer, the higher its confidence.
+    """A bar (N, 4, 2) and its opaque color (N, 4) a frame: the higher and bluer, the higher its confidence.
 
-    Args:
-        x: (N,) positions.
-        confidence: (N,) 0 to 1; NaN leaves a gap.
-        floor: Foot of the bars.
-        height: Height of a bar of confidence 1.
-
-    Returns:
-        Bars (N, 4, 2) and their opaque colors (N, 4).
+    NaN leaves a gap; `height` is that of a bar of confidence 1.
     """
     middles = 0.5 * (x[1:] + x[:-1])
     reach = 0.5 * (x[1] - x[0]) if len(x) > 1 else 2.0
@@ -92,28 +68,15 @@ def strip(x: Array, confidence: Array, floor: float, height: float) -> tuple[Arr
     right = np.concatenate([middles, [x[-1] + reach]])
     top = floor + height * confidence
     bottom = np.where(np.isfinite(top), floor, np.nan)
-    bars = np.stack(
-        [
-            np.stack(corner, axis=-1)
-            for corner in ((left, bottom), (right, bottom), (right, top), (left, top))
-        ],
-        axis=1,
-    )
+    corners = ((left, bottom), (right, bottom), (right, top), (left, top))
+    bars = np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
     return bars, np.column_stack([confidence_color(confidence), np.ones(len(x))])
 
 
 def confidence_color(confidence: Array) -> Array:
     """Colors (N, 3) of confidences (N,)."""
     share = np.nan_to_num(np.clip((confidence - DOUBTED) / (1.0 - DOUBTED), 0.0, 1.0))
-    stops = np.stack([UNSURE, HALFWAY, SURE])
-    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in stops.T], axis=-1)
-
-
-def squares(centers: Array, size: float) -> Array:
-    """(N, 4, 2) upright squares about centers (N, 2), as large as a diamond of this size."""
-    half = 0.8 * size
-    corners = np.array([(-half, -half), (half, -half), (half, half), (-half, half)])
-    return np.asarray(centers[:, None] + corners)
+    return np.stack([np.interp(share, (0.0, 0.5, 1.0), column) for column in CONFIDENCE_COLORS.T], axis=-1)
 
 
 def pointers(x: Array, tip: float, size: float) -> Array:
@@ -123,9 +86,6 @@ def pointers(x: Array, tip: float, size: float) -> Array:
     return np.stack([np.stack(corner, axis=-1) for corner in corners], axis=1)
 
 
-# --- Overlay of Timeline and Dope Sheet
-
-
 MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 
 
@@ -133,27 +93,20 @@ MODES = ("TIMELINE", "DOPESHEET", "ACTION")
 class Sizes:
     """Unscaled sizes [px]."""
 
-    graph: float
-    """Largest height of the graph."""
-    ruler: float
-    """Height kept free at the top."""
-    headroom: float
-    """Height between graph and ruler, for triangles and text."""
+    graph: float  # largest height of the graph
+    least: float  # smallest height of the graph
+    ruler: float  # height kept free at the top
+    headroom: float  # height between graph and ruler, for triangles and text
     strip: float
-    foot: float
-    """Height below the strip, for Blender's scroll bar."""
-    gap: float
-    """Height between strip and graph."""
+    foot: float  # height below the strip, for Blender's scroll bar
+    gap: float  # height between strip and graph
     diamond: float
     pointer: float
 
 
-ROOMY = Sizes(graph=80.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
-SLIM = Sizes(graph=40.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
+ROOMY = Sizes(80.0, 16.0, ruler=24.0, headroom=18.0, strip=11.0, foot=13.0, gap=3.0, diamond=5.0, pointer=8.0)
+SLIM = Sizes(40.0, 6.0, ruler=0.0, headroom=6.0, strip=5.0, foot=1.0, gap=1.0, diamond=4.0, pointer=5.0)
 """Sizes for a Timeline as low as its ruler, as Blender 5 opens it."""
-LEAST_ROOMY = 16.0
-"""Height of a graph [px] for which the ruler is kept free."""
-LEAST = 6.0
 SPEED: Color = (0.35, 0.68, 0.92, 1.0)
 PROPOSED: Color = (1.0, 0.82, 0.25, 1.0)
 MATCHED: Color = (0.55, 0.88, 0.60, 1.0)
@@ -165,15 +118,11 @@ GROUND: Color = (0.0, 0.0, 0.0, 0.28)
 class Timeline:
     """Horizontal positions of frames in a region, and heights of graph and strip."""
 
-    origin: float
-    """Horizontal position of frame 0 [px]."""
-    scale: float
-    """Pixels for each frame."""
+    origin: float  # horizontal position of frame 0 [px]
+    scale: float  # pixels for each frame
     width: float
-    height: float
-    """Height of the graph [px]."""
-    pixel: float
-    """Screen pixels for each unscaled pixel."""
+    height: float  # height of the graph [px]
+    pixel: float  # screen pixels for each unscaled pixel
     sizes: Sizes
 
     @property
@@ -206,10 +155,10 @@ def timeline_of(region: bpy.types.Region, pixel: float) -> Timeline | None:
     # Positions are whole pixels: far apart, they still give an exact scale.
     far = 100_000.0
     start, end = (region.view2d.view_to_region(frame, 0.0, clip=False)[0] for frame in (-far, far))
-    for sizes, least in ((ROOMY, LEAST_ROOMY), (SLIM, LEAST)):
+    for sizes in (ROOMY, SLIM):
         taken = sizes.foot + sizes.strip + sizes.gap + sizes.headroom + sizes.ruler
         height = min(sizes.graph, region.height / pixel - taken)
-        if height >= least and end > start:
+        if height >= sizes.least and end > start:
             middle, scale = 0.5 * (start + end), (end - start) / (2.0 * far)
             return Timeline(middle, scale, region.width, height * pixel, pixel, sizes)
     return None
@@ -251,13 +200,15 @@ def picture(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, timeline: Tim
     if proposed:
         frames = np.array(proposed, dtype=np.float64)
         still = frames[~have_frames(matched, frames)]
-        items += proposals(still, _level(still, speed), have_frames(posed, still), timeline)
+        if len(still):
+            done = have_frames(posed, still)
+            items += marks(diamonds, still, _level(still, speed), done, PROPOSED, timeline)
     if matched:
         frames = np.array(matched, dtype=np.float64)
         found = take.matching.matches
         doubtful = {round(found[place].frame, 3) for place in doubtful_matches(take)}
         sure = np.array([frame not in doubtful for frame in matched])
-        items += matches(frames, _level(frames, speed), sure, timeline)
+        items += marks(squares, frames, _level(frames, speed), sure, MATCHED, timeline)
     return items
 
 
@@ -319,28 +270,19 @@ def weak_pointers(frames: Array, timeline: Timeline) -> list[Item]:
     ]
 
 
-def proposals(frames: Array, level: Array, done: BoolArray, timeline: Timeline) -> list[Item]:
-    """Diamonds on the graph: hollow where the actor is still to be posed, filled where it is."""
-    if not len(frames):
-        return []
-    heights = timeline.floor + timeline.height * level
-    x = timeline.frame_x(frames)
-    marks = diamonds(np.stack([x, heights], axis=-1), timeline.fitting(x, timeline.sizes.diamond))
-    return [
-        Stroke(segments(marks, closed=True), PROPOSED, 1.6, 0.8),
-        Fill(marks[done], PROPOSED),
-    ]
-
-
-def matches(frames: Array, level: Array, sure: BoolArray, timeline: Timeline) -> list[Item]:
-    """Squares on the graph at found keyframes: hollow for doubtful ones, filled for sure ones."""
+def marks(
+    shape: Callable[[Array, float], Array],
+    frames: Array,
+    level: Array,
+    filled: BoolArray,
+    color: Color,
+    timeline: Timeline,
+) -> list[Item]:
+    """Diamonds or squares at frames (K,) of the graph, at heights (K,) from 0 to 1; some filled."""
     x = timeline.frame_x(frames)
     centers = np.stack([x, timeline.floor + timeline.height * level], axis=-1)
-    marks = squares(centers, timeline.fitting(x, timeline.sizes.diamond))
-    return [
-        Stroke(segments(marks, closed=True), MATCHED, 1.6, 0.8),
-        Fill(marks[sure], MATCHED),
-    ]
+    figures = shape(centers, timeline.fitting(x, timeline.sizes.diamond))
+    return [Stroke(segments(figures, closed=True), color, 1.6, 0.8), Fill(figures[filled], color)]
 
 
 _speeds: LruCache[FootageSpeed] = LruCache()

@@ -1,13 +1,15 @@
-"""Reports of operators: notes of core and errors, as sentences with a capital letter."""
+"""Base of Keymark's operators, and their reports: sentences with a capital letter."""
 
+import os
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import ClassVar
 
 import bpy
 
-from ...core.errors import KeymarkError
+from ...core.errors import InputError, KeymarkError
 from .requirements import Requirement, all_met
 from .takes import redraw_sidebars_soon
 
@@ -28,9 +30,6 @@ def warn(operator: bpy.types.Operator, sentence: str) -> str:
 def capitalized(sentence: str) -> str:
     """A sentence with a capital letter, unless it begins with the name of a file or a quote."""
     return sentence[:1].upper() + sentence[1:] if sentence.partition(" ")[0].isalpha() else sentence
-
-
-# --- Expected failures as error reports in Blender's status bar
 
 
 @contextmanager
@@ -55,9 +54,6 @@ def reported(operator: bpy.types.Operator) -> Iterator[None]:
         operator.report({"ERROR"}, "An object or a take of this job was removed while it ran; run it again")
 
 
-# --- Base of Keymark's operators
-
-
 class BaseOperator:
     """Mixin of an operator: a subclass lists its requirements and gives `run`."""
 
@@ -78,11 +74,42 @@ class BaseOperator:
 
     @abstractmethod
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Do the work.
+        """Do the work; return {"CANCELLED"} when nothing was changed, so that Blender adds no undo step."""
 
-        Returns:
-            None when done; {"CANCELLED"} when nothing was changed, so that Blender adds no undo step.
 
-        Raises:
-            KeymarkError: The work failed; its sentence is reported.
-        """
+# --- Asking for a file: the browser opens where it was left
+
+
+_folders: dict[str, str] = {}  # folder that each operator's browser was left in, for this session
+
+
+def browse(operator: bpy.types.Operator, context: bpy.types.Context, folder: str = "") -> set[str]:
+    """Show the file browser where this operator's was left last, first in `folder`; returns as `invoke`."""
+    begin = _folders.get(operator.bl_idname, folder)
+    if begin:
+        operator.filepath = os.path.join(begin, "")
+    context.window_manager.fileselect_add(operator)
+    return {"RUNNING_MODAL"}
+
+
+def chosen_path(operator: bpy.types.Operator) -> Path:
+    """The path that an operator got from its browser or a script; the folder is kept for the next time."""
+    path = Path(bpy.path.abspath(operator.filepath))
+    if operator.filepath:
+        _folders[operator.bl_idname] = str(path if path.is_dir() else path.parent)
+    return path
+
+
+def chosen_file(operator: bpy.types.Operator, wanted: str) -> Path:
+    """The file that an operator got, as `chosen_path`; a script may name a folder of images.
+
+    Raises:
+        InputError: Nothing was chosen: a browser then gives its folder and a separator. `wanted` says what
+            would be valid.
+    """
+    path = chosen_path(operator)
+    if not operator.filepath:
+        raise InputError(f"no file is chosen; choose {wanted}")
+    if operator.filepath.endswith(("/", os.sep)):
+        raise InputError(f"no file is chosen in {path}; choose {wanted}")
+    return path

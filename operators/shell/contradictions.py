@@ -9,13 +9,9 @@ from collections.abc import Sequence
 import bpy
 
 from ...core.footage.keypoints.keypoints import BODY_POINTS
-from .job_progress import steady_frame
-from .panel import draw_sentence
 
-SAME_FRAME = 0.5
-"""A note nearer to a frame than this [frames] is of that frame."""
-SEPARATOR = "\n"
-"""Between names, which are of one line each."""
+SAME_FRAME = 0.5  # a note nearer to a frame than this [frames] is of that frame
+SEPARATOR = "\n"  # between names, which are of one line each
 
 
 class KEYMARK_PG_contradiction(bpy.types.PropertyGroup):
@@ -53,16 +49,6 @@ def _is_followed(take: bpy.types.PropertyGroup, name: str) -> bool:
     if any(marker.name == name for marker in take.markers):
         return bool(take.follow.use_markers)
     return name in BODY_POINTS and bool(take.follow.use_keypoints or take.follow.use_tracks)
-
-
-def draw_contradictions(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
-) -> None:
-    """Draw what contradicts in the current frame, if anything does."""
-    names = contradictions_at(take, steady_frame(context))
-    if names:
-        said = f"No plausible pose explains {', '.join(names)} here"
-        draw_sentence(layout, context, said, "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_contradiction,))

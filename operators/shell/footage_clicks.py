@@ -1,4 +1,4 @@
-"""Operators that wait for a click on the footage: events they pass on, and whether footage is shown."""
+"""Operators that wait for clicks on the footage, and what lies under the mouse."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -14,18 +14,10 @@ from .footage_view import FootageRequest, ask, follow_mouse, pixel_under, shows_
 from .job_operator import cancel_click
 from .takes import active_take
 
-NAVIGATION = {
-    *(
-        "MIDDLEMOUSE",
-        "WHEELUPMOUSE",
-        "WHEELDOWNMOUSE",
-        "TRACKPADPAN",
-        "TRACKPADZOOM",
-        "MOUSEPAN",
-        "MOUSEZOOM",
-    ),
-    *("HOME", "LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW", "NUMPAD_PLUS", "NUMPAD_MINUS"),
-}
+NAVIGATION = frozenset(
+    "MIDDLEMOUSE WHEELUPMOUSE WHEELDOWNMOUSE TRACKPADPAN TRACKPADZOOM MOUSEPAN MOUSEZOOM HOME LEFT_ARROW "
+    "RIGHT_ARROW UP_ARROW DOWN_ARROW NUMPAD_PLUS NUMPAD_MINUS".split()
+)
 """Events that move the view or change the frame; the operator passes them on to Blender."""
 
 
@@ -70,13 +62,7 @@ class WorldInRegion:
 
 
 def view_under(context: bpy.types.Context, mouse_x: int, mouse_y: int) -> WorldInRegion | None:
-    """The 3D view that lies under the mouse; None over another editor, a sidebar or a header.
-
-    Args:
-        context: Its window is searched.
-        mouse_x: Mouse position in the window, from its left edge [px].
-        mouse_y: The same from its bottom edge [px].
-    """
+    """The 3D view under the mouse [window px]; None over another editor, a sidebar or a header."""
     for area in context.screen.areas:
         if area.type != "VIEW_3D":
             continue
@@ -109,8 +95,7 @@ class ClickSequence:
 
     report: Callable[[set[str], str], None]  # Blender's, of the Operator this is mixed into
     cursor = "CROSSHAIR"
-    ends_beside = True
-    """Whether a click beside the footage ends it; a brush is easily put down there."""
+    ends_beside = True  # whether a click beside the footage ends it; a brush is easily put down there
 
     @abstractmethod
     def cancel(self, context: bpy.types.Context) -> None:
@@ -173,7 +158,6 @@ class ClickSequence:
 def _kind_under(context: bpy.types.Context, event: bpy.types.Event) -> str:
     """The kind of editor under the mouse; empty between them."""
     for area in context.screen.areas:
-        inside = 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height
-        if inside:
+        if 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height:
             return str(area.type)
     return ""

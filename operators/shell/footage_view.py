@@ -24,12 +24,9 @@ class FootageView:
     """A region that shows a take's footage."""
 
     region: bpy.types.Region
-    size: tuple[int, int]
-    """Width and height of the footage [px]."""
-    top_left: Array
-    """(2,) position of the picture's top left corner in the region, y up [px]."""
-    extent: Array
-    """(2,) vector from there to the bottom right corner [px]."""
+    size: tuple[int, int]  # width and height of the footage [px]
+    top_left: Array  # (2,) position of the picture's top left corner in the region, y up [px]
+    extent: Array  # (2,) vector from there to the bottom right corner [px]
     lens: Camera | None
     """The lens whose distortion is removed in the region; None if the picture is shown as it is."""
 
@@ -70,14 +67,7 @@ def footage_view(
 def view_of_footage_under(
     context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
 ) -> FootageView | None:
-    """Return the region under the mouse that shows the footage; the mouse may lie beside the picture.
-
-    Args:
-        context: Its window is searched.
-        take: The take.
-        mouse_x: Mouse position in the window, from its left edge [px].
-        mouse_y: The same from its bottom edge [px].
-    """
+    """The region under the mouse [window px] that shows the footage; the mouse may lie beside the picture."""
     for area in context.screen.areas:
         for region in area.regions:
             x, y = mouse_x - region.x, mouse_y - region.y
@@ -91,10 +81,7 @@ def view_of_footage_under(
 def pixel_under(
     context: bpy.types.Context, take: bpy.types.PropertyGroup, mouse_x: int, mouse_y: int
 ) -> tuple[float, float] | None:
-    """Return the footage pixel under the mouse; None if no editor shows the footage there.
-
-    The arguments are those of `view_of_footage_under`.
-    """
+    """The footage pixel under the mouse [window px]; None if no editor shows the footage there."""
     view = view_of_footage_under(context, take, mouse_x, mouse_y)
     if view is None:
         return None
@@ -157,9 +144,6 @@ def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))
 
 
-# --- Which frame of a take's clip a scene frame shows, as panels and overlays need it
-
-
 def clip_index(take: bpy.types.PropertyGroup, scene_frame: int | None = None) -> int:
     """Index of the clip's frame that is shown in a scene frame, the current one by default; -1 for none.
 
@@ -185,14 +169,10 @@ SIDES = {".L": "the performer's own left", ".R": "the performer's own right"}
 class FootageRequest:
     """What is asked for now."""
 
-    title: str
-    """As in `Click on: Forearm Left`."""
-    detail: str = ""
-    """What is easily mistaken about it."""
-    brush_px: float = 0.0
-    """Radius of a brush in pixels of the footage; 0 for an operator without one."""
-    mouse: tuple[int, int] = (-1, -1)
-    """Position of the mouse in the window [px]."""
+    title: str  # as in `Click on: Forearm Left`
+    detail: str = ""  # what is easily mistaken about it
+    brush_px: float = 0.0  # radius of a brush in pixels of the footage; 0 for an operator without one
+    mouse: tuple[int, int] = (-1, -1)  # position of the mouse in the window [px]
 
 
 _request: FootageRequest | None = None
@@ -205,18 +185,11 @@ def shown_request() -> FootageRequest | None:
 
 def side_of(name: str) -> str:
     """Whose left or right a body part or point is; empty for those in the middle."""
-    side = SIDES.get(name[-2:])
-    return side if side else ""
+    return SIDES.get(name[-2:], "")
 
 
 def ask(context: bpy.types.Context, request: FootageRequest, keys: str) -> None:
-    """Ask for something.
-
-    Args:
-        context: Its windows show it.
-        request: What is asked for.
-        keys: The keys that may be pressed, for the status bar.
-    """
+    """Ask for something; `keys`, those that may be pressed, are for the status bar."""
     global _request
     if _request is not None and request.mouse == (-1, -1):
         request.mouse = _request.mouse

@@ -1,4 +1,4 @@
-"""Esc in Keymark's modal operators: a running job, and an operator that waits for a click.
+"""Operators of long jobs, and Esc in them and in operators that wait for a click.
 
 Both are ended by their own `cancel`, which Blender also calls when it closes a window or opens another file.
 A job's generator is closed in the middle; only `JobOperator.finish` writes to the scene, so the scene is as
@@ -8,7 +8,7 @@ before the job, and Blender adds no undo step.
 from abc import abstractmethod
 from collections.abc import Generator
 from time import monotonic
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
@@ -22,44 +22,26 @@ if TYPE_CHECKING:
     from ...core.progress import Progress
 
 
-CANCELS_JOB = frozenset({"ESC"})
-CANCELS_CLICK = frozenset({"ESC", "RIGHTMOUSE"})
-"""As in Blender's own operators that wait for a click."""
-
-
-class Modal(Protocol):
-    """A modal operator."""
-
-    def report(self, kind: set[str], text: str) -> None:
-        """Show a sentence in the status bar."""
-
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Stop, and leave everything as it was."""
-
-
-def cancel_job(operator: Modal, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-    """Cancel a job if the event is Esc, and report it; return whether it was cancelled."""
-    if event.type not in CANCELS_JOB or event.value != "PRESS":
+def cancel_job(operator: Any, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Cancel a modal operator's job if the event is Esc, and report it; return whether it was cancelled."""
+    if event.type != "ESC" or event.value != "PRESS":
         return False
     operator.cancel(context)
     operator.report({"INFO"}, "Cancelled")
     return True
 
 
-def cancel_click(operator: Modal, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+def cancel_click(operator: Any, context: bpy.types.Context, event: bpy.types.Event) -> bool:
     """Cancel an operator that waits for a click on Esc or a right click; return whether it was cancelled."""
-    if event.type not in CANCELS_CLICK or event.value != "PRESS":
+    if event.type not in ("ESC", "RIGHTMOUSE") or event.value != "PRESS":
         return False
     operator.cancel(context)
     return True
 
 
-# --- Operators of long jobs
-
-
+TIMER_S = 0.01
 SHORTEST_SLICE_S, LONGEST_SLICE_S = 0.05, 0.5
 """Bounds of a time slice; in between, a job runs as long as the user interface took to draw."""
-TIMER_S = 0.01
 
 
 class JobOperator(BaseOperator):
@@ -77,7 +59,7 @@ class JobOperator(BaseOperator):
 
     @abstractmethod
     def start(self, scene: bpy.types.Scene) -> Generator[Any, None, Any]:
-        """Return the job; it must leave the scene as it was."""
+        """The job; it must leave the scene as it was."""
 
     @abstractmethod
     def finish(self, scene: bpy.types.Scene, result: Any) -> None:

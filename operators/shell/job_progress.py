@@ -2,8 +2,6 @@
 
 import bpy
 
-from .file_browser import is_browsing
-
 OPERATOR_PREFIX = "KEYMARK_OT_"
 TOOLS = ("KEYMARK_OT_drag_joints",)
 """Modal operators that wait for the mouse in a view, and let everything else go on meanwhile."""
@@ -29,9 +27,7 @@ class KEYMARK_PG_progress(bpy.types.PropertyGroup):
 def job_is_running(context: bpy.types.Context, job: str = "") -> bool:
     """Whether one of Keymark's jobs runs in any window; an open file browser is none.
 
-    Args:
-        context: Its windows are searched.
-        job: Only operators whose name begins so, as `keymark.reconstruct`; any but `TOOLS` by default.
+    `job` is how its operator's name begins, as `keymark.reconstruct`; any but `TOOLS` by default.
     """
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
@@ -54,12 +50,7 @@ def steady_frame(context: bpy.types.Context) -> float:
 
 
 def time_left(elapsed_s: float, fraction: float) -> str:
-    """Estimated time a job still takes, as a label; empty while it is too early to tell.
-
-    Args:
-        elapsed_s: Time it has taken so far.
-        fraction: Share of it that is done, 0 to 1.
-    """
+    """Estimated time a job still takes, as a label; empty while it is too early to tell."""
     if elapsed_s < EARLIEST_S or fraction < LEAST_FRACTION:
         return ""
     seconds = elapsed_s * (1.0 - fraction) / fraction
@@ -80,3 +71,10 @@ def unregister() -> None:
     """Remove it."""
     del bpy.types.WindowManager.keymark_progress
     bpy.utils.unregister_class(KEYMARK_PG_progress)
+
+
+def is_browsing(operator: bpy.types.Operator, manager: bpy.types.WindowManager) -> bool:
+    """Whether a modal operator waits for its file browser alone, in whichever window that is."""
+    areas = (area for window in manager.windows for area in window.screen.areas)
+    asking = (area.spaces.active.active_operator for area in areas if area.type == "FILE_BROWSER")
+    return any(each is not None and each.as_pointer() == operator.as_pointer() for each in asking)

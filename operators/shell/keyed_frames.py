@@ -1,4 +1,4 @@
-"""A take's keyframe Action: it must animate the actor while the animator poses."""
+"""A take's keyframes: the Action that animates the actor while it is posed, and what is posed or found."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -55,17 +55,13 @@ def straighten_unposed(take: bpy.types.PropertyGroup) -> None:
 
 
 def new_keyframe_action(armature_object: bpy.types.Object) -> bpy.types.Action:
-    """Return an empty Action for keyframes, with a fake user: kept while the motion's is in use."""
+    """An empty Action for keyframes, with a fake user: kept while the motion's is in use."""
     action = bpy.data.actions.new(f"{armature_object.name} Keyframes")
     action.use_fake_user = True
     return action
 
 
-# --- Scene frames of keyframes, posed and found, cached so that redraws need not read the keys
-
-
-SAME_FRAME = 0.5
-"""A key nearer to a frame than this [frames] counts as that frame's."""
+SAME_FRAME = 0.5  # a key nearer to a frame than this [frames] counts as that frame's
 
 
 @dataclass(frozen=True)
@@ -73,8 +69,7 @@ class KeyedFrames:
     """Scene frames keyed in an Action, in ascending order."""
 
     all: tuple[float, ...] = ()
-    untouched: tuple[float, ...] = ()
-    """Those whose keys are unchanged since they were found."""
+    untouched: tuple[float, ...] = ()  # those whose keys are unchanged since they were found
 
 
 _keyed: dict[tuple[int, int], KeyedFrames] = {}
@@ -82,18 +77,18 @@ _keyed: dict[tuple[int, int], KeyedFrames] = {}
 
 
 def keyframes_of(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames of a take's keyframes, posed and found, in ascending order."""
+    """The scene frames of a take's keyframes, posed and found, in ascending order."""
     return _keyed_of(take).all
 
 
 def matched_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that were found in the footage and not changed since, in ascending order."""
+    """The scene frames that were found in the footage and not changed since, in ascending order."""
     known = {round(match.frame, 3) for match in take.matching.matches}
     return tuple(frame for frame in _keyed_of(take).untouched if frame in known)
 
 
 def posed_frames(take: bpy.types.PropertyGroup) -> tuple[float, ...]:
-    """Return the scene frames that the animator posed, in ascending order."""
+    """The scene frames that the animator posed, in ascending order."""
     matched = set(matched_frames(take))
     return tuple(frame for frame in keyframes_of(take) if frame not in matched)
 
@@ -135,12 +130,12 @@ def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
 
 
 def proposed_frames(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """Return the take's proposed scene frames, in ascending order."""
+    """The take's proposed scene frames, in ascending order."""
     return sorted({proposal.frame for proposal in take.proposals}) if take else []
 
 
 def unposed_proposals(take: bpy.types.PropertyGroup | None) -> list[int]:
-    """Return the proposed frames without a keyframe, in ascending order."""
+    """The proposed frames without a keyframe, in ascending order."""
     if take is None:
         return []
     keyed = {round(frame) for frame in keyframes_of(take)}
@@ -163,32 +158,31 @@ def _on_load(*_arguments: object) -> None:
     invalidate_keyed_frames()
 
 
-CHANGE_HANDLERS = ("depsgraph_update_post",)
-LOAD_HANDLERS = ("load_post", "undo_post", "redo_post")
+HANDLERS = {
+    "depsgraph_update_post": _on_change,
+    "load_post": _on_load,
+    "undo_post": _on_load,
+    "redo_post": _on_load,
+}
 
 
 def register() -> None:
     """Add handlers that empty the cache when keys may have changed."""
-    for name in CHANGE_HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_change)
-    for name in LOAD_HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_load)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister() -> None:
     """Remove the handlers."""
-    for name in CHANGE_HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_change)
-    for name in LOAD_HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_load)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
     invalidate_keyed_frames()
 
 
 # --- Found keyframes of a take, those that nobody posed
 
 
-DOUBTFUL = 0.5
-"""Confidence below which a found keyframe is doubtful: it is more likely wrong than right."""
+DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: it is more likely wrong than right
 
 
 def state_of(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> str:
@@ -209,13 +203,12 @@ def is_doubtful(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -
 def doubtful_matches(take: bpy.types.PropertyGroup) -> list[int]:
     """Places in the list of the doubtful found keyframes: contradicted ones first, then the least sure."""
     matches: Sequence[bpy.types.PropertyGroup] = take.matching.matches
-    doubtful = [index for index, match in enumerate(matches) if is_doubtful(take, match)]
 
     def rank(index: int) -> tuple[bool, float, int]:
         match = matches[index]
         return not contradictions_at(take, match.frame), match.confidence, index
 
-    return sorted(doubtful, key=rank)
+    return sorted((index for index, match in enumerate(matches) if is_doubtful(take, match)), key=rank)
 
 
 def match_at(take: bpy.types.PropertyGroup, frame: float) -> int:

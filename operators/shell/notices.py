@@ -9,7 +9,6 @@ from collections.abc import Iterable
 import bpy
 
 from .keyed_frames import has_frame, keyframes_of
-from .panel import draw_sentence
 
 
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
@@ -39,14 +38,9 @@ def give_notices(
     sentences: Iterable[str] = (),
     frame: float | None = None,
 ) -> None:
-    """Replace the notices about something of a step; none: there is nothing to know any more.
+    """Replace the notices about something of a step of `STEPS`; none: there is nothing to know any more.
 
-    Args:
-        take: The take.
-        step: The step in whose panel they stand, a name of `steps.STEPS`.
-        about: What they are about, by any name: `clip`, `lengths`.
-        sentences: The notices, as they are shown.
-        frame: Scene frame of a keyframe; the notices hold while there is one.
+    `about` is any name, such as `clip`; notices of a keyframe's scene frame hold while there is one.
     """
     notices = take.notices
     for index in reversed(range(len(notices))):
@@ -67,14 +61,6 @@ def notices_of(take: bpy.types.PropertyGroup, step: str) -> list[str]:
         for entry in take.notices
         if entry.step == step and (not entry.of_keyframe or has_frame(posed, entry.frame))
     ]
-
-
-def draw_notices(
-    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup, step: str
-) -> None:
-    """Draw the notices of a step."""
-    for sentence in notices_of(take, step):
-        draw_sentence(layout, context, sentence, "ERROR")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_PG_notice,))

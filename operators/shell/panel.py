@@ -8,17 +8,14 @@ from textwrap import wrap
 
 import bpy
 
-from .job_progress import job_is_running
+from .contradictions import contradictions_at
+from .job_progress import job_is_running, steady_frame
 from .steps import is_open
 from .takes import active_take, find_take
 
-ESCAPE_UNITS = 2.9
-"""Width of the label Esc with its icon."""
 ROOMY_PX = 270.0
 """Width of a sidebar, at a UI scale of 1, in which names and values, or two buttons, fit side by side."""
-LINE_HEIGHT = 0.8
-"""Height of a line of a sentence, in rows."""
-FEWEST_LETTERS = 16
+LINE_HEIGHT = 0.8  # height of a line of a sentence, in rows
 LETTER_PX, MARGIN_PX = 6.2, 80.0
 """Width of a label's letter, and of what stands beside its text, at a UI scale of 1."""
 
@@ -38,7 +35,7 @@ class SubPanel(SidebarPanel):
     layout: bpy.types.UILayout
 
     def column(self) -> bpy.types.UILayout:
-        """Return the panel's column of properties."""
+        """The panel's column of properties."""
         return property_column(self.layout)
 
 
@@ -80,15 +77,10 @@ class RowList:
 
 
 def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: str = "") -> bool:
-    """Draw the progress of the running job on one line; return whether a job runs.
+    """Draw the progress of the running job, of any or of one operator, on one line; return whether one runs.
 
     It replaces one line, so that nothing moves when a job begins or ends: where panels change their height,
     Blender draws them over each other for a moment. An eyedropper that waits for a click has no progress.
-
-    Args:
-        layout: Where it is drawn.
-        context: Its windows are searched for the job.
-        job: Only the job of this operator, as in `keymark.reconstruct`; any by default.
     """
     progress = context.window_manager.keymark_progress
     if not progress.stage or not job_is_running(context, job):
@@ -97,20 +89,20 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, job: s
     percent = f"{100.0 * progress.fraction:.0f}%  {progress.stage}"  # a narrow sidebar cuts the end off
     row.progress(factor=progress.fraction, text=(job and progress.time_left) or percent)
     escape = row.row()
-    escape.ui_units_x = ESCAPE_UNITS
+    escape.ui_units_x = 2.9
     escape.label(text="Esc", icon="CANCEL")
     return True
 
 
 def property_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
-    """Return a column of properties in Blender's two columns; in a narrow sidebar names are in the fields."""
+    """A column of properties in Blender's two columns; in a narrow sidebar names are in the fields."""
     layout.use_property_split = is_roomy(bpy.context)
     layout.use_property_decorate = False
     return layout.column()
 
 
 def side_by_side(layout: bpy.types.UILayout) -> bpy.types.UILayout:
-    """Return where buttons stand side by side; in a narrow sidebar, which cuts names, in a column."""
+    """Where buttons stand side by side; in a narrow sidebar, which cuts names, in a column."""
     return layout.row(align=True) if is_roomy(bpy.context) else layout.column(align=True)
 
 
@@ -131,15 +123,7 @@ def draw_sentence(
     icon: str = "DOT",
     most_lines: int | None = None,
 ) -> None:
-    """Draw a translated sentence, wrapped to the width of the sidebar.
-
-    Args:
-        layout: Where it is drawn.
-        context: Its region is the sidebar.
-        sentence: The sentence.
-        icon: Icon before the first line.
-        most_lines: Number of lines after which the sentence is cut off with dots.
-    """
+    """Draw a translated sentence, wrapped to the width of the sidebar; further lines end in dots."""
     column = layout.column(align=True)
     column.scale_y = LINE_HEIGHT
     lines = _lines(context, sentence, most_lines)
@@ -153,16 +137,22 @@ def sentence_height(context: bpy.types.Context, sentence: str) -> float:
 
 
 def _lines(context: bpy.types.Context, sentence: str, most_lines: int | None = None) -> list[str]:
-    letters = max(FEWEST_LETTERS, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
+    letters = max(16, int((unscaled_width(context) - MARGIN_PX) / LETTER_PX))
     kept = sentence.replace(" %", "\N{NO-BREAK SPACE}%")
     return wrap(kept, letters, max_lines=most_lines, placeholder=" ...")
 
 
+def draw_contradictions(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
+    """Draw what contradicts in the current frame, if anything does."""
+    names = contradictions_at(take, steady_frame(context))
+    if names:
+        said = f"No plausible pose explains {', '.join(names)} here"
+        draw_sentence(layout, context, said, "ERROR")
+
+
 # --- Bases of the panels inside What to Follow
-
-
-MOST_LETTERS = 7
-"""Of what fits beside a name in the header of a narrow sidebar: `13 of 17`, and no more."""
 
 
 class FollowPanel(TakePanel):
@@ -187,7 +177,7 @@ def draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, switch: 
 
 def draw_readout(layout: bpy.types.UILayout, text: str) -> None:
     """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
-    if not is_roomy(bpy.context) and len(text) > MOST_LETTERS:
+    if not is_roomy(bpy.context) and len(text) > 7:
         return
     row = layout.row()
     row.active = False

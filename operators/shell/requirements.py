@@ -9,22 +9,28 @@ from .job_progress import job_is_running
 from .keyed_frames import invalidate_keyed_frames, keyframes_of
 from .takes import find_take, has_lost_actor, present_actor
 
-MOST_NAMED = 3
-"""Missing bones that a sentence names."""
-
 Requirement = Callable[[bpy.types.Context], str | None]
 
 
-def footage(context: bpy.types.Context) -> str | None:
-    """The take has a clip."""
-    take = find_take(context.scene)
-    return None if take and take.clip else "Load the footage or open a take first"
+def _of_take(has: Callable[[bpy.types.PropertyGroup], object], otherwise: str) -> Requirement:
+    """Something that there must be a take with."""
+
+    def requirement(context: bpy.types.Context) -> str | None:
+        take = find_take(context.scene)
+        return None if take is not None and has(take) else otherwise
+
+    return requirement
 
 
-def camera(context: bpy.types.Context) -> str | None:
-    """The take has a camera."""
-    take = find_take(context.scene)
-    return None if take and take.camera else "Choose the camera that the footage was taken with first"
+footage = _of_take(lambda take: take.clip, "Load the footage or open a take first")
+camera = _of_take(lambda take: take.camera, "Choose the camera that the footage was taken with first")
+markers = _of_take(lambda take: len(take.markers), "Add the markers that the performer wears first")
+picked_color = _of_take(
+    lambda take: any(marker.is_picked for marker in take.markers), "Pick the color of a marker first"
+)
+keyframes = _of_take(lambda take: take.keyframe_action, "Pose the actor and store a keyframe first")
+matches = _of_take(lambda take: len(take.matching.matches), "Find keyframes first (Pose All)")
+motion = _of_take(lambda take: take.motion_action, "Reconstruct the motion first")
 
 
 def actor(context: bpy.types.Context) -> str | None:
@@ -38,25 +44,12 @@ def actor(context: bpy.types.Context) -> str | None:
     if not is_actor(armature_object):
         return (
             f"'{armature_object.name}' is no actor of Keymark's, as it lacks "
-            f"{', '.join(missing_bones(armature_object)[:MOST_NAMED])}; build an actor, and choose "
+            f"{', '.join(missing_bones(armature_object)[:3])}; build an actor, and choose "
             f"'{armature_object.name}' in the step Character"
         )
     if armature_object.library is not None:
         return "The actor is linked; make a library override of it first (Object > Library Override)"
     return None
-
-
-def markers(context: bpy.types.Context) -> str | None:
-    """The take has markers."""
-    take = find_take(context.scene)
-    return None if take and len(take.markers) else "Add the markers that the performer wears first"
-
-
-def picked_color(context: bpy.types.Context) -> str | None:
-    """At least one marker has a color."""
-    take = find_take(context.scene)
-    picked = take is not None and any(marker.is_picked for marker in take.markers)
-    return None if picked else "Pick the color of a marker first"
 
 
 def all_colors(context: bpy.types.Context) -> str | None:
@@ -65,12 +58,6 @@ def all_colors(context: bpy.types.Context) -> str | None:
     if take is None or not take.follow.use_markers or all(marker.is_picked for marker in take.markers):
         return None
     return "Pick the colors of all markers first, or remove those that have none"
-
-
-def keyframes(context: bpy.types.Context) -> str | None:
-    """The take has a keyframe Action."""
-    take = find_take(context.scene)
-    return None if take and take.keyframe_action else "Pose the actor and store a keyframe first"
 
 
 def two_keyframes(context: bpy.types.Context) -> str | None:
@@ -83,18 +70,6 @@ def two_keyframes(context: bpy.types.Context) -> str | None:
     if len(keyframes_of(take)) == 1:
         return "Store a keyframe at another frame first; there is only one"
     return None
-
-
-def matches(context: bpy.types.Context) -> str | None:
-    """The take has found keyframes."""
-    take = find_take(context.scene)
-    return None if take and len(take.matching.matches) else "Find keyframes first (Pose All)"
-
-
-def motion(context: bpy.types.Context) -> str | None:
-    """The take has a reconstructed motion."""
-    take = find_take(context.scene)
-    return None if take and take.motion_action else "Reconstruct the motion first"
 
 
 def weak_frames(context: bpy.types.Context) -> str | None:

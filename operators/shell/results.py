@@ -1,4 +1,4 @@
-"""Cache of the results last used, which also remembers that a result is absent."""
+"""A take's results, cached in memory and on disk, and what a new motion makes outdated."""
 
 from collections import OrderedDict
 from collections.abc import Callable
@@ -21,20 +21,16 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-DEFAULT_SIZE = 6
-"""Results of one kind: those of the takes at hand."""
-
 
 class LruCache(Generic[Result]):
     """Results by key; when it is full, the least recently used one is dropped. None: known to be absent."""
 
-    def __init__(self, size: int = DEFAULT_SIZE) -> None:
-        """Begin empty."""
+    def __init__(self, size: int = 6) -> None:
         self._size = size
         self._results: OrderedDict[str, Result | None] = OrderedDict()
 
     def get(self, key: str, load: Callable[[], Result | None]) -> Result | None:
-        """Return the result of a key; the first time, what `load` returns."""
+        """The result of a key; the first time, what `load` returns."""
         if key not in self._results:
             self.put(key, load())
         self._results.move_to_end(key)
@@ -59,46 +55,44 @@ class LruCache(Generic[Result]):
 class FootageSpeed:
     """V_sum of a take's footage over scene frames."""
 
-    key: str
-    """Digest of it."""
-    frames: "Array"
-    """(F,) scene frames."""
-    values: "Array"
-    """(F,) [px per frame]."""
+    key: str  # digest of it
+    frames: "Array"  # (F,) scene frames
+    values: "Array"  # (F,) [px per frame]
 
 
-FOLDER = "results"
 EXTENSION = (__package__ or "").partition(".operators")[0]
 """Name under which Blender knows Keymark, and gives it a folder of its own."""
 
 _readings: "LruCache[Reading]" = LruCache()
 _reviews: "LruCache[Review]" = LruCache()
-_speeds: "LruCache[FootageSpeed]" = LruCache()
-"""By the take's identifier and the key of its reading."""
+_speeds: "LruCache[FootageSpeed]" = LruCache()  # by the take's identifier and the key of its reading
 _reconstructions: "LruCache[Reconstruction]" = LruCache(2)
 """The last one of each take, by the take's identifier."""
 
 
 def reading_of(take: bpy.types.PropertyGroup) -> "Reading | None":
-    """Return the last reading of a take's clip; None if there is none, or it was lost.
+    """The last reading of a take's clip; None if there is none, or it was lost.
 
     It is for display: only `read_footage` checks whether it still holds.
     """
-    return _load(_readings, take.reading_key, _reading_conversions()[1])
+    from ...core.footage.reading import reading_from_arrays  # late: registering must not need OpenCV
+
+    return _load(_readings, take.reading_key, reading_from_arrays)
 
 
 def keep_reading(take: bpy.types.PropertyGroup, reading: "Reading") -> None:
     """Keep the reading of a take's clip, in memory and on disk."""
-    to_arrays, _ = _reading_conversions()
+    from ...core.footage.reading import reading_arrays
+
     known = take.reading_key == reading.key and reading_of(take) is not None
     _readings.put(reading.key, reading)
     take.reading_key = reading.key
     if not known:
-        _save(reading.key, to_arrays(reading))
+        _save(reading.key, reading_arrays(reading))
 
 
 def review_of(take: bpy.types.PropertyGroup) -> "Review | None":
-    """Return the review of a take's motion; None if there is none, or it was lost."""
+    """The review of a take's motion; None if there is none, or it was lost."""
     if not take.review_key:
         return None
     from ...core.review.review import Review
@@ -123,7 +117,7 @@ def clear_review(take: bpy.types.PropertyGroup) -> None:
 
 
 def last_reconstruction(take: bpy.types.PropertyGroup) -> "Reconstruction | None":
-    """Return the take's last reconstruction in this session, from which the next one starts."""
+    """The take's last reconstruction in this session, from which the next one starts."""
     return _reconstructions.get(take.identifier, lambda: None)
 
 
@@ -133,7 +127,7 @@ def keep_reconstruction(take: bpy.types.PropertyGroup, reconstruction: "Reconstr
 
 
 def speed_of(take: bpy.types.PropertyGroup) -> "FootageSpeed | None":
-    """Return the speed by which keyframes were last proposed in this session, of the take's reading."""
+    """The speed by which keyframes were last proposed in this session, of the take's reading."""
     return _speeds.get(f"{take.identifier} {take.reading_key}", lambda: None)
 
 
@@ -149,15 +143,8 @@ def clear_cache() -> None:
         cache.clear()
 
 
-def _reading_conversions() -> "tuple[Callable[[Reading], Arrays], Callable[[Arrays], Reading]]":
-    """Conversion of readings to arrays and back; imported late, as registering must not need OpenCV."""
-    from ...core.footage.reading import reading_arrays, reading_from_arrays
-
-    return reading_arrays, reading_from_arrays
-
-
 def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Result]) -> Result | None:
-    """Return a result from memory or disk; None if it is in neither."""
+    """A result from memory or disk; None if it is in neither."""
     if not key:
         return None
 
@@ -178,9 +165,9 @@ def _save(key: str, arrays: Arrays) -> None:
 
 def _store() -> ArrayCache:
     try:
-        folder = Path(bpy.utils.extension_path_user(EXTENSION, path=FOLDER))
+        folder = Path(bpy.utils.extension_path_user(EXTENSION, path="results"))
     except ValueError:  # not installed as an extension
-        folder = Path(bpy.app.tempdir) / FOLDER
+        folder = Path(bpy.app.tempdir) / "results"
     return ArrayCache(folder)
 
 

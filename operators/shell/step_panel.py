@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import bpy
 
-from .notices import draw_notices, notices_of
-from .panel import TakePanel, is_roomy, property_column
+from .notices import notices_of
+from .panel import TakePanel, draw_sentence, is_roomy, property_column
 from .steps import is_behind
 from .takes import active_take
 
@@ -19,8 +19,7 @@ class StepPanel(TakePanel):
 
     bl_options = {"HIDE_HEADER"}
     bl_label: str
-    step: ClassVar[str]
-    """A name of `steps.STEPS`."""
+    step: ClassVar[str]  # a name of `steps.STEPS`
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
@@ -30,7 +29,9 @@ class StepPanel(TakePanel):
         self._draw_state(header, context, take)
         if body is None:
             return
-        draw_notices(body.column(), context, take, self.step)
+        column = body.column()
+        for sentence in notices_of(take, self.step):
+            draw_sentence(column, context, sentence, "ERROR")
         self._body = body
         self.draw_step(context)
 
@@ -46,7 +47,7 @@ class StepPanel(TakePanel):
         state.label(text=self.summary(take) if is_roomy(context) else "", icon=icon, translate=False)
 
     def column(self) -> bpy.types.UILayout:
-        """Return the step's column of properties."""
+        """The step's column of properties."""
         return property_column(self._body)
 
     @property

@@ -16,12 +16,11 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fields import CameraPlacement
 
 
-VERSION = 1
-"""Version of Keymark's properties; each scene holds the version that wrote it."""
+VERSION = 1  # version of Keymark's properties; each scene holds the version that wrote it
 
 
 def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """Return the active take.
+    """The active take.
 
     Raises:
         InputError: The scene has no take.
@@ -33,7 +32,7 @@ def active_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
 
 
 def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
-    """Return the active take; None if the scene has no take."""
+    """The active take; None if the scene has no take."""
     settings = scene.keymark
     if not len(settings.takes):
         return None
@@ -41,7 +40,7 @@ def find_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup | None:
 
 
 def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.PropertyGroup:
-    """Return the take with an identifier, active or not.
+    """The take with an identifier, active or not.
 
     Raises:
         InputError: There is none: it was removed.
@@ -53,7 +52,7 @@ def take_by_identifier(scene: bpy.types.Scene, identifier: str) -> bpy.types.Pro
 
 
 def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
-    """Return a take's armature.
+    """A take's armature.
 
     Raises:
         InputError: The take has none, or it was deleted.
@@ -64,7 +63,7 @@ def actor_of(take: bpy.types.PropertyGroup) -> bpy.types.Object:
 
 
 def present_actor(take: bpy.types.PropertyGroup) -> bpy.types.Object | None:
-    """Return a take's armature if it is in the scene.
+    """A take's armature if it is in the scene.
 
     Deleted with X it is in no scene any more, yet in the file, as long as the take points to it.
     """
@@ -74,7 +73,7 @@ def present_actor(take: bpy.types.PropertyGroup) -> bpy.types.Object | None:
 
 
 def kept_actions(take: bpy.types.PropertyGroup) -> tuple[bpy.types.Action, ...]:
-    """Return the Actions of a take's actor: keyframes, motion and final; they outlive the actor."""
+    """The Actions of a take's actor: keyframes, motion and final; they outlive the actor."""
     actions = (take.keyframe_action, take.motion_action, take.finish.action)
     return tuple(action for action in actions if action is not None)
 
@@ -96,7 +95,7 @@ def add_take(scene: bpy.types.Scene, name: str) -> bpy.types.PropertyGroup:
 
 
 def unique_name(name: str, others: Iterable[str]) -> str:
-    """Return a name that none of the others has, made unique by a number like Blender's own (`Walk.001`)."""
+    """A name that none of the others has, made unique by a number like Blender's own (`Walk.001`)."""
     taken = set(others)
     stem, _, number = name.rpartition(".")
     base = stem if stem and len(number) == 3 and number.isdigit() else name
@@ -105,12 +104,12 @@ def unique_name(name: str, others: Iterable[str]) -> str:
 
 
 def ensure_take(scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-    """Return the active take; if there is none, add the first one."""
+    """The active take; if there is none, add the first one."""
     return find_take(scene) or add_take(scene, "Take")
 
 
 def footage_of(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> Footage:
-    """Return a take's clip and camera in its scene."""
+    """A take's clip and camera in its scene."""
     return Footage(scene, take.clip, take.camera)
 
 
@@ -153,8 +152,6 @@ def _select(scene: bpy.types.Scene, armature_object: bpy.types.Object | None) ->
 
 
 FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
-SETTLING_S = 0.1
-"""Delay after which everything has been drawn once."""
 
 
 def areas(context: bpy.types.Context, *kinds: str) -> Iterator[bpy.types.Area]:
@@ -188,7 +185,7 @@ def redraw_sidebars_soon() -> None:
     Blender moves sub-panels only when it draws once more after the panel above them has grown or shrunk.
     """
     if not bpy.app.background and not timers.is_registered(_redraw_once):
-        timers.register(_redraw_once, first_interval=SETTLING_S)
+        timers.register(_redraw_once, first_interval=0.1)
 
 
 def refresh_asset_browsers(context: bpy.types.Context) -> None:
@@ -208,10 +205,7 @@ def _redraw_once() -> None:
 # --- Whether a take's camera still stands where it was put by guess
 
 
-NO_GUESS = (0.0, 0.0, 0.0)
-"""Height, tilt and roll of a take whose camera was not put anywhere by guess."""
-SAME = 1e-4
-"""Difference from the guess [m, rad] that still counts as rounding."""
+NO_GUESS = (0.0, 0.0, 0.0)  # height, tilt and roll of a take whose camera was not put anywhere by guess
 
 
 def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
@@ -219,7 +213,7 @@ def placement_is_guess(take: bpy.types.PropertyGroup) -> bool:
     if take.camera is None or tuple(take.guessed_placement) == NO_GUESS or may_move(take.camera):
         return False
     now = as_numbers(read_placement(take.camera))
-    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < SAME
+    return max(abs(one - other) for one, other in zip(now, take.guessed_placement, strict=True)) < 1e-4
 
 
 def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:

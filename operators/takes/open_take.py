@@ -7,8 +7,7 @@ import bpy
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ..footage.take_footage import IMAGES, VIDEOS
-from ..shell.base_operator import BaseOperator, reported
-from ..shell.file_browser import browse, chosen_path
+from ..shell.base_operator import BaseOperator, browse, chosen_path, reported
 from ..shell.requirements import footage, idle, object_mode_possible
 
 

@@ -21,12 +21,10 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def test_markers_can_be_bound_to_what_core_knows(body) -> None:  # noqa: ANN001
-    """The menu of segments is core's list."""
     assert set(SEGMENTS) == set(marker_segments(body))
 
 
 def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Footage, actor of the right sizes, markers with their colors, keyframes on the actor."""
     settings = active_take(opened)
     assert opened.active_clip.frame_duration == 13
     lengths = read_body(settings.armature, HUMAN).actor.segments_m
@@ -37,7 +35,6 @@ def test_opening_a_take_fills_the_scene(opened: bpy.types.Scene, tiny_take: Take
 
 
 def test_a_take_that_cannot_be_read_changes_nothing(tiny_take: Take) -> None:
-    """The sentence is core's, and the scene stays empty."""
     (tiny_take.folder / "take.json").write_text("{")
     with pytest.raises(RuntimeError, match=r"take\.json"):
         bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
@@ -45,7 +42,6 @@ def test_a_take_that_cannot_be_read_changes_nothing(tiny_take: Take) -> None:
 
 
 def test_a_take_goes_out_and_comes_back(opened: bpy.types.Scene, tiny_take: Take, tmp_path: Path) -> None:
-    """Saved from the scene, it says what was opened."""
     folder = tmp_path / "saved"
     bpy.ops.keymark.save_take(directory=str(folder))
     saved = read_take(folder)
@@ -61,7 +57,6 @@ def test_a_take_goes_out_and_comes_back(opened: bpy.types.Scene, tiny_take: Take
 def test_from_an_empty_scene_to_a_motion(
     tiny_take: Take, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """Load, build, mark, pose, reconstruct: the result lies near the truth, keyframes stay."""
     scene = bpy.context.scene
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     settings = active_take(scene)
@@ -89,7 +84,6 @@ def test_from_an_empty_scene_to_a_motion(
 
 
 def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scene) -> None:
-    """No second Action, no doubled keys."""
     settings = active_take(opened)
     settings.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -100,7 +94,6 @@ def test_reconstructing_again_writes_into_the_same_action(opened: bpy.types.Scen
 
 
 def test_reading_for_a_reconstruction_leaves_the_frame(opened: bpy.types.Scene) -> None:
-    """The animator stays where they are."""
     active_take(opened).method = "interpolation"
     opened.frame_set(9)
     bpy.ops.keymark.reconstruct()
@@ -108,7 +101,6 @@ def test_reading_for_a_reconstruction_leaves_the_frame(opened: bpy.types.Scene) 
 
 
 def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
-    """A second run replaces the first's; the first and last frames are among them."""
     take = active_take(opened)
     take.keyframe_count = 4
     for _ in range(2):
@@ -125,7 +117,6 @@ def test_proposals_can_be_jumped_to(opened: bpy.types.Scene) -> None:
 
 
 def test_a_color_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Where the trunk is, the active marker gets nearly the color that was drawn."""
     settings = active_take(opened)
     settings.active_marker = 0
     settings.markers[0].color = (0.0, 0.0, 0.0)
@@ -137,13 +128,11 @@ def test_a_color_is_picked_from_the_footages_file(opened: bpy.types.Scene, tiny_
 
 
 def test_a_pixel_outside_the_footage_is_refused(opened: bpy.types.Scene) -> None:
-    """The sentence names the pixel and the size."""
     with pytest.raises(RuntimeError, match=r"\(500, 3\) lies outside the footage, which is 160 x 120"):
         bpy.ops.keymark.pick_marker_color(pixel=(500.0, 3.0))
 
 
 def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
-    """A sixth marker takes a part that has none; removing it makes the one before active."""
     settings = active_take(opened)
     bpy.ops.keymark.add_marker()
     assert settings.markers[5].segment not in {marker.segment for marker in settings.markers[:5]}
@@ -152,7 +141,6 @@ def test_markers_are_added_and_removed(opened: bpy.types.Scene) -> None:
 
 
 def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None:
-    """Each marker needs its own body part."""
     active_take(opened).markers[1].segment = "trunk"
     with pytest.raises(RuntimeError, match="Two markers have the segment 'trunk'"):
         bpy.ops.keymark.reconstruct()
@@ -172,13 +160,11 @@ def test_two_markers_on_one_segment_are_refused(opened: bpy.types.Scene) -> None
     ],
 )
 def test_an_operator_that_cannot_run_says_what_is_missing(operator: str, sentence: str) -> None:
-    """The tooltip of a grayed-out button."""
     with pytest.raises(RuntimeError, match=sentence):
         getattr(bpy.ops.keymark, operator)()
 
 
 def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
-    """As Blender's own Add operators do; the keyframes of an actor that is gone animate it."""
     bpy.data.objects.remove(active_take(opened).armature)
     bpy.ops.keymark.build_actor(stature=1.6)
     layer = bpy.context.view_layer
@@ -188,7 +174,6 @@ def test_building_an_actor_selects_it_alone(opened: bpy.types.Scene) -> None:
 
 
 def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.Scene) -> None:
-    """The animator's pose is kept as it is."""
     forearm = active_take(opened).armature.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.5, 0.0, 0.6)
     opened.frame_set(4)
@@ -200,14 +185,12 @@ def test_storing_a_pose_beyond_the_skeleton_warns_but_stores(opened: bpy.types.S
 
 
 def test_a_clip_that_vanished_is_named(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """The footage was moved after it was loaded."""
     tiny_take.clip.rename(tiny_take.clip.with_name("moved.mp4"))
     with pytest.raises(RuntimeError, match=r"clip\.mp4: the footage is not there"):
         bpy.ops.keymark.reconstruct()
 
 
 def test_too_few_keyframes_are_refused(tiny_take: Take) -> None:
-    """One pose is no motion."""
     one = replace(tiny_take, keyframes=())
     (tiny_take.folder / "keyframes.json").unlink()
     assert one.keyframes == ()

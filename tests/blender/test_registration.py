@@ -28,7 +28,6 @@ def traces() -> list[str]:
 
 
 def test_everything_is_there_and_gone_again_twice() -> None:
-    """Register, unregister, register, unregister: nothing stays behind."""
     assert traces() == []
     for _ in range(2):
         keymark.register()
@@ -42,7 +41,6 @@ def test_everything_is_there_and_gone_again_twice() -> None:
 
 
 def test_annotations_of_registered_classes_can_be_evaluated(registered: None) -> None:
-    """Newer Blenders evaluate them when they register a class, and complain of a name they do not know."""
     names = [name for name in dir(bpy.types) if name.startswith("KEYMARK_")]
     assert len(names) > 80
     for name in names:
@@ -51,7 +49,6 @@ def test_annotations_of_registered_classes_can_be_evaluated(registered: None) ->
 
 @pytest.mark.parametrize("index", [1, 7, len(list(operators.modules()))])
 def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.MonkeyPatch, index: int) -> None:
-    """The error comes through, and Blender is as before."""
     broken = ModuleType("keymark.operators.broken")
 
     def register() -> None:
@@ -68,7 +65,6 @@ def test_a_module_that_fails_takes_back_those_before_it(monkeypatch: pytest.Monk
 
 
 def test_registering_imports_no_library_that_may_be_missing(repository: Path) -> None:
-    """A fresh interpreter registers without SciPy and OpenCV, and says what is missing."""
     script = f"""
 import sys
 sys.path.insert(0, {str(repository / "tests")!r})
@@ -99,7 +95,6 @@ keymark.unregister()
 
 @pytest.mark.usefixtures("registered")
 def test_every_operator_has_a_tooltip_and_the_usual_options() -> None:
-    """What the user interface shows for each operator."""
     for name in dir(bpy.ops.keymark):
         kind = getattr(bpy.ops.keymark, name).get_rna_type()
         assert len(kind.description) > 10
@@ -107,7 +102,6 @@ def test_every_operator_has_a_tooltip_and_the_usual_options() -> None:
 
 
 def test_the_command_comes_and_goes() -> None:
-    """Blender keeps the command as long as the extension is there."""
     from keymark.operators.cli import blender_command
 
     keymark.register()

@@ -49,7 +49,6 @@ def properties(where: str, kind: bpy.types.Struct) -> Iterator[tuple[str, str, s
 
 @pytest.mark.usefixtures("registered")
 def test_labels_are_in_title_case() -> None:
-    """Panels, menus, operators, properties and the entries of menus."""
     found = list(definitions())
     assert len(found) > 60
     wrong = [(where, name) for where, name, _ in found if not name or not is_title(name)]
@@ -62,7 +61,6 @@ def test_labels_are_in_title_case() -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_descriptions_are_there_and_end_without_a_full_stop() -> None:
-    """Blender adds the stop itself."""
     tooltips = [(where, text) for where, _, text in definitions()]
     assert [(where, text) for where, text in tooltips if not text or text.endswith(".")] == []
 
@@ -78,12 +76,10 @@ def test_descriptions_are_there_and_end_without_a_full_stop() -> None:
     ],
 )
 def test_title_case_is_told(text: str, right: bool) -> None:
-    """The check above can fail."""
     assert is_title(text) is right
 
 
 def test_sentences_begin_with_a_capital_and_names_as_they_are() -> None:
-    """Reports are sentences; a marker's or a file's name is not changed."""
     assert capitalized("the clip is interlaced") == "The clip is interlaced"
     assert capitalized("no bone is chosen; click on one") == "No bone is chosen; click on one"
     assert capitalized("take.json: fps is 0") == "take.json: fps is 0"

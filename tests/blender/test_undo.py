@@ -27,7 +27,6 @@ def steps(take: Take, motion: Motion, folder: Path) -> list[Step]:
             marker.color = [value / 255.0 for value in style.color_srgb]
 
     def align() -> None:
-        """Set the camera to the footage's."""
         camera = bpy.context.scene.camera
         camera.matrix_world = np.array(take.camera.matrix_world).T.tolist()
         camera.data.lens, camera.data.sensor_width = take.camera.lens_mm, take.camera.sensor_width_mm
@@ -77,7 +76,6 @@ def _no_catalog() -> None:
 
 
 def test_every_step_is_undone_and_redone(tiny_take: Take, wave_motion: Motion, tmp_path: Path) -> None:
-    """After each step, undo gives the state before it and redo the state after it, to the last key."""
     bpy.ops.ed.undo_push(message="Empty")
     for name, do in steps(tiny_take, wave_motion, tmp_path):
         before = scene_state()
@@ -93,7 +91,6 @@ def test_every_step_is_undone_and_redone(tiny_take: Take, wave_motion: Motion, t
 
 
 def test_the_whole_work_is_in_the_file(tiny_take: Take, wave_motion: Motion, tmp_path: Path) -> None:
-    """Saved and opened again, every property, key and bone is as it was."""
     for _, do in steps(tiny_take, wave_motion, tmp_path):
         do()
     bpy.context.view_layer.update()

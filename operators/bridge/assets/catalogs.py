@@ -1,4 +1,4 @@
-"""Blender's file of asset catalogs, `blender_assets.cats.txt`: catalogs found in it, or added.
+"""Blender's file of asset catalogs, `blender_assets.cats.txt`, and .blend files of assets beside it.
 
 Each line is `UUID:path/of/catalog:simple name`; empty lines and lines that begin with `#` are ignored.
 """
@@ -57,19 +57,7 @@ def catalog_identifier(catalog: str) -> str:
 
 
 def ensure_catalog(file: Path, catalog: str) -> str:
-    """The UUID of a catalog; it is added to the file if missing, all other lines are kept.
-
-    Args:
-        file: The file of catalogs; created if missing.
-        catalog: The catalog's path, with slashes, such as `Keymark/Walking`.
-
-    Returns:
-        Its UUID.
-
-    Raises:
-        InputError: The catalog's path or the file is unusable.
-        ConversionError: The file cannot be written.
-    """
+    """The UUID of a catalog path such as `Keymark/Walking`; it is added to the file if missing."""
     content = read_catalogs(file)
     known = _catalogs(content)
     names = _clean(catalog).split("/")
@@ -134,13 +122,8 @@ def write_asset_blend(
 ) -> None:
     """Write assets, with what they need and nothing else, into a .blend, and their catalogs into a file.
 
-    Both files appear whole, or neither.
-
-    Args:
-        path: The .blend; one that is there is replaced.
-        root: Folder of the asset library that `path` lies in, whose catalogs are kept there.
-        data: Where the assets are made.
-        assets: Data-blocks that are marked as assets, and the catalog of each; made while they are asked for.
+    Both files appear whole, or neither. `root` is the folder of the asset library that `path` lies in, where
+    its catalogs are kept; `assets`, each with its catalog, may be made while they are asked for.
 
     Raises:
         InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open

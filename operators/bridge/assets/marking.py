@@ -13,19 +13,14 @@ from ....core.progress import run, within
 from ....core.report.stick_figure import thumbnail
 from ....core.take.motion import Motion
 from ..actor_lengths import read_body
-from ..final_motion import motion_frames, read_values, shown_postures
-from ..finish_motion import read_rig
-
-DRAWN_FRAMES = 25
-"""Frames of the motion that the picture is drawn from."""
+from ..rig import motion_frames, read_rig, read_values, shown_postures
 
 
 @dataclass(frozen=True)
 class AssetDetails:
     """Details of an asset, as the asset browser shows them."""
 
-    catalog: str
-    """UUID of its catalog; empty for none."""
+    catalog: str  # UUID of its catalog; empty for none
     tags: Sequence[str]
     author: str
     license: str
@@ -33,12 +28,9 @@ class AssetDetails:
 
 
 def mark_asset(asset: bpy.types.ID, details: AssetDetails, picture: Image | None) -> None:
-    """Mark a data-block as an asset, or change an asset's details.
+    """Mark a data-block as an asset, or change an asset's details; its tags are replaced.
 
-    Args:
-        asset: The data-block, an Action for example.
-        details: The asset's details; tags replace the present ones.
-        picture: (S, S, 3) blue, green, red: its preview; None keeps the present one.
+    `picture` (S, S, 3), blue, green, red, is its preview; None keeps the present one.
     """
     asset.asset_mark()
     data = asset.asset_data
@@ -65,15 +57,11 @@ def _set_preview(asset: bpy.types.ID, picture: Image) -> None:
 def action_picture(
     scene: bpy.types.Scene, armature_object: bpy.types.Object, action: bpy.types.Action
 ) -> Image:
-    """A small picture of the motion an Action holds for an actor, (256, 256, 3) blue, green, red.
-
-    Raises:
-        InputError: The Action has no motion of the actor, or the armature is not an actor's.
-    """
+    """A small picture of the motion an Action holds for an actor, (256, 256, 3) blue, green, red."""
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
     every = motion_frames(armature_object, action, body)
-    frames = every[np.unique(np.linspace(0, len(every) - 1, DRAWN_FRAMES).astype(np.intp))]
+    frames = every[np.unique(np.linspace(0, len(every) - 1, 25).astype(np.intp))]
     values = run(within("Reading the motion", read_values(armature_object, action, rig, frames), 0.0, 1.0))
     posture = shown_postures(armature_object, rig, rig.pose(values), body)
     points = body.points(body.pose(posture))

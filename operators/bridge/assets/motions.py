@@ -1,4 +1,4 @@
-"""Characters' Actions out of results, as they were made."""
+"""Motions as assets: Actions and actors, and characters' Actions out of results."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -27,25 +27,19 @@ class CharacterAsset:
     """A character's Action with its details for the asset browser."""
 
     name: str
-    catalog: str
-    """Path of its catalog below that of all characters, with slashes."""
+    catalog: str  # path of its catalog below that of all characters, with slashes
     description: str
     tags: tuple[str, ...]
-    motion: Motion
-    """What it was made of, for the picture."""
+    motion: Motion  # what it was made of, for the picture
     action: bpy.types.Action
 
 
 def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Action:
-    """Append a character's Action; the character itself stays where it is.
-
-    Args:
-        blend: A character.blend.
-        name: The Action's name in it.
-        curves: Digest of its curves.
+    """Append a character's Action out of a character.blend; the character itself stays where it is.
 
     Raises:
-        InputError: The file cannot be read, lacks the Action, or holds another one than was made.
+        InputError: The file cannot be read, lacks the Action, or its curves have another digest than
+            `curves`.
     """
     check_blend(blend, "a character")
     try:
@@ -63,9 +57,6 @@ def load_character_action(blend: Path, name: str, curves: str) -> bpy.types.Acti
     return action
 
 
-# --- Motions as assets
-
-
 MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 """Parents of the catalogs of all shoots."""
 
@@ -75,8 +66,7 @@ class MotionAsset:
     """A motion with its details for the asset browser."""
 
     name: str
-    catalog: str
-    """Path of its catalog below `MOTIONS` and `ACTORS`, with slashes."""
+    catalog: str  # path of its catalog below `MOTIONS` and `ACTORS`, with slashes
     description: str
     tags: tuple[str, ...]
     motion: Motion
@@ -98,18 +88,10 @@ def write_motion_curves(action: bpy.types.Action, motion: Motion) -> None:
 
 
 def write_motion_library(path: Path, assets: Iterable[MotionAsset | CharacterAsset]) -> None:
-    """Write motions as assets into a .blend, and their catalogs into the file beside it.
+    """Write motions as assets into a .blend, and their catalogs into the file beside it, one at a time.
 
     Each is written twice: as an Action, for any actor; and as an actor that it animates, because only objects
     can be dragged from an asset browser into a scene. A character's is an Action for that character.
-
-    Args:
-        path: The .blend; one that is there is replaced, while catalogs that are there are kept.
-        assets: The motions, consumed one at a time.
-
-    Raises:
-        InputError: As `write_asset_blend`.
-        ConversionError: As `write_asset_blend`.
     """
     with own_scene("Motions") as scene:
         write_asset_blend(path, path.parent, bpy.data, _motion_assets(scene, assets))

@@ -17,10 +17,9 @@ from ....core.take.motion import Motion
 from ..actions import existing_channelbag
 from ..actor_lengths import read_body
 from ..blend_files import check_blend, one_line
-from ..final_motion import motion_frames, read_values, shown_postures
-from ..finish_motion import read_rig
 from ..footage import set_scene_range
 from ..result_files import set_look
+from ..rig import motion_frames, read_rig, read_values, shown_postures
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import scene_frames
 

@@ -1,4 +1,4 @@
-"""Keyframe libraries as .blend files of pose assets with catalogs: written, and read from untrusted files."""
+"""Keyframe libraries in files: .json, or .blend files of pose assets, written and read with suspicion."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,18 +19,8 @@ LARGEST_BYTES = 256 * 2**20
 def write_library_blend(path: Path, library: Library, root: Path | None = None) -> None:
     """Write a library's pose assets and nothing else into a .blend, and its catalogs into their file.
 
-    The open file is not touched. Both files appear whole, or neither.
-
-    Args:
-        path: The .blend.
-        library: The library.
-        root: Folder of the asset library that `path` lies in, whose catalogs are kept there; by default that
-            of the .blend itself.
-
-    Raises:
-        InputError: The file of catalogs is of another kind, nothing can be written there, or it is the open
-            file.
-        ConversionError: A file cannot be written.
+    The open file is not touched. Both files appear whole, or neither. The catalogs are kept in `root`, the
+    folder of the asset library that `path` lies in; by default beside it.
     """
     catalogs = [catalog_of(library, posture) for posture in library.postures]
     with bpy.data.temp_data() as data:
@@ -101,12 +91,7 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
 
 
 def write_library_file(path: Path, library: Library, root: Path) -> None:
-    """Write a library in the format of the file's suffix.
-
-    Args:
-        path: The file.
-        library: The library.
-        root: Folder of the asset library that a .blend lies in.
+    """Write a library in the format of the file's suffix; `root` as in `write_library_blend`.
 
     Raises:
         InputError: The file is of another kind, or the library is incomplete.

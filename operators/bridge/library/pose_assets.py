@@ -27,12 +27,9 @@ from ..posture_curves import read_posture_curves, write_posture_curves
 
 HEADER, POSTURE = "keymark_library", "keymark_posture"
 """Custom properties of an Action: header of the library, and the posture."""
-CATALOGS = "Keymark"
-"""Parent of the catalogs of all libraries."""
-CUT_FROM = 55
-"""Length in bytes from which Blender 4.5 may have cut a name to make room for a number."""
-LONGEST_TEXT = 2_000_000
-"""Characters of a custom property; longer ones are not read."""
+CATALOGS = "Keymark"  # parent of the catalogs of all libraries
+CUT_FROM = 55  # length in bytes from which Blender 4.5 may have cut a name to make room for a number
+LONGEST_TEXT = 2_000_000  # characters of a custom property; longer ones are not read
 
 
 def catalog_of(library: Library, posture: LibraryPosture) -> str:
@@ -111,19 +108,12 @@ def library_from_assets(actions: Iterable[bpy.types.Action]) -> tuple[Library, .
 
     Where headers of one library differ, that of its newest version counts. Motions keep the steps whose
     postures are there.
-
-    Raises:
-        InputError: An Action's properties are not what Keymark writes.
     """
     return tuple(_merged(members) for members in assets_by_library(actions).values())
 
 
 def assets_by_library(actions: Iterable[bpy.types.Action]) -> dict[str, list[bpy.types.Action]]:
-    """The pose assets of each library, in its order, by its identifier; other Actions are ignored.
-
-    Raises:
-        InputError: An Action's properties are not what Keymark writes.
-    """
+    """The pose assets of each library, in its order, by its identifier; other Actions are ignored."""
     found: dict[str, list[bpy.types.Action]] = {}
     for action in actions:
         if is_posture(action):
@@ -154,11 +144,9 @@ def _stored_name(action: bpy.types.Action) -> str:
 
 
 def _present_motions(motions: Any, now: Mapping[str, str]) -> Any:
-    """Motions in JSON, reduced to the postures that are there, under their present names.
+    """Motions in JSON, reduced to the postures that are there; `now` has their present names by former ones.
 
-    Args:
-        motions: The JSON value; what is not a motion stays, for the reader to refuse.
-        now: Present names by former ones, of the postures that are there.
+    What is not a motion stays, for the reader to refuse.
     """
     if not isinstance(motions, list):
         return motions

@@ -1,4 +1,4 @@
-"""Keyframe libraries of what was posed: of keyframes, and of pose assets."""
+"""Keyframe libraries of keyframes, of pose assets, and learned from a motion."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -19,13 +19,10 @@ from ....core.prior.texts import identifier_from, unique_name
 from ....core.prior.transfer import transferred
 from ....core.progress import run
 from ..actor_lengths import read_body
-from ..final_motion import motion_frames, read_values, shown_postures
-from ..finish_motion import read_rig
 from ..keyframes import keyed_frames, read_keyframes
 from ..posture_curves import read_posture_curves
+from ..rig import motion_frames, read_rig, read_values, shown_postures
 from .pose_assets import is_posture, library_from_assets
-
-DECIMALS_S = 4
 
 
 def library_of_keyframes(
@@ -48,9 +45,7 @@ def library_of_keyframes(
     postures = _leveled(body, Posture.stack([keyframe.posture for keyframe in posed]))
     names = numbered_names(about.title, len(posed))
     time_s: Array = (frames - frames[0]) * scene.render.fps_base / scene.render.fps
-    steps = tuple(
-        MotionStep(name, round(float(at), DECIMALS_S)) for name, at in zip(names, time_s, strict=True)
-    )
+    steps = tuple(MotionStep(name, round(float(at), 4)) for name, at in zip(names, time_s, strict=True))
     entries = tuple(LibraryPosture(name, postures[row]) for row, name in enumerate(names))
     motion = LibraryMotion(about.title, steps, steps[-1].time_s)
     return _checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
@@ -62,13 +57,10 @@ def library_of_assets(
     about: LibraryMetadata,
     identifier: str,
 ) -> Library:
-    """The library that pose assets belong to, and the pose assets of an actor that belong to none.
+    """The library that pose assets belong to, with an actor's pose assets that belong to none, if given.
 
-    Args:
-        actions: Linked ones and those that hold no posture are ignored.
-        armature_object: The actor of pose assets that belong to no library; None to leave these out.
-        about: Details of the library where no pose asset belongs to one.
-        identifier: The library to take where there are several.
+    Linked Actions are ignored. Of several libraries that with the identifier is taken; a new one has the
+    details `about`.
 
     Raises:
         InputError: There are no pose assets, or those of several other libraries, or one is unusable.
@@ -129,9 +121,6 @@ def _checked(library: Library) -> Library:
     return library
 
 
-# --- A keyframe library learned from the motion in an Action, the animator's changes included
-
-
 def library_from_action(
     armature_object: bpy.types.Object,
     action: bpy.types.Action,
@@ -139,24 +128,13 @@ def library_from_action(
     about: LibraryMetadata,
     count: int | None = None,
 ) -> Library:
-    """Learn a library from the motion that an Action holds for an actor.
+    """Learn a library from the motion that an Action holds for an actor; `frame_s` is a frame's time [s].
 
-    Args:
-        armature_object: The actor.
-        action: The motion, with the animator's changes.
-        frame_s: Time from one scene frame to the next [s].
-        about: Title, author and license.
-        count: How many postures; by default 10 to 40, as many as differ.
-
-    Raises:
-        InputError: The Action has no motion of the actor, the armature is not an actor's, or the motion
-            is too short or stands still, or title, author or license is invalid.
+    It has `count` postures; by default 10 to 40, as many as differ.
     """
     body = read_body(armature_object, HUMAN)
     rig = read_rig(armature_object, body)
     frames = motion_frames(armature_object, action, body)
     values = run(read_values(armature_object, action, rig, frames))
     posture = shown_postures(armature_object, rig, rig.pose(values), body)
-    library = learn_library(body, posture, (frames - frames[0]) * frame_s, about, count)
-    Library.from_json(library.to_json(), f"library '{about.title}'")  # checks what was typed
-    return library
+    return _checked(learn_library(body, posture, (frames - frames[0]) * frame_s, about, count))

@@ -9,25 +9,16 @@ from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_bones import recolor_earlier
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.overlays.drawing import SIDES
 from mathutils import Matrix
 
 
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    """An actor in the scene."""
-    return build_armature(bpy.context.scene, body)
-
-
 def test_there_is_one_bone_a_segment_with_its_parent(actor: bpy.types.Object) -> None:
-    """Bones have the segments' names and hang together as they do."""
     parents = {bone.name: bone.parent.name if bone.parent else None for bone in actor.data.bones}
     assert parents == {segment.name: segment.parent for segment in HUMAN.segments}
 
 
 def test_the_actor_stands_on_the_floor_in_a_t_pose(actor: bpy.types.Object, body: Body) -> None:
-    """The lowest bone touches z = 0, the left arm points to +X, and the joints lie where core puts them."""
     tails = np.array([bone.tail_local for bone in actor.data.bones])
     assert tails[:, 2].min() == pytest.approx(0.0, abs=1e-6)
     hips = np.array(actor.data.bones["pelvis"].head_local)
@@ -39,7 +30,6 @@ def test_the_actor_stands_on_the_floor_in_a_t_pose(actor: bpy.types.Object, body
 
 @pytest.mark.parametrize("name", ["girdle", "upper_arm", "forearm", "hand", "thigh", "shin", "foot"])
 def test_left_and_right_bones_mirror_each_other_as_blender_wants(actor: bpy.types.Object, name: str) -> None:
-    """Mirroring a left bone's axes in the sagittal plane, and its X once more, gives the right bone's."""
     left, right = (np.array(actor.data.bones[f"{name}.{side}"].matrix_local)[:3, :3] for side in "LR")
     mirrored = np.diag([-1.0, 1.0, 1.0]) @ left @ np.diag([-1.0, 1.0, 1.0])
     assert right == pytest.approx(mirrored, abs=1e-6)
@@ -57,7 +47,6 @@ def test_left_and_right_bones_mirror_each_other_as_blender_wants(actor: bpy.type
 def test_a_positive_turn_about_local_x_bends_the_joint(
     actor: bpy.types.Object, bone: str, axis: int, outward: tuple[float, float, float]
 ) -> None:
-    """Elbows bend forwards, knees backwards, and girdles rise."""
     pose_bone = actor.pose.bones[bone]
     before = pose_bone.tail.copy()
     pose_bone.rotation_euler[axis] = 0.4
@@ -66,7 +55,6 @@ def test_a_positive_turn_about_local_x_bends_the_joint(
 
 
 def test_locks_mirror_the_degrees_of_freedom(actor: bpy.types.Object) -> None:
-    """Only the pelvis moves; hinges turn about their own axes, balls about all."""
     locks = {bone.name: tuple(bone.lock_rotation) for bone in actor.pose.bones}
     assert locks["forearm.L"] == locks["shin.R"] == (False, False, True)
     assert locks["girdle.L"] == (False, True, True)
@@ -76,14 +64,12 @@ def test_locks_mirror_the_degrees_of_freedom(actor: bpy.types.Object) -> None:
 
 
 def test_balls_turn_by_quaternions_and_hinges_by_angles(actor: bpy.types.Object) -> None:
-    """Rotation modes fit the joints."""
     modes = {bone.name: bone.rotation_mode for bone in actor.pose.bones}
     assert modes["upper_arm.L"] == modes["pelvis"] == modes["hand.R"] == "QUATERNION"
     assert modes["forearm.L"] == modes["shin.L"] == modes["girdle.R"] == "YZX"
 
 
 def test_limits_guide_inverse_kinematics_without_constraints(actor: bpy.types.Object) -> None:
-    """The elbow's range of motion is an IK limit; no constraint disturbs evaluation."""
     forearm = actor.pose.bones["forearm.R"]
     flexion = HUMAN.limits[HUMAN.dof_names.index("elbow.R.flexion")]
     assert forearm.use_ik_limit_x
@@ -92,7 +78,6 @@ def test_limits_guide_inverse_kinematics_without_constraints(actor: bpy.types.Ob
 
 
 def test_sides_have_collections_and_colors(actor: bpy.types.Object) -> None:
-    """Every bone is in the collection of its side."""
     members = {c.name: {bone.name for bone in c.bones} for c in actor.data.collections}
     assert members["Left"] == {bone.name for bone in actor.data.bones if bone.name.endswith(".L")}
     assert members["Middle"] == {"pelvis", "chest", "head"}
@@ -103,7 +88,6 @@ def test_sides_have_collections_and_colors(actor: bpy.types.Object) -> None:
 
 
 def test_actors_of_earlier_versions_get_the_colors_of_today(actor: bpy.types.Object) -> None:
-    """Red on the left and blue on the right meant the opposite of the overlays; colors of the user's stay."""
     bones = actor.data.bones
     bones["hand.L"].color.palette, bones["hand.R"].color.palette = "THEME01", "THEME04"
     bones["foot.L"].color.palette = "THEME06"
@@ -117,7 +101,6 @@ def test_actors_of_earlier_versions_get_the_colors_of_today(actor: bpy.types.Obj
 def test_the_sizes_are_read_back_with_the_objects_scale(
     actor: bpy.types.Object, body: Body, scale: float
 ) -> None:
-    """An actor that is scaled up is a larger actor."""
     actor.scale = (scale, scale, scale)
     lengths = read_body(actor, HUMAN).actor.segments_m
     expected = {name: scale * length for name, length in body.actor.segments_m.items()}
@@ -125,7 +108,6 @@ def test_the_sizes_are_read_back_with_the_objects_scale(
 
 
 def test_an_edited_length_is_read(actor: bpy.types.Object, body: Body) -> None:
-    """Lengthening both bones of a forearm and its hand's start changes that length only."""
     bpy.context.view_layer.objects.active = actor
     bpy.ops.object.mode_set(mode="EDIT")
     forearm = actor.data.edit_bones["forearm.L"]
@@ -139,28 +121,24 @@ def test_an_edited_length_is_read(actor: bpy.types.Object, body: Body) -> None:
 
 
 def test_uneven_scale_is_refused_with_what_to_do(actor: bpy.types.Object) -> None:
-    """Limbs that change their length as they turn are no actor's."""
     actor.scale = (1.0, 1.0, 1.3)
     with pytest.raises(InputError, match="scaled by 1, 1, 1.3.*apply the scale"):
         read_body(actor, HUMAN)
 
 
 def test_a_mirrored_actor_is_refused(actor: bpy.types.Object) -> None:
-    """A negative scale would exchange left and right."""
     actor.matrix_world = Matrix.Scale(-1.0, 4, (1.0, 0.0, 0.0))
     with pytest.raises(InputError, match="mirrored"):
         read_body(actor, HUMAN)
 
 
 def test_a_missing_bone_is_named(actor: bpy.types.Object) -> None:
-    """The error names the missing bone."""
     actor.data.bones["shin.L"].name = "calf"
     with pytest.raises(InputError, match=r"lacks the bones shin\.L"):
         read_body(actor, HUMAN)
 
 
 def test_bones_that_lie_elsewhere_are_refused(actor: bpy.types.Object) -> None:
-    """An arm that starts below the shoulder is not this skeleton's."""
     bpy.context.view_layer.objects.active = actor
     bpy.ops.object.mode_set(mode="EDIT")
     upper_arm = actor.data.edit_bones["upper_arm.L"]

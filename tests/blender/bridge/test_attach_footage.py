@@ -15,7 +15,6 @@ from keymark.operators.bridge.footage_to_scene import load_footage
 
 @pytest.fixture
 def clip(tiny_take: Take) -> bpy.types.MovieClip:
-    """The tiny take's clip in Blender, its lens as Blender makes it."""
     return load_footage(tiny_take.clip)
 
 
@@ -30,7 +29,6 @@ def own_camera(lens_mm: float) -> bpy.types.Object:
 
 
 def test_a_lens_that_nobody_stated_is_guessed(clip: bpy.types.MovieClip) -> None:
-    """A small picture of 4 to 3; the guess stays out of the clip, where it would pass for knowledge."""
     scene = bpy.context.scene
     attached = attach_footage(scene, clip)
     data = attached.camera.data
@@ -42,7 +40,6 @@ def test_a_lens_that_nobody_stated_is_guessed(clip: bpy.types.MovieClip) -> None
 
 
 def test_the_new_camera_sees_a_performer_at_the_origin(clip: bpy.types.MovieClip) -> None:
-    """From eye height, level, the floor at the origin and a raised hand in the picture."""
     scene = bpy.context.scene
     attached = attach_footage(scene, clip)
     bpy.context.view_layer.update()
@@ -55,7 +52,6 @@ def test_the_new_camera_sees_a_performer_at_the_origin(clip: bpy.types.MovieClip
 
 
 def test_the_lens_that_the_clip_was_told_counts(clip: bpy.types.MovieClip, camera: Camera) -> None:
-    """Focal length, sensor, principal point and distortion come from the tracking camera."""
     told = replace(
         camera, lens_mm=28.0, sensor_width_mm=23.5, shift_x=0.03, shift_y=-0.02, distortion=(-0.1, 0.02, 0.0)
     )
@@ -71,7 +67,6 @@ def test_the_lens_that_the_clip_was_told_counts(clip: bpy.types.MovieClip, camer
 
 
 def test_the_animators_lens_stays(clip: bpy.types.MovieClip) -> None:
-    """Loading footage into a scene with a camera puts it behind that camera, where it stands."""
     mine = own_camera(77.0)
     mine.location = (1.0, -5.0, 2.0)
     attached = attach_footage(bpy.context.scene, clip, mine)
@@ -80,7 +75,6 @@ def test_the_animators_lens_stays(clip: bpy.types.MovieClip) -> None:
 
 
 def test_blenders_own_lens_is_no_knowledge(clip: bpy.types.MovieClip) -> None:
-    """A camera just added has the default of 50 mm, which is replaced; its location stays."""
     mine = own_camera(50.0)
     mine.location = (1.0, -5.0, 2.0)
     attached = attach_footage(bpy.context.scene, clip, mine)
@@ -89,7 +83,6 @@ def test_blenders_own_lens_is_no_knowledge(clip: bpy.types.MovieClip) -> None:
 
 
 def test_an_animated_camera_is_used_as_it_moves(clip: bpy.types.MovieClip) -> None:
-    """Neither lens nor keys are touched, and it is read frame by frame."""
     mine = own_camera(50.0)
     for frame, x in ((1, 0.0), (13, 1.2)):
         mine.location.x = x
@@ -103,7 +96,6 @@ def test_an_animated_camera_is_used_as_it_moves(clip: bpy.types.MovieClip) -> No
 
 
 def test_the_startup_files_camera_is_recognized() -> None:
-    """It was no footage's; once moved it may be."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     camera = bpy.context.scene.camera
     assert is_startup_camera(camera)
@@ -112,7 +104,6 @@ def test_the_startup_files_camera_is_recognized() -> None:
 
 
 def test_a_clip_without_its_file_leaves_rate_and_range(clip: bpy.types.MovieClip, tiny_take: Take) -> None:
-    """Size and length are remembered by Blender, the rate is not; nothing fails."""
     scene = bpy.context.scene
     scene.render.fps, scene.render.fps_base = 48, 1.0
     scene.active_clip = clip
@@ -149,7 +140,6 @@ def solve(clip: bpy.types.MovieClip) -> None:
 
 
 def test_a_solved_clip_moves_its_camera(clip: bpy.types.MovieClip) -> None:
-    """A new camera follows the solution from where it stands; lens from the clip; read as it moves."""
     scene = bpy.context.scene
     solve(clip)
     attached = attach_footage(scene, clip)
@@ -163,7 +153,6 @@ def test_a_solved_clip_moves_its_camera(clip: bpy.types.MovieClip) -> None:
 
 
 def test_the_scenes_solved_camera_is_used_whatever_clip_is_active(clip: bpy.types.MovieClip) -> None:
-    """Blender's own set-up of a tracking scene follows the scene's clip; a take's camera follows its own."""
     scene = bpy.context.scene
     solve(clip)
     mine = own_camera(50.0)

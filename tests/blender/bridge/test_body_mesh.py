@@ -8,15 +8,8 @@ import pytest
 from keymark.core.body.body_volume import body_pieces
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.body_mesh import build_body_mesh
 from keymark.operators.bridge.pose import write_posture
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    """An actor in the scene."""
-    return build_armature(bpy.context.scene, body)
 
 
 def places(mesh_object: bpy.types.Object, group: str) -> np.ndarray:
@@ -31,7 +24,6 @@ def places(mesh_object: bpy.types.Object, group: str) -> np.ndarray:
 def test_limbs_lie_on_cores_shapes_in_any_posture(
     actor: bpy.types.Object, body: Body, random_posture: Callable[[int], Posture], seed: int
 ) -> None:
-    """Rings around both ends of every piece have their centers and half-widths."""
     mesh_object = build_body_mesh(actor, body, ())
     posture = random_posture(seed)
     write_posture(actor, posture)
@@ -49,14 +41,12 @@ def test_limbs_lie_on_cores_shapes_in_any_posture(
 
 
 def test_faces_look_outwards(actor: bpy.types.Object, body: Body) -> None:
-    """Renderers that cull back faces show the body and not its inside."""
     mesh = build_body_mesh(actor, body, ()).data
     volume = sum(np.dot(np.array(p.center), np.array(p.normal)) * p.area for p in mesh.polygons)
     assert volume > 0.0
 
 
 def test_a_scaled_actor_has_a_scaled_body(actor: bpy.types.Object, body: Body) -> None:
-    """The body goes with the object."""
     mesh_object = build_body_mesh(actor, body, ())
     actor.scale = (2.0, 2.0, 2.0)
     bpy.context.view_layer.update()

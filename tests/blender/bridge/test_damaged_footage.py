@@ -17,7 +17,6 @@ SHORT_GROUPS = (*H264, "-g", "8", "-bf", "2", "-movflags", "+faststart")
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A take whose images carry their numbers."""
     return write_numbered_take(tmp_path_factory.mktemp("drawn"))
 
 
@@ -53,17 +52,14 @@ def shown(clip: bpy.types.MovieClip, frames: Sequence[int], folder: Path) -> lis
 
 
 def plain(drawn: Path, path: Path) -> None:
-    """As it was filmed."""
     encode(drawn, path, *SHORT_GROUPS)
 
 
 def damaged(drawn: Path, path: Path) -> None:
-    """Some frames in the middle are lost."""
     overwritten(encode(drawn, path, *SHORT_GROUPS), 0.55, 2500)
 
 
 def turned(drawn: Path, path: Path) -> None:
-    """The phone was held upright."""
     whole = encode(drawn, path.with_name("whole.mp4"), *SHORT_GROUPS)
     ffmpeg("-display_rotation", "90", "-i", whole, "-c", "copy", path)
 
@@ -75,13 +71,11 @@ def mirrored(drawn: Path, path: Path) -> None:
 
 
 def trimmed(drawn: Path, path: Path) -> None:
-    """An edit list hides the beginning."""
     whole = encode(drawn, path.with_name("whole.mp4"), *H264, "-g", "48")
     ffmpeg("-ss", "0.2", "-i", whole, "-c", "copy", path)
 
 
 def late(drawn: Path, path: Path) -> None:
-    """The first stamp is not 0."""
     encode(drawn, path, *SHORT_GROUPS, "-output_ts_offset", "2")
 
 
@@ -89,7 +83,6 @@ def late(drawn: Path, path: Path) -> None:
 def test_blender_shows_the_frames_that_are_read(
     drawn: Path, tmp_path: Path, make: Callable[[Path, Path], None]
 ) -> None:
-    """At scene frame `frame_start + index`, wherever the frame was not lost."""
     bpy.ops.wm.read_homefile(use_empty=True)
     path = tmp_path / "clip.mp4"
     make(drawn, path)

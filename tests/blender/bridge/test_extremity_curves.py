@@ -18,8 +18,7 @@ from keymark.operators.bridge.extremity_curves import (
     turned_extremities,
 )
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.bridge.final_motion import write_final
-from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion
+from keymark.operators.bridge.finish_motion import FinishOptions, finish_motion, write_final
 from keymark.operators.bridge.keyframes import store_pose
 from mathutils import Euler, Matrix, Vector
 
@@ -28,7 +27,6 @@ FRAMES, FPS = 60, 30.0
 
 @pytest.fixture
 def actor(body: Body) -> bpy.types.Object:
-    """An actor that stands somewhere, scaled, with rotation modes of the animator's."""
     armature_object = build_armature(bpy.context.scene, body)
     armature_object.matrix_world = Matrix.LocRotScale(
         Vector((0.3, -0.5, 0.2)), Euler((0.1, 0.2, 0.3)), Vector((1.1,) * 3)
@@ -79,7 +77,6 @@ def curve(armature_object: bpy.types.Object, action: bpy.types.Action, bone: str
 
 
 def test_blender_shows_what_was_computed(actor: bpy.types.Object) -> None:
-    """Whatever the object's place and the bones' rotation modes."""
     motion = swaying(actor)
     write_motion(actor, motion)
     natural = natural_extremities(motion.body, motion.posture, motion.time_s)
@@ -89,7 +86,6 @@ def test_blender_shows_what_was_computed(actor: bpy.types.Object) -> None:
 
 
 def test_written_again_only_what_is_keymarks_is_replaced(actor: bpy.types.Object) -> None:
-    """A hand that was keyed in the motion keeps that key, and the others follow the new motion."""
     motion = swaying(actor)
     action = write_motion(actor, motion)
     keys = len(curve(actor, action, "hand.L").keyframe_points)
@@ -103,7 +99,6 @@ def test_written_again_only_what_is_keymarks_is_replaced(actor: bpy.types.Object
 
 
 def test_hands_and_feet_keyed_at_rest_are_not_posed(actor: bpy.types.Object) -> None:
-    """Storing a pose keys all bones; those that stand as built say nothing."""
     keyframes = bpy.data.actions.new("Keyframes")
     actor.pose.bones["foot.L"].rotation_euler = (0.2, 0.0, 0.0)
     store_pose(actor, keyframes, HUMAN, 1.0)
@@ -113,7 +108,6 @@ def test_hands_and_feet_keyed_at_rest_are_not_posed(actor: bpy.types.Object) -> 
 
 
 def test_a_shown_motions_hands_and_feet_are_not_stored(actor: bpy.types.Object) -> None:
-    """As the motion turned them they go back to rest; one that the animator has turned since stays."""
     action = write_motion(actor, swaying(actor))
     bpy.context.scene.frame_set(20)
     actor.pose.bones["hand.R"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
@@ -130,7 +124,6 @@ def test_a_shown_motions_hands_and_feet_are_not_stored(actor: bpy.types.Object) 
 def test_planted_soles_lie_flat_and_still_in_blender(
     actor: bpy.types.Object, tolerance_m: float | None
 ) -> None:
-    """After planting and key reduction heel and tip of a resting foot stay at one place."""
     action = write_motion(actor, swaying(actor))
     finished = run(finish_motion(actor, action, None, FinishOptions(tolerance_m, False, 0.05), 1.0 / FPS))
     assert {contact.point for contact in finished.contacts} == {0, 1}
@@ -149,7 +142,6 @@ def test_planted_soles_lie_flat_and_still_in_blender(
 
 
 def test_a_motion_of_rigid_feet_is_finished_as_it_is(actor: bpy.types.Object) -> None:
-    """An Action of an earlier version has no curves of hands and feet; none are made up."""
     action = write_motion(actor, swaying(actor))
     bag = existing_channelbag(action, actor)
     for name in extremity_names(HUMAN):
@@ -163,7 +155,6 @@ def test_a_motion_of_rigid_feet_is_finished_as_it_is(actor: bpy.types.Object) ->
 
 
 def test_a_copied_hand_is_finished_as_it_was_keyed(actor: bpy.types.Object) -> None:
-    """What the animator posed comes along with its own keys."""
     keyframes = bpy.data.actions.new("Keyframes")
     actor.pose.bones["hand.L"].rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     store_pose(actor, keyframes, HUMAN, 7.0)

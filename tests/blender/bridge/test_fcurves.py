@@ -9,7 +9,6 @@ from keymark.core.body.human import HUMAN
 from keymark.core.body.kinematics import Body
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import existing_channelbag
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from mathutils import Euler, Matrix, Vector
 
@@ -17,27 +16,18 @@ CHANNELS = 7 + 4 * 6 + 3 * 6 + 4 * 4
 """Pelvis: 3 + 4. Chest, head, 2 upper arms, 2 thighs are balls; 2 girdles, forearms, shins have angles."""
 
 
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    """An actor in the scene."""
-    return build_armature(bpy.context.scene, body)
-
-
 def curves(actor: bpy.types.Object, action: bpy.types.Action) -> dict[tuple[str, int], bpy.types.FCurve]:
-    """The curves that animate the actor."""
     found = existing_channelbag(action, actor).fcurves
     return {(curve.data_path, curve.array_index): curve for curve in found}
 
 
 def key_count(actor: bpy.types.Object, action: bpy.types.Action) -> int:
-    """Number of keys on all curves."""
     return sum(len(curve.keyframe_points) for curve in curves(actor, action).values())
 
 
 def test_every_frame_shows_the_motion(
     actor: bpy.types.Object, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """Scrubbing through the frames, the bones lie where the motion's points are."""
     write_motion(actor, wave_motion)
     for frame, points in zip(wave_motion.scene_frames, wave_motion.points, strict=True):
         bpy.context.scene.frame_set(int(frame))
@@ -47,7 +37,6 @@ def test_every_frame_shows_the_motion(
 def test_a_placed_and_scaled_actor_shows_the_same_places(
     actor: bpy.types.Object, body: Body, wave_motion: Motion
 ) -> None:
-    """The motion is the world's: hips are where they are, however the object stands."""
     actor.matrix_world = Matrix.LocRotScale(Vector((1, 2, 0)), Euler((0.1, 0.2, 0.3)), Vector((0.8,) * 3))
     write_motion(actor, wave_motion)
     bpy.context.scene.frame_set(7)
@@ -58,7 +47,6 @@ def test_a_placed_and_scaled_actor_shows_the_same_places(
 def test_the_action_has_a_slot_groups_and_one_key_a_frame(
     actor: bpy.types.Object, wave_motion: Motion
 ) -> None:
-    """The slot is assigned (without it nothing moves), each bone has its group, each channel its keys."""
     action = write_motion(actor, wave_motion)
     assert actor.animation_data.action == action
     assert actor.animation_data.action_slot == action.slots[0]
@@ -71,7 +59,6 @@ def test_the_action_has_a_slot_groups_and_one_key_a_frame(
 def test_keys_are_generated_linear_and_on_the_motions_frames(
     actor: bpy.types.Object, wave_motion: Motion
 ) -> None:
-    """Keys made by a program are told from the animator's."""
     found = curves(actor, write_motion(actor, wave_motion))
     points = found['pose.bones["shin.L"].rotation_euler', 0].keyframe_points
     assert {point.type for point in points} == {"GENERATED"}
@@ -82,7 +69,6 @@ def test_keys_are_generated_linear_and_on_the_motions_frames(
 
 
 def test_a_second_run_replaces_generated_keys_only(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """The animator's correction survives with its value and handles; the number of curves stays."""
     action = write_motion(actor, wave_motion)
     before = key_count(actor, action)
     curve = curves(actor, action)['pose.bones["forearm.L"].rotation_euler', 0]
@@ -103,7 +89,6 @@ def test_a_second_run_replaces_generated_keys_only(actor: bpy.types.Object, wave
 def test_a_generated_key_that_was_keyed_over_is_the_animators(
     actor: bpy.types.Object, wave_motion: Motion
 ) -> None:
-    """Blender leaves its type as it was; the value tells."""
     action = write_motion(actor, wave_motion)
     bone = actor.pose.bones["forearm.L"]
     bone.rotation_euler.x = 1.25
@@ -116,7 +101,6 @@ def test_a_generated_key_that_was_keyed_over_is_the_animators(
 
 
 def test_a_shorter_second_run_leaves_no_stale_keys(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """Keys of frames that are not in the new motion are gone."""
     action = write_motion(actor, wave_motion)
     half = slice(0, 5)
     shorter = Motion(
@@ -137,7 +121,6 @@ def test_a_shorter_second_run_leaves_no_stale_keys(actor: bpy.types.Object, wave
 def test_another_rotation_mode_in_between_leaves_no_stale_curves(
     actor: bpy.types.Object, wave_motion: Motion
 ) -> None:
-    """After the animator switched a bone to Euler angles, its old quaternion curves go."""
     action = write_motion(actor, wave_motion)
     actor.pose.bones["thigh.L"].rotation_mode = "XYZ"
     write_motion(actor, wave_motion, action)
@@ -146,7 +129,6 @@ def test_another_rotation_mode_in_between_leaves_no_stale_curves(
 
 
 def test_curves_of_other_things_stay(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """An animator's custom property, keyed in the same Action, is none of our business."""
     action = write_motion(actor, wave_motion)
     actor["mood"] = 1.0
     actor.keyframe_insert('["mood"]', frame=3)
@@ -155,7 +137,6 @@ def test_curves_of_other_things_stay(actor: bpy.types.Object, wave_motion: Motio
 
 
 def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """Hands and feet posed in the keyframe Action take their curves from there, and nothing else does."""
     hand = actor.pose.bones["hand.R"]
     hand.keyframe_insert("rotation_quaternion", frame=1)
     hand.rotation_quaternion = (0.6, 0.8, 0.0, 0.0)
@@ -180,7 +161,6 @@ def test_hands_move_as_the_animator_keyed_them(actor: bpy.types.Object, wave_mot
 def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
     actor: bpy.types.Object, wave_motion: Motion
 ) -> None:
-    """Of a hand's keys only the copies of the keyframes' are replaced."""
     hand = actor.pose.bones["hand.R"]
     hand.rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     for frame in (1, 13):
@@ -197,7 +177,6 @@ def test_hands_corrected_in_the_motion_stay_when_it_is_written_again(
 
 
 def test_fractional_frames_of_an_uneven_clip_are_kept(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """A clip of variable rate has its keys between whole frames."""
     frames = wave_motion.scene_frames + 0.25
     found = curves(actor, write_motion(actor, wave_motion, frames=frames))
     points = found['pose.bones["pelvis"].location', 2].keyframe_points

@@ -4,13 +4,11 @@ import bpy
 import numpy as np
 from keymark.core.footage.camera import Camera
 from keymark.core.take.take import Take
-from keymark.operators.bridge.footage import Footage
-from keymark.operators.bridge.footage_color import footage_color
+from keymark.operators.bridge.footage import Footage, footage_color
 from keymark.operators.bridge.footage_to_scene import show_footage
 
 
 def test_another_frame_has_another_color_under_a_moving_marker(tiny_take: Take, camera: Camera) -> None:
-    """The frame that the scene shows is the one that is read."""
     shown = show_footage(bpy.context.scene, camera, tiny_take.clip, tiny_take.fps, 1, 13)
     footage = Footage(bpy.context.scene, bpy.context.scene.active_clip, shown)
     pose = tiny_take.body.pose(tiny_take.keyframes[0].posture)

@@ -19,7 +19,6 @@ POINTS = np.random.default_rng(3).normal([0.0, 0.0, 1.0], 0.3, (20, 3))
 
 
 def show(take: Take, camera: Camera, frame_start: int = 1) -> bpy.types.Object:
-    """Put the take's clip behind a camera."""
     return show_footage(bpy.context.scene, camera, take.clip, take.fps, frame_start, 13)
 
 
@@ -34,7 +33,6 @@ def shown_pixels(camera_object: bpy.types.Object) -> np.ndarray:
 
 @pytest.fixture
 def turned(camera: Camera) -> Camera:
-    """A camera with shifts, turned a little."""
     angle = 0.2
     turn = np.eye(4)
     turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
@@ -42,20 +40,17 @@ def turned(camera: Camera) -> Camera:
 
 
 def shown_footage() -> Footage:
-    """The scene's clip and camera."""
     scene = bpy.context.scene
     return Footage(scene, scene.active_clip, scene.camera)
 
 
 def test_blenders_camera_sees_points_where_cores_does(tiny_take: Take, turned: Camera) -> None:
-    """Lens, sensor, shifts and pose agree to a hundredth of a pixel."""
     camera_object = show(tiny_take, turned)
     pixels, _ = turned.project(POINTS)
     assert shown_pixels(camera_object) == pytest.approx(pixels, abs=0.01)
 
 
 def test_the_camera_is_read_back(tiny_take: Take, turned: Camera) -> None:
-    """Core's camera -> scene -> core's camera, distortion included."""
     distorted = replace(turned, distortion=(-0.1, 0.02, -0.003))
     show(tiny_take, distorted)
     read = read_camera(shown_footage(), FRAMES)
@@ -70,7 +65,6 @@ def test_the_camera_is_read_back(tiny_take: Take, turned: Camera) -> None:
 def test_any_sensor_fit_is_read(
     tiny_take: Take, turned: Camera, monkeypatch: pytest.MonkeyPatch, fit: str, size: tuple[int, int]
 ) -> None:
-    """An animator's own camera with another sensor fit, portrait footage too, projects as Blender does."""
     camera_object = show(tiny_take, turned)
     camera_object.data.sensor_fit = fit
     camera_object.data.sensor_height = 20.0
@@ -90,7 +84,6 @@ def test_any_sensor_fit_is_read(
 
 
 def test_a_moving_camera_is_animated_and_read_back(tiny_take: Take, camera: Camera) -> None:
-    """One pose a frame becomes keys, and the keys become poses; the scene's frame stays."""
     poses = np.repeat(camera.matrix_world[None], 13, axis=0).copy()
     poses[:, 0, 3] += np.linspace(0.0, 0.6, 13)
     moving = replace(camera, matrix_world=poses)
@@ -102,7 +95,6 @@ def test_a_moving_camera_is_animated_and_read_back(tiny_take: Take, camera: Came
 
 
 def test_the_scene_takes_size_rate_and_range(tiny_take: Take, camera: Camera) -> None:
-    """Scene frame `frame_start` shows the clip's first frame."""
     show(tiny_take, camera, frame_start=101)
     scene = bpy.context.scene
     assert (scene.render.resolution_x, scene.render.resolution_y) == (160, 120)
@@ -115,7 +107,6 @@ def test_the_scene_takes_size_rate_and_range(tiny_take: Take, camera: Camera) ->
 
 
 def test_a_take_uses_its_camera_again(tiny_take: Take, camera: Camera, turned: Camera) -> None:
-    """Shown twice behind one camera, the clip is its only background."""
     first = show(tiny_take, camera)
     again = show_footage(bpy.context.scene, turned, tiny_take.clip, tiny_take.fps, 1, 13, camera_object=first)
     assert again == first
@@ -124,7 +115,6 @@ def test_a_take_uses_its_camera_again(tiny_take: Take, camera: Camera, turned: C
 
 
 def test_a_file_that_is_no_clip_is_refused(tmp_path) -> None:  # noqa: ANN001
-    """The sentence names the file, and no broken clip stays behind."""
     broken = tmp_path / "broken.mp4"
     broken.write_bytes(b"not a video")
     with pytest.raises(InputError, match=r"broken\.mp4"):
@@ -142,7 +132,6 @@ def test_a_file_that_is_no_clip_is_refused(tmp_path) -> None:  # noqa: ANN001
     ],
 )
 def test_what_no_footage_can_have_is_refused(tiny_take: Take, camera: Camera, change, sentence) -> None:  # noqa: ANN001
-    """Each with its own sentence."""
     show(tiny_take, camera)
     change(bpy.context.scene)
     with pytest.raises(InputError, match=sentence):

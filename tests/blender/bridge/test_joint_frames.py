@@ -14,7 +14,6 @@ ANGLES = st.floats(-np.pi + 1e-6, np.pi - 1e-6)
 @given(ANGLES, ANGLES)
 @settings(deadline=None, max_examples=60)
 def test_two_hinges_within_reach_are_exact(first: float, second: float) -> None:
-    """Bending and then turning is found again, at right angles too."""
     rotation = hinge(X, np.array(first)) @ hinge(Y, np.array(second))
     found = nearest_hinges([X, Y], rotation)
     again = hinge(X, np.array(found[0])) @ hinge(Y, np.array(found[1]))
@@ -23,7 +22,6 @@ def test_two_hinges_within_reach_are_exact(first: float, second: float) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_beyond_reach_no_other_angles_are_nearer(seed: int) -> None:
-    """A fine grid of angles around any moderate rotation finds nothing nearer."""
     rotation = exponential(np.random.default_rng(seed).normal(0.0, 0.6, 3))
     first, second = nearest_hinges([X, Y], rotation)
     found = np.linalg.norm(logarithm((hinge(X, np.array(first)) @ hinge(Y, np.array(second))).T @ rotation))
@@ -35,7 +33,6 @@ def test_beyond_reach_no_other_angles_are_nearer(seed: int) -> None:
 
 
 def test_one_hinge_takes_its_share_of_a_rotation() -> None:
-    """The rotation that a hinge cannot follow remains as residual."""
     rotation = hinge(X, np.array(0.7)) @ hinge(Y, np.array(0.2))
     (angle,) = nearest_hinges([X], rotation)
     grid = np.linspace(0.5, 0.9, 4001)

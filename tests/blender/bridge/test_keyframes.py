@@ -11,7 +11,6 @@ from keymark.core.body.posture import Posture
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actions import assign_action
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
 from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes, store_pose, write_keyframes
 from keymark.operators.bridge.pose import write_posture
@@ -20,27 +19,18 @@ CLIP = np.arange(1.0, 31.0)
 
 
 @pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    """An actor in the scene."""
-    return build_armature(bpy.context.scene, body)
-
-
-@pytest.fixture
 def action() -> bpy.types.Action:
-    """An Action for keyframes."""
     return bpy.data.actions.new("Keyframes")
 
 
 @pytest.fixture
 def postures(random_posture: Callable[[int], Posture]) -> tuple[Keyframe, ...]:
-    """Three keyframes."""
     return tuple(Keyframe(index, random_posture(50 + index)) for index in (0, 11, 29))
 
 
 def test_written_keyframes_are_read_back(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, postures: tuple[Keyframe, ...]
 ) -> None:
-    """Posture -> keys -> evaluated pose -> posture, at the same indices of the clip."""
     write_keyframes(actor, action, postures, CLIP)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
     assert found.notes == ()
@@ -51,12 +41,8 @@ def test_written_keyframes_are_read_back(
 
 
 def test_stored_poses_are_keyframes_and_storing_again_replaces(
-    actor: bpy.types.Object,
-    body: Body,
-    action: bpy.types.Action,
-    random_posture: Callable[[int], Posture],
+    actor: bpy.types.Object, body: Body, action: bpy.types.Action, random_posture: Callable[[int], Posture]
 ) -> None:
-    """The present pose is keyed; a second one at the same frame replaces the first."""
     write_posture(actor, random_posture(60))
     store_pose(actor, action, HUMAN, 5.0)
     write_posture(actor, random_posture(61))
@@ -67,7 +53,6 @@ def test_stored_poses_are_keyframes_and_storing_again_replaces(
 
 
 def test_keys_that_were_generated_are_not_keyframes(actor: bpy.types.Object, wave_motion: Motion) -> None:
-    """A reconstructed motion's Action holds no keyframes until the animator keys in it."""
     action = write_motion(actor, wave_motion)
     assert keyed_frames(actor, action, HUMAN) == ()
     store_pose(actor, action, HUMAN, 4.0)
@@ -75,7 +60,6 @@ def test_keys_that_were_generated_are_not_keyframes(actor: bpy.types.Object, wav
 
 
 def test_keys_of_hands_alone_are_not_keyframes(actor: bpy.types.Object) -> None:
-    """A waving hand makes no keyframe."""
     actor.pose.bones["hand.L"].keyframe_insert("rotation_quaternion", frame=9)
     assert keyed_frames(actor, actor.animation_data.action, HUMAN) == ()
 
@@ -83,7 +67,6 @@ def test_keys_of_hands_alone_are_not_keyframes(actor: bpy.types.Object) -> None:
 def test_keys_outside_the_footage_are_left_out_and_named(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, postures: tuple[Keyframe, ...]
 ) -> None:
-    """A rest pose at frame -10 is common and harmless."""
     write_keyframes(actor, action, postures, CLIP)
     store_pose(actor, action, HUMAN, -10.0)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
@@ -94,7 +77,6 @@ def test_keys_outside_the_footage_are_left_out_and_named(
 def test_a_key_goes_to_the_frame_of_an_uneven_clip_that_lies_nearest(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action
 ) -> None:
-    """The clip's frames need not lie on whole scene frames."""
     store_pose(actor, action, HUMAN, 4.0)
     uneven = np.array([1.0, 2.1, 3.8, 5.2])
     (keyframe,) = read_keyframes(bpy.context.scene, actor, action, body, uneven).keyframes
@@ -104,7 +86,6 @@ def test_a_key_goes_to_the_frame_of_an_uneven_clip_that_lies_nearest(
 def test_a_pose_beyond_the_freedoms_is_noted(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action
 ) -> None:
-    """The note names frame and distance."""
     actor.pose.bones["forearm.L"].rotation_euler = (0.4, 0.0, 0.5)
     store_pose(actor, action, HUMAN, 3.0)
     found = read_keyframes(bpy.context.scene, actor, action, body, CLIP)
@@ -120,7 +101,6 @@ def test_reading_leaves_frame_action_and_unkeyed_pose_as_they_were(
     wave_motion: Motion,
     postures: tuple[Keyframe, ...],
 ) -> None:
-    """The animator who is posing while Keymark reads loses nothing."""
     scene = bpy.context.scene
     motion_action = write_motion(actor, wave_motion)
     write_keyframes(actor, action, postures, CLIP)
@@ -137,7 +117,6 @@ def test_reading_leaves_frame_action_and_unkeyed_pose_as_they_were(
 def test_reading_the_action_in_use_leaves_the_unkeyed_pose(
     actor: bpy.types.Object, body: Body, action: bpy.types.Action, postures: tuple[Keyframe, ...]
 ) -> None:
-    """The same while the keyframes themselves are shown."""
     write_keyframes(actor, action, postures, CLIP)
     assign_action(actor, action)
     bpy.context.scene.frame_set(12)

@@ -42,7 +42,6 @@ ANGLE = 1e-6
 
 @pytest.fixture
 def library(random_posture: RandomPosture) -> Library:
-    """Four postures with tags, one of them with a name and a tag that Blender cannot hold whole."""
     names = ("Left Heel Strike", "Midstance", "ÄÖ" * 30, "Toe-off, late")
     tags: tuple[tuple[str, ...], ...] = ((), ("swing", "a, b"), ("ß" * 40,), ("late",))
     postures = tuple(
@@ -62,13 +61,11 @@ def library(random_posture: RandomPosture) -> Library:
 
 
 def file_bytes(library: Library, folder: Path) -> bytes:
-    """The content of the library's file."""
     write_library(folder / "x.json", library)
     return (folder / "x.json").read_bytes()
 
 
 def test_a_library_file_comes_back_from_assets_to_the_last_byte(library: Library, tmp_path: Path) -> None:
-    """File to Actions to file; and once more after saving and loading the .blend."""
     first = file_bytes(library, tmp_path)
     add_assets(read_library(tmp_path / "x.json"))
     (back,) = library_from_assets(bpy.data.actions)
@@ -80,7 +77,6 @@ def test_a_library_file_comes_back_from_assets_to_the_last_byte(library: Library
 
 
 def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path) -> None:
-    """The open file is as before, after writing and after reading; only pose assets are in the .blend."""
     first = file_bytes(library, tmp_path)
     mine = bpy.data.actions.new("Midstance")
     before = set(bpy.data.user_map())
@@ -99,7 +95,6 @@ def test_a_library_file_comes_back_from_a_blend(library: Library, tmp_path: Path
 
 
 def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
-    """A curve, the name and the tags; joints whose curves were not touched keep every digit."""
     actions = add_assets(library)
     stored = read_asset(actions[0]).posture
     fcurve = next(
@@ -123,7 +118,6 @@ def test_what_the_animator_changes_in_an_asset_counts(library: Library) -> None:
 
 
 def test_a_deleted_asset_leaves_the_motions(library: Library) -> None:
-    """The first step that is left is the motion's beginning."""
     actions = add_assets(library)
     bpy.data.actions.remove(actions[0])
     (back,) = library_from_assets(bpy.data.actions)
@@ -133,7 +127,6 @@ def test_a_deleted_asset_leaves_the_motions(library: Library) -> None:
 
 
 def test_the_curves_pose_an_actor_as_the_library_does(library: Library) -> None:
-    """Blender's own way of applying a pose asset, on an actor of the library's proportions."""
     body = Body(library.actor)
     actor = build_armature(bpy.context.scene, body)
     for action, posture in zip(add_assets(library), library.postures, strict=True):
@@ -143,7 +136,6 @@ def test_the_curves_pose_an_actor_as_the_library_does(library: Library) -> None:
 
 
 def test_assets_are_seen_as_such(library: Library) -> None:
-    """Catalog, author, license, description, tags and a picture."""
     action = add_assets(library)[1]
     data = action.asset_data
     assert (data.author, data.license, data.description) == ("Ä. Author", "CC-BY-4.0", "For tests.")
@@ -166,7 +158,6 @@ def test_assets_are_seen_as_such(library: Library) -> None:
     ],
 )
 def test_nonsense_in_an_asset_is_one_sentence(library: Library, name: str, value: str, sentence: str) -> None:
-    """Any content of the custom properties."""
     action = add_assets(library)[0]
     action[name] = value
     with pytest.raises(InputError, match=sentence) as raised:
@@ -192,7 +183,6 @@ def _spoiled(value: object, rng: np.random.Generator) -> object:
 
 
 def test_spoiled_texts_of_an_asset_are_refused_or_read(library: Library) -> None:
-    """Corrupted properties give a library or an InputError, never anything else."""
     actions = add_assets(library)[:2]
     first = actions[0]
     texts = {name: first[name] for name in (HEADER, POSTURE)}
@@ -212,7 +202,6 @@ def test_spoiled_texts_of_an_asset_are_refused_or_read(library: Library) -> None
 
 
 def test_nonsense_in_curves_is_passed_over(library: Library) -> None:
-    """Curves of scripts' paths, values that are no numbers: the posture stays usable."""
     action = add_assets(library)[0]
     bag = action.layers[0].strips[0].channelbags[0]
     bag.fcurves.new('["evil"]', index=0).keyframe_points.insert(1, 5)
@@ -225,7 +214,6 @@ def test_nonsense_in_curves_is_passed_over(library: Library) -> None:
 
 @pytest.mark.parametrize("content", [b"", b"BLENDER", b"BLENDER-v405" + b"x" * 500, b"PK\x03\x04"])
 def test_a_broken_blend_says_so_and_leaves_nothing(tmp_path: Path, content: bytes) -> None:
-    """One sentence; no data-block comes of it."""
     file = tmp_path / "bad.blend"
     file.write_bytes(content)
     before = set(bpy.data.user_map())
@@ -235,7 +223,6 @@ def test_a_broken_blend_says_so_and_leaves_nothing(tmp_path: Path, content: byte
 
 
 def test_a_cut_off_blend_says_so(library: Library, tmp_path: Path) -> None:
-    """Cut at several offsets."""
     write_library_blend(tmp_path / "a.blend", library)
     whole = (tmp_path / "a.blend").read_bytes()
     for share in (0.01, 0.3, 0.7, 0.99):
@@ -246,7 +233,6 @@ def test_a_cut_off_blend_says_so(library: Library, tmp_path: Path) -> None:
 
 
 def test_a_blend_without_libraries_is_refused(tmp_path: Path) -> None:
-    """Other assets are none of ours, and are gone again afterwards."""
     action = bpy.data.actions.new("Other")
     action.asset_mark()
     bpy.data.libraries.write(str(tmp_path / "other.blend"), {action})
@@ -257,7 +243,6 @@ def test_a_blend_without_libraries_is_refused(tmp_path: Path) -> None:
 
 
 def test_channels_of_a_posture_are_those_of_the_armature(library: Library) -> None:
-    """Without an armature, the very values that `write_posture` gives one."""
     body = Body(library.actor)
     actor = build_armature(bpy.context.scene, body)
     posture = library.postures[2].posture
@@ -274,7 +259,6 @@ def test_channels_of_a_posture_are_those_of_the_armature(library: Library) -> No
 def test_the_header_that_all_assets_share_is_read_once(
     library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It holds all motions: read again for each of a thousand postures, it took half a minute."""
     actions = add_assets(library)
     read: list[str] = []
 

@@ -44,7 +44,6 @@ MATCHED = Matched("walking", "Contact Left", True, 0.625)
 
 @pytest.fixture
 def matched_take(tiny_take: Take) -> Take:
-    """The tiny take with its middle keyframe, at frame 7, matched."""
     first, middle, last = tiny_take.keyframes
     take = replace(tiny_take, keyframes=(first, replace(middle, matched=MATCHED), last))
     write_take(take, tiny_take.folder)
@@ -53,7 +52,6 @@ def matched_take(tiny_take: Take) -> Take:
 
 @pytest.fixture
 def take(matched_take: Take) -> bpy.types.PropertyGroup:
-    """That take, opened."""
     bpy.ops.keymark.open_take(filepath=str(matched_take.folder / "take.json"))
     return active_take(bpy.context.scene)
 
@@ -72,12 +70,10 @@ def keyframes_in(take: bpy.types.PropertyGroup) -> tuple[Keyframe, ...]:
 
 
 def matched_in(take: bpy.types.PropertyGroup) -> list[Matched | None]:
-    """The match of each keyframe."""
     return [keyframe.matched for keyframe in keyframes_in(take)]
 
 
 def key_at(take: bpy.types.PropertyGroup, path: str, index: int, frame: float) -> bpy.types.Keyframe:
-    """A key of the keyframe Action."""
     curve = existing_channelbag(take.keyframe_action, take.armature).fcurves.find(path, index=index)
     return next(key for key in curve.keyframe_points if key.co[0] == frame)
 
@@ -85,7 +81,6 @@ def key_at(take: bpy.types.PropertyGroup, path: str, index: int, frame: float) -
 def test_a_take_with_matched_keyframes_is_opened_and_saved_as_it_was(
     take: bpy.types.PropertyGroup, matched_take: Take
 ) -> None:
-    """File -> scene -> file keeps each keyframe's match and posture."""
     assert keyframes_of(take) == (1.0, 7.0, 13.0)
     assert (matched_frames(take), posed_frames(take)) == ((7.0,), (1.0, 13.0))
     bpy.ops.keymark.save_take(directory=str(matched_take.folder / "again"))
@@ -96,7 +91,6 @@ def test_a_take_with_matched_keyframes_is_opened_and_saved_as_it_was(
 
 
 def test_matches_survive_the_blend_file(take: bpy.types.PropertyGroup, matched_take: Take) -> None:
-    """Saved and loaded, the keyframe is matched still."""
     file = str(matched_take.folder / "scene.blend")
     bpy.ops.wm.save_as_mainfile(filepath=file)
     bpy.ops.wm.open_mainfile(filepath=file)
@@ -104,7 +98,6 @@ def test_matches_survive_the_blend_file(take: bpy.types.PropertyGroup, matched_t
 
 
 def test_a_changed_key_makes_the_keyframe_posed(take: bpy.types.PropertyGroup) -> None:
-    """One bone is enough; giving it back its value, as undo does, makes it matched again."""
     key = key_at(take, 'pose.bones["forearm.L"].rotation_euler', 0, 7.0)
     before = key.co[1]
     key.co[1] += 0.01
@@ -114,7 +107,6 @@ def test_a_changed_key_makes_the_keyframe_posed(take: bpy.types.PropertyGroup) -
 
 
 def test_keying_the_same_frame_by_blender_makes_it_posed(take: bpy.types.PropertyGroup) -> None:
-    """Auto keying changes the value of a key and leaves its type."""
     bpy.context.scene.frame_set(7)
     bone = take.armature.pose.bones["chest"]
     bone.rotation_quaternion = (0.9, 0.3, 0.2, 0.1)
@@ -123,7 +115,6 @@ def test_keying_the_same_frame_by_blender_makes_it_posed(take: bpy.types.Propert
 
 
 def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.PropertyGroup) -> None:
-    """A moved keyframe is the animator's."""
     for curve in existing_channelbag(take.keyframe_action, take.armature).fcurves:
         for key in curve.keyframe_points:
             if key.co[0] == 7.0:
@@ -134,13 +125,11 @@ def test_a_keyframe_moved_to_another_frame_is_posed_there(take: bpy.types.Proper
 
 
 def test_a_bone_in_another_rotation_mode_shows_something_else(take: bpy.types.PropertyGroup) -> None:
-    """Its curves no longer apply, so the posture is not the matched one."""
     take.armature.pose.bones["chest"].rotation_mode = "XYZ"
     assert matched_in(take) == [None, None, None]
 
 
 def test_storing_the_pose_makes_it_posed_and_says_so(take: bpy.types.PropertyGroup) -> None:
-    """Store Keyframe accepts the posture as it is."""
     bpy.context.scene.frame_set(7)
     bpy.ops.keymark.store_keyframe()
     assert matched_in(take) == [None, None, None]
@@ -148,14 +137,12 @@ def test_storing_the_pose_makes_it_posed_and_says_so(take: bpy.types.PropertyGro
 
 
 def test_other_lengths_leave_matches_as_they_are(take: bpy.types.PropertyGroup) -> None:
-    """The actor's bones change, its keyframes do not."""
     take.lengths.forearm_L *= 1.05
     bpy.ops.keymark.apply_lengths()
     assert matched_in(take) == [None, MATCHED, None]
 
 
 def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGroup) -> None:
-    """Taken over, they are the animator's own; removed, nothing of the body is keyed there."""
     armature_object, action = take.armature, take.keyframe_action
     before = read_at(take, 7)
     take_over(armature_object, action, HUMAN, (7.0,))
@@ -169,7 +156,6 @@ def test_matched_keyframes_are_taken_over_and_removed(take: bpy.types.PropertyGr
 
 
 def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.PropertyGroup) -> None:
-    """Hands and feet have no degrees of freedom: their keys are always the animator's."""
     armature_object, action = take.armature, take.keyframe_action
     store_pose(armature_object, action, HUMAN, 7.0)
     remove_keyframes(armature_object, action, HUMAN, (1.0, 7.0, 13.0))
@@ -182,7 +168,6 @@ def test_removing_all_keyframes_leaves_keys_of_the_hands(take: bpy.types.Propert
 def test_matched_postures_between_posed_ones_do_not_turn_the_long_way_round(
     take: bpy.types.PropertyGroup, random_posture: Callable[[int], Posture]
 ) -> None:
-    """A quaternion of the other sign is turned, so that curves pass smoothly."""
     armature_object, action = take.armature, take.keyframe_action
     bag = existing_channelbag(action, armature_object)
     curves = [bag.fcurves.find('pose.bones["pelvis"].rotation_quaternion', index=i) for i in range(4)]
@@ -201,12 +186,10 @@ def test_matched_postures_between_posed_ones_do_not_turn_the_long_way_round(
 
 
 def body_of(take: bpy.types.PropertyGroup) -> Body:
-    """The actor's body."""
     return read_body(take.armature, HUMAN)
 
 
 def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
-    """The posture that the actor shows at a frame."""
     bpy.context.scene.frame_set(frame)
     return read_posture(take.armature, body_of(take)).posture
 
@@ -214,7 +197,6 @@ def read_at(take: bpy.types.PropertyGroup, frame: int) -> Posture:
 def test_a_pose_is_fitted_with_markers_as_posed_frames_show_them(
     take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A matched keyframe is a rough pose and cannot calibrate marker placements."""
     asked: list[int] = []
     original = single_frame_fit.calibrated
 

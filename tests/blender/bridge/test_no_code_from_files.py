@@ -16,7 +16,6 @@ RandomPosture = Callable[[int], Posture]
 
 @pytest.fixture
 def auto_run() -> Iterator[None]:
-    """The preference that lets scripts of opened files run."""
     paths = bpy.context.preferences.filepaths
     before = paths.use_scripts_auto_execute
     paths.use_scripts_auto_execute = True
@@ -26,7 +25,6 @@ def auto_run() -> Iterator[None]:
 
 @pytest.fixture
 def library(random_posture: RandomPosture) -> Library:
-    """A library of one posture."""
     postures = (LibraryPosture("A", random_posture(1)),)
     return Library("small", "Small", 1, "A. Person", "CC0-1.0", Actor.from_stature(1.7), postures)
 
@@ -49,7 +47,6 @@ def hostile_blend(path: Path, library: Library, proof: Path) -> None:
 def test_pose_assets_are_read_and_nothing_runs_or_stays(
     registered: None, auto_run: None, library: Library, tmp_path: Path
 ) -> None:
-    """Neither the text nor the driver has run, and neither is in the open file afterwards."""
     proof = tmp_path / "ran"
     hostile_blend(tmp_path / "hostile.blend", library, proof)
     before = set(bpy.data.user_map())
@@ -62,7 +59,6 @@ def test_pose_assets_are_read_and_nothing_runs_or_stays(
 
 
 def test_the_proof_would_be_there_had_it_run(library: Library, tmp_path: Path, auto_run: None) -> None:
-    """The marker of the test above does appear when that file is opened with auto-run."""
     proof = tmp_path / "ran"
     hostile_blend(tmp_path / "hostile.blend", library, proof)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "hostile.blend"), use_scripts=True)

@@ -10,19 +10,12 @@ from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
 from keymark.operators.bridge.actor_lengths import read_body
-from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.pose import read_posture, write_posture
 from mathutils import Euler, Matrix, Quaternion, Vector
 
 EXACT_M = 1e-5
 MODES = ["QUATERNION", "AXIS_ANGLE", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
 Points = Callable[[bpy.types.Object], np.ndarray]
-
-
-@pytest.fixture
-def actor(body: Body) -> bpy.types.Object:
-    """An actor in the scene."""
-    return build_armature(bpy.context.scene, body)
 
 
 def assert_round_trip(actor: bpy.types.Object, posture: Posture, shown_points: Points) -> None:
@@ -46,7 +39,6 @@ def test_round_trip_in_every_rotation_mode(
     mode: str,
     seed: int,
 ) -> None:
-    """In every rotation mode the posture is exact and the mode stays."""
     for bone in actor.pose.bones:
         bone.rotation_mode = mode
     assert_round_trip(actor, random_posture(seed), shown_points)
@@ -57,7 +49,6 @@ def test_round_trip_in_every_rotation_mode(
 def test_round_trip_in_the_modes_the_actor_is_built_with(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points, seed: int
 ) -> None:
-    """Quaternions for balls and angles for hinges."""
     assert_round_trip(actor, random_posture(seed), shown_points)
 
 
@@ -70,7 +61,6 @@ def test_round_trip_for_an_object_anywhere_in_the_world(
     scale: float,
     seed: int,
 ) -> None:
-    """The posture is the world's, wherever the object stands and however large it is."""
     actor.matrix_world = Matrix.LocRotScale(
         Vector((0.7, -1.2, 0.4)), Euler((0.3, -0.5, 2.1)), Vector((scale, scale, scale))
     )
@@ -80,7 +70,6 @@ def test_round_trip_for_an_object_anywhere_in_the_world(
 def test_round_trip_for_an_object_that_hangs_on_another(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points
 ) -> None:
-    """A parent's location and scale count as well."""
     parent = bpy.data.objects.new("Stage", None)
     bpy.context.collection.objects.link(parent)
     parent.matrix_world = Matrix.LocRotScale(
@@ -94,7 +83,6 @@ def test_round_trip_for_an_object_that_hangs_on_another(
 def test_round_trip_after_the_objects_transform_was_applied(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points
 ) -> None:
-    """Bones whose rest was rotated and scaled by Apply show the same postures."""
     actor.matrix_world = Matrix.LocRotScale(
         Vector((0.2, 0.3, 0.4)), Euler((0.4, 0.2, -0.7)), Vector((1.2, 1.2, 1.2))
     )
@@ -108,7 +96,6 @@ def test_round_trip_after_the_objects_transform_was_applied(
 def test_round_trip_after_the_rest_pose_became_an_a_pose(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture], shown_points: Points
 ) -> None:
-    """The bones' axes define the joints, not the rest pose."""
     for side, turn in (("L", -0.7), ("R", -0.7)):
         actor.pose.bones[f"upper_arm.{side}"].rotation_quaternion = Quaternion((0.0, 0.0, 1.0), turn)
     bpy.context.view_layer.objects.active = actor
@@ -121,7 +108,6 @@ def test_round_trip_after_the_rest_pose_became_an_a_pose(
 def test_hands_and_feet_keep_what_the_animator_gave_them(
     actor: bpy.types.Object, random_posture: Callable[[int], Posture]
 ) -> None:
-    """They are not part of a posture, so writing one leaves them alone."""
     hand = actor.pose.bones["hand.L"]
     hand.rotation_quaternion = (0.8, 0.6, 0.0, 0.0)
     write_posture(actor, random_posture(40))
@@ -131,7 +117,6 @@ def test_hands_and_feet_keep_what_the_animator_gave_them(
 def test_a_pose_beyond_the_freedoms_becomes_the_nearest_posture_and_says_so(
     actor: bpy.types.Object, body: Body
 ) -> None:
-    """A forearm bent sideways is projected; the distance is the wrist's displacement; the rest stays."""
     forearm = actor.pose.bones["forearm.L"]
     forearm.rotation_euler = (0.6, 0.2, 0.3)  # bending, pronation, and a sideways turn the elbow cannot make
     reading = read_posture(actor, body)
@@ -147,7 +132,6 @@ def test_a_pose_beyond_the_freedoms_becomes_the_nearest_posture_and_says_so(
 def test_a_bone_that_cannot_follow_does_not_turn_what_hangs_on_it(
     actor: bpy.types.Object, body: Body
 ) -> None:
-    """A girdle pushed forwards is projected, and the upper arm keeps its direction in the world."""
     actor.pose.bones["girdle.L"].rotation_euler = (0.0, 0.0, 0.4)
     actor.pose.bones["upper_arm.L"].rotation_quaternion = Quaternion((0.0, 0.0, 1.0), -0.8)
     bpy.context.view_layer.update()
@@ -159,7 +143,6 @@ def test_a_bone_that_cannot_follow_does_not_turn_what_hangs_on_it(
 
 
 def test_an_evaluated_constraint_counts(actor: bpy.types.Object, body: Body, shown_points: Points) -> None:
-    """The leg is read as inverse kinematics poses it."""
     target = bpy.data.objects.new("Target", None)
     bpy.context.collection.objects.link(target)
     target.location = (0.25, -0.3, 0.3)
@@ -175,7 +158,6 @@ def test_an_evaluated_constraint_counts(actor: bpy.types.Object, body: Body, sho
 
 
 def test_another_object_is_refused(body: Body) -> None:
-    """Only armatures have poses."""
     empty = bpy.data.objects.new("Nobody", None)
     with pytest.raises(InputError, match="'Nobody' is not an armature"):
         read_posture(empty, body)

@@ -14,7 +14,6 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def rendered(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, RegionTracks]:
-    """The demonstration take converted, rendered from both sides, and its markers extracted."""
     folder = tmp_path_factory.mktemp("render_check")
     take = repository / render_check.DEMO
     keyframes = take / render_check.KEYFRAMES
@@ -37,7 +36,6 @@ def rendered(repository: Path, tmp_path_factory: pytest.TempPathFactory) -> dict
 def test_the_body_covers_its_markers(
     rendered: dict[str, RegionTracks], repository: Path, view: render_check.View
 ) -> None:
-    """From the front and from the side, extracted centroids agree within the view's tolerance."""
     render_check.assert_agreement(rendered[view.name], repository / render_check.DEMO, view)
 
 
@@ -45,5 +43,4 @@ def test_the_body_covers_its_markers(
 def test_a_late_motion_is_noticed(
     rendered: dict[str, RegionTracks], repository: Path, view: render_check.View
 ) -> None:
-    """The same motion ten frames late is outside the tolerance."""
     render_check.assert_lateness_fails(rendered[view.name], repository / render_check.DEMO, view)

@@ -17,13 +17,11 @@ from keymark.operators.bridge.pose import read_posture, write_posture
 
 @pytest.fixture
 def other(body: Body) -> Body:
-    """Each length changed by its own share, left and right differently."""
     rng = np.random.default_rng(5)
     return Body(Actor({n: v * float(rng.uniform(0.8, 1.25)) for n, v in body.actor.segments_m.items()}))
 
 
 def test_the_bones_get_the_lengths(body: Body, other: Body) -> None:
-    """All sixteen, read back from the bones."""
     armature_object = build_armature(bpy.context.scene, body)
     set_lengths(armature_object, other)
     assert dict(read_body(armature_object, HUMAN).actor.segments_m) == pytest.approx(
@@ -32,7 +30,6 @@ def test_the_bones_get_the_lengths(body: Body, other: Body) -> None:
 
 
 def test_the_pose_stays(body: Body, other: Body, random_posture: Callable[[int], Posture]) -> None:
-    """Hips and every angle, on an armature that is moved, turned and scaled."""
     armature_object = build_armature(bpy.context.scene, body)
     armature_object.location = (0.4, -1.0, 0.2)
     armature_object.rotation_euler = (0.1, 0.2, 1.0)
@@ -49,7 +46,6 @@ def test_the_pose_stays(body: Body, other: Body, random_posture: Callable[[int],
 
 
 def test_the_mode_and_the_active_object_stay(body: Body, other: Body) -> None:
-    """The animator goes on posing."""
     armature_object = build_armature(bpy.context.scene, body)
     bpy.context.view_layer.objects.active = armature_object
     bpy.ops.object.mode_set(mode="POSE")
@@ -59,7 +55,6 @@ def test_the_mode_and_the_active_object_stay(body: Body, other: Body) -> None:
 
 
 def test_bones_of_another_file_are_left_alone(body: Body, other: Body, tmp_path) -> None:  # noqa: ANN001
-    """The error says where they can be changed."""
     armature_object = build_armature(bpy.context.scene, body)
     name = armature_object.name
     file = str(tmp_path / "rig.blend")

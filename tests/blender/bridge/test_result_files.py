@@ -15,7 +15,6 @@ from keymark.operators.bridge.result_files import write_scene
 
 @pytest.fixture
 def written(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> Path:
-    """A folder beside the take with both files."""
     folder = tmp_path / "out"
     folder.mkdir()
     write_scene(tiny_take, wave_motion, folder / "motion.blend", folder / "motion.bvh")
@@ -25,7 +24,6 @@ def written(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> Path:
 def test_the_file_reopens_with_the_motion_on_the_actor(
     written: Path, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """Every frame of the reopened file shows the motion's points."""
     bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
     actor = next(o for o in bpy.data.objects if o.type == "ARMATURE")
     assert actor.animation_data.action_slot is not None
@@ -35,7 +33,6 @@ def test_the_file_reopens_with_the_motion_on_the_actor(
 
 
 def test_the_file_has_footage_behind_its_camera(written: Path) -> None:
-    """The clip is found by a relative path; range and camera are set."""
     bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
     scene = bpy.context.scene
     (clip,) = bpy.data.movieclips
@@ -47,7 +44,6 @@ def test_the_file_has_footage_behind_its_camera(written: Path) -> None:
 
 
 def test_the_body_wears_the_markers_colors(written: Path) -> None:
-    """One material a marker, in its color, on a mesh that the armature moves."""
     bpy.ops.wm.open_mainfile(filepath=str(written / "motion.blend"))
     mesh = next(o for o in bpy.data.objects if o.type == "MESH")
     assert [m.name for m in mesh.data.materials][1:] == [
@@ -63,14 +59,12 @@ def test_the_body_wears_the_markers_colors(written: Path) -> None:
 
 
 def test_the_file_is_compressed(written: Path) -> None:
-    """It begins with Zstandard's magic number."""
     assert (written / "motion.blend").read_bytes()[:4] == b"\x28\xb5\x2f\xfd"
 
 
 def test_the_bvh_holds_every_frame_and_comes_back_right(
     written: Path, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """Imported again, the bones lie where the motion's points are."""
     lines = (written / "motion.bvh").read_text().splitlines()
     assert "Frames: 13" in lines
     assert float(next(line for line in lines if "Frame Time" in line).split()[-1]) == pytest.approx(0.04)
@@ -82,7 +76,6 @@ def test_the_bvh_holds_every_frame_and_comes_back_right(
 
 
 def test_the_open_file_is_not_touched(tmp_path: Path, tiny_take: Take, wave_motion: Motion) -> None:
-    """The open file, its scene and its data are the same afterwards."""
     mine = bpy.data.objects.new("Actor", bpy.data.meshes.new("Actor"))
     bpy.context.collection.objects.link(mine)
     scene = bpy.context.scene
@@ -109,7 +102,6 @@ KINDS = [
 def test_a_failure_leaves_no_scene_behind(
     tmp_path: Path, tiny_take: Take, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The temporary scene is removed with all its data; tests/blender/cli holds what becomes of the files."""
 
     def fail(_path: Path, _blocks: set[bpy.types.ID], **_options: object) -> None:
         raise ConversionError("the disk is full")
@@ -124,6 +116,5 @@ def test_a_failure_leaves_no_scene_behind(
 def test_a_folder_that_is_not_there_is_one_sentence(
     tmp_path: Path, tiny_take: Take, wave_motion: Motion
 ) -> None:
-    """Blender's own error is turned into ours."""
     with pytest.raises(ConversionError, match="could not write"):
         write_scene(tiny_take, wave_motion, tmp_path / "nowhere" / "motion.blend", None)

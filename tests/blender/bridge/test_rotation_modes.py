@@ -20,7 +20,6 @@ def matrix_of(values: np.ndarray, mode: str) -> np.ndarray:
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", *ORDERS])
 def test_blender_reads_the_same_rotation_from_the_values(mode: str) -> None:
-    """Every value of a random path is the rotation it stands for."""
     rotation = exponential(np.random.default_rng(1).normal(0.0, 1.5, (50, 3)))
     shown = np.stack([matrix_of(values, mode) for values in rotation_values(rotation, mode)])
     assert shown == pytest.approx(rotation, abs=1e-6)
@@ -28,7 +27,6 @@ def test_blender_reads_the_same_rotation_from_the_values(mode: str) -> None:
 
 @pytest.mark.parametrize("mode", ["QUATERNION", "AXIS_ANGLE", *ORDERS])
 def test_two_full_turns_have_no_jump(mode: str) -> None:
-    """Values of a steady turn about a fixed axis change steadily, past 180 and 360 degrees."""
     angles = np.linspace(0.0, 4.0 * np.pi, 200)
     axis = {"QUATERNION": 0, "AXIS_ANGLE": 2}.get(mode, "XYZ".index(mode[0]) if mode in ORDERS else 0)
     rotation = exponential(angles[:, None] * np.eye(3)[axis])
@@ -39,7 +37,6 @@ def test_two_full_turns_have_no_jump(mode: str) -> None:
 
 @pytest.mark.parametrize("mode", ORDERS)
 def test_euler_angles_pass_the_pole_without_a_jump(mode: str) -> None:
-    """Going over the middle axis' 90 degrees, the same branch is kept."""
     middle = "XYZ".index(mode[1])
     angles = np.linspace(0.2, np.pi - 0.2, 60)
     rotation = exponential(angles[:, None] * np.eye(3)[middle])
@@ -49,7 +46,6 @@ def test_euler_angles_pass_the_pole_without_a_jump(mode: str) -> None:
 
 
 def test_a_rotation_without_angle_keeps_the_axis_before() -> None:
-    """The axis does not snap back while the angle passes zero."""
     angles = np.linspace(0.5, -0.5, 11)
     values = rotation_values(exponential(angles[:, None] * np.array([0.6, 0.0, 0.8])), "AXIS_ANGLE")
     assert values[:, 1:] == pytest.approx(np.tile([0.6, 0.0, 0.8], (11, 1)), abs=1e-9)
@@ -57,7 +53,6 @@ def test_a_rotation_without_angle_keeps_the_axis_before() -> None:
 
 
 def test_rest_is_blenders_default() -> None:
-    """No rotation is the value that new bones have."""
     rest = np.array(Matrix.Identity(3))[None]
     assert rotation_values(rest, "QUATERNION")[0] == pytest.approx([1.0, 0.0, 0.0, 0.0])
     assert rotation_values(rest, "AXIS_ANGLE")[0] == pytest.approx([0.0, 0.0, 1.0, 0.0])

@@ -15,10 +15,9 @@ from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.extremity_curves import straighten_extremities
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.bridge.final_motion import motion_frames, read_values
-from keymark.operators.bridge.finish_motion import read_rig
 from keymark.operators.bridge.keyframes import store_pose
 from keymark.operators.bridge.review_curves import curve_path
+from keymark.operators.bridge.rig import motion_frames, read_rig, read_values
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50

@@ -16,7 +16,7 @@ from keymark.operators.follow.evidence import scene_evidence
 from keymark.operators.follow.ignore_region import Brush
 from keymark.operators.follow.ignored_regions import add_ignored_regions, ignored_regions
 from keymark.operators.follow.mask_previews import ignored_mask, preview_of, update_masks
-from keymark.operators.overlays.outlines import hatched
+from keymark.operators.overlays.mask import hatched
 from keymark.operators.shell.takes import active_take, footage_of
 
 pytestmark = pytest.mark.usefixtures("registered")

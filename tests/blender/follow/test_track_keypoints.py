@@ -8,7 +8,7 @@ import pytest
 from keymark.core.footage.keypoints.keypoints import People
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.bridge.track_keypoints import AssignedTrack, people_of_tracks
+from keymark.operators.bridge.scene_evidence import AssignedTrack, people_of_tracks
 from keymark.operators.follow.evidence import has_keypoints
 from keymark.operators.follow.frame_keypoints import keypoints_at
 from keymark.operators.follow.tracks import assigned_tracks

@@ -11,7 +11,7 @@ from _scene_state import differences, scene_state
 from keymark.core.take.motion import Motion
 from keymark.operators.keyframes.candidate_buttons import candidate_title
 from keymark.operators.keyframes.found_keyframes import known_matches
-from keymark.operators.overlays.mask import Fill, Stroke
+from keymark.operators.overlays.drawing import Fill, Stroke
 from keymark.operators.overlays.timeline import ROOMY, Timeline, picture
 from keymark.operators.shell.keyed_frames import doubtful_matches, keyframes_of, matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take

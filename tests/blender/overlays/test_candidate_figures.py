@@ -11,8 +11,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.camera_placement import read_camera
 from keymark.operators.keyframes.match_edits import add_candidate, add_match, key_matches
 from keymark.operators.overlays import candidates
-from keymark.operators.overlays.drawing import candidate_icon
-from keymark.operators.overlays.mask import Label, Stroke
+from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -22,7 +21,6 @@ Group = bpy.types.PropertyGroup
 
 @pytest.fixture
 def match(opened: bpy.types.Scene, wave_motion: Motion) -> Group:
-    """A found keyframe at frame 4 with two candidates."""
     take = active_take(opened)
     (frame,) = made_up_frames(wave_motion, {3: 0.4})
     found = add_match(take, 4.0, "composed")
@@ -36,7 +34,6 @@ def match(opened: bpy.types.Scene, wave_motion: Motion) -> Group:
 def test_figures_stand_where_the_candidates_would(
     match: Group, opened: bpy.types.Scene, wave_motion: Motion
 ) -> None:
-    """In the world, and over the footage as the camera sees them."""
     take = active_take(opened)
     points = candidates.candidate_points(take.armature, match)
     assert points == pytest.approx(wave_motion.points[[3, 9]], abs=1e-4)
@@ -48,7 +45,6 @@ def test_figures_stand_where_the_candidates_would(
 
 
 def test_they_are_found_anew_only_where_something_changed(match: Group, opened: bpy.types.Scene) -> None:
-    """Redraws reuse them; another actor's lengths do not."""
     armature = active_take(opened).armature
     first = candidates.candidate_points(armature, match)
     assert candidates.candidate_points(armature, match) is first
@@ -59,7 +55,6 @@ def test_they_are_found_anew_only_where_something_changed(match: Group, opened: 
 
 
 def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: bpy.types.Scene) -> None:
-    """But for the one that the frame has, which the actor shows; the number stands where they differ most."""
     points = candidates.candidate_points(active_take(opened).armature, match)
     positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
     settings = SimpleNamespace(opacity=0.5)
@@ -78,7 +73,6 @@ def test_each_has_the_color_and_the_number_of_its_button(match: Group, opened: b
 
 
 def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy.types.Scene) -> None:
-    """Of figures in one place each has its number above another joint; where none is free, above one."""
     points = candidates.candidate_points(active_take(opened).armature, match)
     positions = candidates.over_footage(opened, active_take(opened), FOOTAGE, points)
     settings = SimpleNamespace(opacity=0.5)
@@ -86,7 +80,7 @@ def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy
     numbers = [item for item in candidates.picture(many, 0, settings) if isinstance(item, Label)]
     places = np.array([[number.x, number.y] for number in numbers])
     apart = np.linalg.norm(places[:, None] - places, axis=-1)[np.triu_indices(4, 1)]
-    assert len(numbers) == 4 and apart.min() >= candidates.BESIDE
+    assert len(numbers) == 4 and apart.min() >= 16.0
     tiny = 0.01 * many
     tiny[1:, 0] += 1.0
     numbers = [item for item in candidates.picture(tiny, 0, settings) if isinstance(item, Label)]
@@ -94,7 +88,6 @@ def test_numbers_of_figures_that_are_alike_stand_apart(match: Group, opened: bpy
 
 
 def test_points_that_are_not_seen_are_left_out() -> None:
-    """A figure behind the viewer is none, and has no number."""
     positions = np.full((2, 13, 2), np.nan)
     positions[0] = np.arange(26.0).reshape(13, 2)
     lines, cores = candidates.picture(positions, 0, SimpleNamespace(opacity=1.0))
@@ -105,7 +98,6 @@ def test_points_that_are_not_seen_are_left_out() -> None:
 def test_they_are_drawn_at_an_undecided_frame_alone(
     match: Group, opened: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch, reason: str
 ) -> None:
-    """Not elsewhere, nor while frames play, nor where the animator has decided or there is no choice."""
     painted = []
     monkeypatch.setattr(candidates, "paint", painted.append)
     monkeypatch.setattr(candidates, "footage_view", lambda *_: FOOTAGE)

@@ -25,7 +25,6 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture
 def drawn() -> Drawn:
-    """A function that has something drawn; the picture (HEIGHT, WIDTH, 4) it leaves, bottom row first."""
     gpu.init()
 
     def picture(draw: Callable[[], None]) -> np.ndarray:
@@ -50,7 +49,6 @@ ORANGE = (1.0, 0.5, 0.0, 1.0)
 
 
 def test_a_line_has_its_color_and_its_dark_edge(drawn: Drawn) -> None:
-    """Both lie where they belong."""
     line = np.array([[[8.0, 32.0], [88.0, 32.0]]])
     picture = drawn(lambda: drawing.lines(line, ORANGE, 6.0, halo=1.0))
     assert picture[32, 48] == pytest.approx(ORANGE, abs=0.01)
@@ -60,7 +58,6 @@ def test_a_line_has_its_color_and_its_dark_edge(drawn: Drawn) -> None:
 
 
 def test_each_segment_may_have_a_color(drawn: Drawn) -> None:
-    """Two lines, two colors, one call."""
     pair = np.array([[[8.0, 16.0], [88.0, 16.0]], [[8.0, 48.0], [88.0, 48.0]]])
     colors = [(1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)]
     picture = drawn(lambda: drawing.lines(pair, colors, 4.0))
@@ -69,7 +66,6 @@ def test_each_segment_may_have_a_color(drawn: Drawn) -> None:
 
 
 def test_polygons_are_filled_and_unfinished_ones_left_out(drawn: Drawn) -> None:
-    """The colors stay with their polygons."""
     boxes = np.array([[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]]) + np.array(
         [[[5.0, 5.0]], [[np.nan, 5.0]], [[60.0, 30.0]]]
     )
@@ -84,7 +80,6 @@ def test_polygons_are_filled_and_unfinished_ones_left_out(drawn: Drawn) -> None:
 
 
 def test_a_texture_begins_at_the_bottom(drawn: Drawn) -> None:
-    """The top row of the picture, given first, is the texture's last."""
     pixels = np.zeros((3, 2, 4))
     pixels[0, 1] = (1.0, 0.0, 0.5, 1.0)
     rows: list[list[float]] = []
@@ -94,7 +89,6 @@ def test_a_texture_begins_at_the_bottom(drawn: Drawn) -> None:
 
 
 def test_words_are_light_with_a_dark_outline(drawn: Drawn) -> None:
-    """So that they read on light and on dark; `right` ends where it should."""
     picture = drawn(lambda: drawing.text("Hidden", 90.0, 30.0, size=14.0, align="right"))
     inked = picture[..., 3] > 0.5
     assert picture[inked, :3].max() > 0.9
@@ -107,7 +101,6 @@ def test_words_are_light_with_a_dark_outline(drawn: Drawn) -> None:
 
 
 def test_nothing_to_draw_is_no_failure(drawn: Drawn) -> None:
-    """Empty arrays draw nothing."""
 
     def nothing() -> None:
         drawing.lines(np.empty((0, 2, 2)), ORANGE, halo=1.0)
@@ -118,7 +111,6 @@ def test_nothing_to_draw_is_no_failure(drawn: Drawn) -> None:
 
 
 def test_fading_keeps_the_hue() -> None:
-    """A marker's color has no alpha of its own."""
     assert drawing.faded((0.2, 0.4, 0.6), 0.5) == (0.2, 0.4, 0.6, 0.5)
     assert drawing.faded((0.2, 0.4, 0.6, 0.5), 0.5) == (0.2, 0.4, 0.6, 0.25)
 
@@ -127,7 +119,6 @@ def test_fading_keeps_the_hue() -> None:
 def test_masks_lie_where_the_view_shows_their_pixels(
     drawn: Drawn, camera: Camera, distortion: tuple[float, float, float] | None
 ) -> None:
-    """One corner of the footage is a marker's; the picture is bent as the view bends the footage."""
     lens = None if distortion is None else replace(camera, matrix_world=np.eye(4), distortion=distortion)
     view = FootageView(SimpleNamespace(), (160, 120), np.array([8.0, 60.0]), np.array([80.0, -56.0]), lens)
     coverage = np.zeros((30, 40), dtype=np.float32)
@@ -147,7 +138,6 @@ def test_masks_lie_where_the_view_shows_their_pixels(
 
 
 def test_a_texture_is_made_anew_only_for_other_masks(drawn: Drawn) -> None:
-    """And released when the extension is disabled."""
     view = FootageView(SimpleNamespace(), (40, 30), np.array([8.0, 60.0]), np.array([80.0, -56.0]), None)
     masks = [
         (ColorMask("a", (1.0, 0.0, 0.0), np.full((30, 40), level, dtype=np.float32), []),)

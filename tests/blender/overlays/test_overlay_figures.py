@@ -6,12 +6,10 @@ from keymark.operators.overlays.figures import circles, dashes, diamonds, segmen
 
 
 def lengths(parts: np.ndarray) -> np.ndarray:
-    """(S,) of segments (S, 2, D)."""
     return np.linalg.norm(parts[:, 1] - parts[:, 0], axis=-1)
 
 
 def test_a_line_is_cut_at_places_that_are_missing() -> None:
-    """No segment touches a missing point, and a closed line returns."""
     line = np.array([[0, 0], [1, 0], [np.nan, 0], [3, 0], [4, 1]])
     assert segments(line).tolist() == [[[0, 0], [1, 0]], [[3, 0], [4, 1]]]
     assert len(segments(line, closed=True)) == 3
@@ -20,7 +18,6 @@ def test_a_line_is_cut_at_places_that_are_missing() -> None:
 
 
 def test_dashes_run_on_around_corners() -> None:
-    """Dash and gap keep their lengths along the line, also around corners."""
     corner = np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 5.0]])
     parts = dashes(corner, 5.0, 4.0)
     assert parts.tolist() == [[[0, 0], [5, 0]], [[7, 2], [7, 5]]]
@@ -31,7 +28,6 @@ def test_dashes_run_on_around_corners() -> None:
 
 
 def test_dashes_of_a_closed_line_go_all_the_way_round() -> None:
-    """A circle is inked by its dashes' share."""
     (ring,) = circles([[10.0, 10.0]], 50.0, 200)
     parts = dashes(ring, 6.0, 4.0, closed=True)
     assert lengths(parts).sum() == pytest.approx(0.6 * 2.0 * np.pi * 50.0, rel=0.02)
@@ -39,7 +35,6 @@ def test_dashes_of_a_closed_line_go_all_the_way_round() -> None:
 
 
 def test_dashes_are_bounded_in_number_however_long_the_line() -> None:
-    """A view zoomed in far must not take long to draw."""
     parts = dashes([[0.0, 0.0], [1e9, 0.0]], 6.0, 4.0)
     assert 900 <= len(parts) <= 1001
     assert lengths(parts).sum() == pytest.approx(0.6e9, rel=1e-3)
@@ -49,25 +44,21 @@ def test_dashes_are_bounded_in_number_however_long_the_line() -> None:
     "line", [np.empty((0, 2)), [[1.0, 2.0]], [[1.0, 2.0], [1.0, 2.0]], [[np.nan, 0.0]] * 3]
 )
 def test_a_line_without_length_has_no_dashes(line: np.ndarray) -> None:
-    """Nor does it fail."""
     assert dashes(line, 6.0, 4.0, closed=True).shape == (0, 2, 2)
 
 
 def test_dashes_begin_anew_after_a_missing_place() -> None:
-    """Both runs start with a dash."""
     line = np.array([[0.0, 0.0], [3.0, 0.0], [np.nan, np.nan], [10.0, 0.0], [20.0, 0.0]])
     assert dashes(line, 5.0, 2.0)[:, 0, 0].tolist() == [0.0, 10.0, 17.0]
 
 
 def test_circles_and_diamonds_have_their_size() -> None:
-    """Radii may differ; a diamond stands on a corner."""
     rings = circles([[0.0, 0.0], [5.0, 5.0]], [1.0, 3.0])
     assert np.linalg.norm(rings[1] - 5.0, axis=-1) == pytest.approx(3.0)
     assert diamonds([[2.0, 3.0]], 1.0)[0] == pytest.approx(np.array([[3, 3], [2, 4], [1, 3], [2, 2]]))
 
 
 def test_triangles_cover_a_convex_polygon() -> None:
-    """Their areas add up; a polygon with a missing corner loses the triangles there."""
     (hexagon,) = circles([[0.0, 0.0]], 1.0, 6)
     parts = triangles([hexagon])
     edges = parts[:, 1:] - parts[:, :1]

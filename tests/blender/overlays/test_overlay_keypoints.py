@@ -11,16 +11,15 @@ from keymark.core.review.review import Review
 from keymark.operators.follow.frame_keypoints import FrameKeypoints
 from keymark.operators.overlays import motion
 from keymark.operators.overlays import motion as keypoint_overlay
-from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Style
+from keymark.operators.overlays.drawing import SOURCES, THROWN_OUT, Label, Stroke, Style
 from keymark.operators.overlays.keypoint_marks import (
     all_sources,
     compared_marks,
     not_yet_compared,
     seen_marks,
 )
-from keymark.operators.overlays.mask import Label, Stroke
 from keymark.operators.overlays.outlines import predicted_contours
-from keymark.operators.overlays.registry import ClipView
+from keymark.operators.overlays.views import ClipView
 from keymark.operators.shell import takes
 from keymark.operators.shell.footage_view import FootageView
 
@@ -31,7 +30,6 @@ ALL = all_sources(KEYPOINTS, ())
 
 
 def seen_by(source: str, **points: tuple[float, float]) -> FrameKeypoints:
-    """One person's points of a frame."""
     pixel = np.array([list(points.values())], dtype=np.float64)
     return FrameKeypoints(source, tuple(points), pixel, np.ones(pixel.shape[:2]))
 
@@ -42,7 +40,6 @@ def centers(stroke: Stroke) -> np.ndarray:
 
 
 def test_crosses_lie_where_keypoints_are_seen_and_rings_where_the_motion_puts_them() -> None:
-    """Each in its source's color, and joined by a line."""
     links, rings, crosses, slanting, squares = compared_marks(KEYPOINTS, 0, FOOTAGE.to_region, ALL, STYLE)
     assert centers(crosses) == pytest.approx(FOOTAGE.to_region(KEYPOINTS.seen[0]))
     assert crosses.color[::2, :3].tolist() == [list(SOURCES[i][:3]) for i in (0, 0, 1)]
@@ -53,7 +50,6 @@ def test_crosses_lie_where_keypoints_are_seen_and_rings_where_the_motion_puts_th
 
 
 def test_what_is_not_believed_hidden_or_swapped_is_told_by_its_shape() -> None:
-    """A slanting cross without a line; of a hidden one the ring alone; a square around a swapped one."""
     _, _, upright, slanting, _ = compared_marks(KEYPOINTS, 1, FOOTAGE.to_region, ALL, STYLE)
     assert len(centers(upright)) == 2
     assert centers(slanting) == pytest.approx(FOOTAGE.to_region(KEYPOINTS.seen[1, :1]))
@@ -67,7 +63,6 @@ def test_what_is_not_believed_hidden_or_swapped_is_told_by_its_shape() -> None:
 
 
 def test_only_what_the_motion_does_not_know_yet_is_drawn_beside_it() -> None:
-    """A point clicked since, and people who are not the performer."""
     known = dict(zip(KEYPOINTS.names[:2], KEYPOINTS.seen[0, :2].tolist(), strict=True))
     again = seen_by("a detector", **known)
     assert not_yet_compared([again], KEYPOINTS, 0) == ()
@@ -85,7 +80,6 @@ def test_only_what_the_motion_does_not_know_yet_is_drawn_beside_it() -> None:
 
 @pytest.fixture
 def scene(registered: None, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Scene:
-    """A scene with a take whose motion was held against keypoints."""
     scene, review = bpy.context.scene, made_up_review()
     take = takes.add_take(scene, "Take")
     monkeypatch.setattr(motion, "review_of", lambda asked: review if asked == take else None)
@@ -93,7 +87,6 @@ def scene(registered: None, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Scene:
 
 
 def context_of() -> SimpleNamespace:
-    """A region to draw into."""
     region = SimpleNamespace(x=0, y=0, width=800, height=600, alignment="NONE")
     return SimpleNamespace(area=SimpleNamespace(regions=[region], type="VIEW_3D"), region=region)
 
@@ -107,7 +100,6 @@ def rows(scene: bpy.types.Scene, frame: int) -> list[str]:
 
 
 def test_the_legend_tells_what_the_frame_shows(scene: bpy.types.Scene) -> None:
-    """Sources first; doubts only where there are any, and nothing with the switch off."""
     sources = ["Keypoint of a detector", "Keypoint of Blender's tracks", "Where the motion puts it"]
     assert rows(scene, 1)[:3] == sources
     assert rows(scene, 2)[:4] == [*sources, "Keypoint not believed"]
@@ -119,7 +111,6 @@ def test_the_legend_tells_what_the_frame_shows(scene: bpy.types.Scene) -> None:
 def test_without_markers_the_legend_says_nothing_of_them(
     scene: bpy.types.Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A take in plain clothes."""
     full = made_up_review().to_arrays()
     none = {name: full[name][:, :0] for name in ("observed", "predicted", "reprojection_px")}
     weak = {name: full[name][:0] for name in full if name.startswith("weak")}
@@ -132,7 +123,6 @@ def test_without_markers_the_legend_says_nothing_of_them(
 
 
 def test_contours_are_dashed_where_the_motion_puts_them() -> None:
-    """Each line from its first to its last point; a review with markers has none."""
     review = made_up_review()
     (stroke,) = predicted_contours(review, 0, FOOTAGE.to_region, STYLE)
     whole = np.linalg.norm(np.diff(FOOTAGE.to_region(review.contours[0]), axis=1), axis=-1).sum()
@@ -143,7 +133,6 @@ def test_contours_are_dashed_where_the_motion_puts_them() -> None:
 
 
 def test_keypoints_are_drawn_before_there_is_a_motion(registered: None) -> None:
-    """With a legend of their sources; a small figure has small marks."""
     settings = bpy.context.scene.keymark.overlays
     seen = (seen_by("a detector", **{"head": (80.0, 10.0), "ankle.L": (82.0, 100.0)}),)
     items = keypoint_overlay.picture_keypoints(context_of(), seen, FOOTAGE, settings)

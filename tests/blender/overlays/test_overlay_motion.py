@@ -10,12 +10,11 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from keymark.core.body.human import HUMAN
 from keymark.core.review.review import Review
 from keymark.operators.overlays import motion
-from keymark.operators.overlays.drawing import SMALLEST, Style, body_scale
+from keymark.operators.overlays.drawing import SMALLEST, Fill, Label, Stroke, Style, body_scale, merged
 from keymark.operators.overlays.legend import Sample, corner, legend
-from keymark.operators.overlays.mask import Fill, Label, Stroke, merged
 from keymark.operators.overlays.motion import skeleton
 from keymark.operators.overlays.outlines import paths, window
-from keymark.operators.overlays.registry import ClipView, world_view
+from keymark.operators.overlays.views import ClipView, world_view
 from keymark.operators.shell import results, takes
 from keymark.operators.shell.footage_view import FootageView
 from mathutils import Matrix, Vector
@@ -28,7 +27,6 @@ CAMERA_VIEW = ClipView(FOOTAGE, np.eye(4), 400.0)
 
 @pytest.fixture
 def review() -> Review:
-    """Forty frames in which the second marker is hidden from the eleventh on and the head is uncertain."""
     rng = np.random.default_rng(4)
     turn = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
     ring = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
@@ -61,7 +59,6 @@ def review() -> Review:
 
 @pytest.fixture
 def scene(registered: None, review: Review, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Scene:
-    """A scene with a take of two markers whose motion the review describes."""
     scene = bpy.context.scene
     take = takes.add_take(scene, "Take")
     for name, color in (("shin.L", (1.0, 0.0, 0.0)), ("trunk", (0.0, 1.0, 0.0))):
@@ -79,19 +76,16 @@ def drawn(scene: bpy.types.Scene, view: ClipView = CAMERA_VIEW) -> list:
 
 
 def words(items: list) -> list[str]:
-    """The drawn texts."""
     return [item.words for item in items if isinstance(item, Label)]
 
 
 def switch(scene: bpy.types.Scene, *on: str) -> None:
-    """Show these parts alone."""
     settings = scene.keymark.overlays
     for part in ("observed", "predicted", "keypoints", "skeleton", "paths", "legend"):
         setattr(settings, f"show_{part}", part in on)
 
 
 def test_the_frame_that_the_scene_shows_is_drawn(scene: bpy.types.Scene) -> None:
-    """Clips do not begin at frame 0; outside of the clip nothing is drawn."""
     scene.frame_set(5)
     assert motion.shown(scene).index == 0
     scene.frame_set(20, subframe=0.4)
@@ -103,7 +97,6 @@ def test_the_frame_that_the_scene_shows_is_drawn(scene: bpy.types.Scene) -> None
 
 
 def test_outlines_have_their_markers_colors_and_lie_on_the_footage(scene: bpy.types.Scene) -> None:
-    """Colors go by marker name, in any order of the list; the picture's corner is the region's."""
     switch(scene, "observed")
     scene.frame_set(5)
     first, second = drawn(scene)
@@ -115,7 +108,6 @@ def test_outlines_have_their_markers_colors_and_lie_on_the_footage(scene: bpy.ty
 
 
 def test_a_hidden_marker_is_named_where_it_is_predicted(scene: bpy.types.Scene) -> None:
-    """Its prediction stays, dashed; the legend names it as well."""
     switch(scene, "observed", "predicted", "legend")
     scene.frame_set(5)
     assert not any("idden" in line for line in words(drawn(scene)))
@@ -132,7 +124,6 @@ def test_a_hidden_marker_is_named_where_it_is_predicted(scene: bpy.types.Scene) 
 
 
 def test_without_the_footage_there_are_no_outlines(scene: bpy.types.Scene) -> None:
-    """A viewport seen from elsewhere shows the skeleton and explains no more than that."""
     region = SimpleNamespace(width=800, height=600)
     looking = SimpleNamespace(perspective_matrix=Matrix.Identity(4), view_matrix=Matrix.Identity(4))
     scene.frame_set(20)
@@ -141,7 +132,6 @@ def test_without_the_footage_there_are_no_outlines(scene: bpy.types.Scene) -> No
 
 
 def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:
-    """Nothing at all, with everything off."""
     scene.frame_set(20)
     switch(scene)
     assert drawn(scene) == []
@@ -150,12 +140,10 @@ def test_what_is_switched_off_is_not_drawn(scene: bpy.types.Scene) -> None:
 
 
 def discs(items: list) -> int:
-    """How many polygons are filled."""
     return sum(len(item.corners) for item in items if isinstance(item, Fill))
 
 
 def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) -> None:
-    """The others are discs."""
     places = CAMERA_VIEW.point_positions(review, np.array([3]))[0]
     meter = CAMERA_VIEW.pixels_per_meter(review, 3)
     items = skeleton(review, 3, places, meter, STYLE)
@@ -170,7 +158,6 @@ def test_an_uncertain_point_is_a_ring_in_a_circle_of_its_size(review: Review) ->
 
 
 def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
-    """Dots on frames, diamonds on keyframes, nothing beyond the clip."""
     assert window(12, FRAMES).tolist() == list(range(28))
     assert window(38, FRAMES).tolist() == list(range(23, 40))
     frames = np.arange(17)
@@ -187,7 +174,6 @@ def test_a_path_is_solid_behind_and_dashed_ahead() -> None:
 
 
 def test_the_viewports_projection_is_blenders() -> None:
-    """Point by point, with nothing behind the viewer."""
     region = SimpleNamespace(width=640, height=480)
     view = Matrix.LocRotScale(Vector((0.3, -1.0, 0.5)), Matrix.Rotation(0.7, 3, "X").to_quaternion(), None)
     lens = Matrix(((1.9, 0, 0.1, 0), (0, 2.5, 0.0, 0), (0, 0, -1.01, -0.2), (0, 0, -1, 0)))
@@ -212,7 +198,6 @@ def test_the_viewports_projection_is_blenders() -> None:
 
 
 def test_a_far_body_is_drawn_finer() -> None:
-    """Down to a limit; points behind the viewer do not count."""
     assert body_scale(np.array([200.0, np.nan, 300.0]), 1.0) == 1.0
     assert body_scale(np.array([80.0]), 1.0) == pytest.approx(0.5)
     assert body_scale(np.array([160.0]), 2.0) == pytest.approx(0.5)
@@ -220,7 +205,6 @@ def test_a_far_body_is_drawn_finer() -> None:
 
 
 def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
-    """Empty, it is nothing."""
     assert legend((), 40.0, 30.0, STYLE) == ()
     rows = [(sample, f"Like {sample.value}, explained at length") for sample in Sample]
     ground, *rest = legend(tuple(rows), 40.0, 30.0, STYLE)
@@ -231,7 +215,6 @@ def test_a_legend_stands_on_a_ground_that_holds_all_of_it() -> None:
 
 
 def test_neighbors_that_are_alike_are_drawn_at_once() -> None:
-    """With their own colors, in their order; different ones are not mixed."""
     line = np.zeros((2, 2, 2))
     red, blue = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
     thin = [Stroke(line, red, 1.0), Stroke(line + 1.0, [blue, red], 1.0)]
@@ -246,7 +229,6 @@ def test_neighbors_that_are_alike_are_drawn_at_once() -> None:
 
 
 def test_the_legend_keeps_clear_of_what_covers_the_region() -> None:
-    """A toolbar at the left, the panel of the last operator at the bottom; a closed one covers nothing."""
 
     def other(kind: str, alignment: str, x: int, y: int, width: int, height: int) -> SimpleNamespace:
         return SimpleNamespace(type=kind, alignment=alignment, x=x, y=y, width=width, height=height)
@@ -261,7 +243,6 @@ def test_the_legend_keeps_clear_of_what_covers_the_region() -> None:
 
 
 def test_a_lost_review_draws_nothing(registered: None) -> None:
-    """A file from another machine: the key is there, the result is not."""
     scene = bpy.context.scene
     assert motion.shown(scene) is None
     take = takes.add_take(scene, "Take")

@@ -6,14 +6,15 @@ import bpy
 import pytest
 from keymark.core.errors import InputError
 from keymark.operators.overlays import registry
-from keymark.operators.overlays.registry import Overlay, guarded
+from keymark.operators.overlays.registry import DrawFunction, Overlay, guarded
 
-BROKEN = Overlay("Broken", "broken", "SpaceView3D")
+
+def overlay(draw: DrawFunction) -> Overlay:
+    return Overlay("Broken", draw, "SpaceView3D")
 
 
 @pytest.fixture(autouse=True)
 def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Record of the blend modes that handlers set; without a window there is no GPU module."""
     modes: list[str] = []
     monkeypatch.setattr(registry, "gpu", SimpleNamespace(state=SimpleNamespace(blend_set=modes.append)))
     registry.try_again()
@@ -23,14 +24,13 @@ def blending(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def test_a_failure_is_logged_once_and_switches_the_overlay_off(
     caplog: pytest.LogCaptureFixture, blending: list[str]
 ) -> None:
-    """The second redraw does not even try; another go is given on demand."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
         calls.append(context)
         raise ValueError("no such marker")
 
-    handler = guarded(BROKEN, draw)
+    handler = guarded(overlay(draw))
     handler()
     handler()
     assert len(calls) == len(caplog.records) == 1
@@ -43,49 +43,42 @@ def test_a_failure_is_logged_once_and_switches_the_overlay_off(
 
 
 def test_another_overlay_goes_on(blending: list[str]) -> None:
-    """One that fails takes no other with it."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
         raise ValueError
 
-    guarded(BROKEN, draw)()
-    guarded(Overlay("Sound", "sound", "SpaceView3D"), calls.append)()
+    guarded(overlay(draw))()
+    guarded(Overlay("Sound", calls.append, "SpaceView3D"))()
     assert calls == [bpy.context]
     assert registry.failures() == {"Broken": "ValueError"}
     assert blending == ["ALPHA", "NONE"] * 2
 
 
 def test_every_overlay_can_be_handed_to_blender() -> None:
-    """Spaces and modules exist; Blender takes each handler and gives it back."""
-    from importlib import import_module
-
-    for overlay in registry.OVERLAYS:
-        draw = import_module(f"keymark.operators.overlays.{overlay.module}").draw
-        space = getattr(bpy.types, overlay.space)
-        handler = space.draw_handler_add(guarded(overlay, draw), (), overlay.region, overlay.phase)
-        assert handler is not None, overlay
-        space.draw_handler_remove(handler, overlay.region)
+    for each in registry.OVERLAYS:
+        space = getattr(bpy.types, each.space)
+        handler = space.draw_handler_add(guarded(each), (), "WINDOW", "POST_PIXEL")
+        assert handler is not None, each
+        space.draw_handler_remove(handler, "WINDOW")
         with pytest.raises(ValueError):  # it is gone
-            space.draw_handler_remove(handler, overlay.region)
+            space.draw_handler_remove(handler, "WINDOW")
 
 
 def test_without_a_screen_no_handler_is_added() -> None:
-    """Tests, render farms and the command line draw nothing."""
     registry.register()
     assert registry._handlers == []
     registry.unregister()
 
 
 def test_what_cannot_be_drawn_now_is_drawn_when_it_can(blending: list[str]) -> None:
-    """An unsupported camera, for example: no error, and the overlay stays enabled."""
     calls = []
 
     def draw(context: bpy.types.Context) -> None:
         calls.append(context)
         raise InputError("camera 'Camera' is of type ORTHO; footage needs a perspective one")
 
-    handler = guarded(BROKEN, draw)
+    handler = guarded(overlay(draw))
     handler()
     handler()
     assert len(calls) == 2 and not registry.failures()

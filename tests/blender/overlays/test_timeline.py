@@ -9,7 +9,7 @@ from _review import made_up_review
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.take.take import Take
-from keymark.operators.overlays.mask import Fill, Label, Stroke
+from keymark.operators.overlays.drawing import Fill, Label, Stroke
 from keymark.operators.overlays.timeline import (
     MODES,
     ROOMY,
@@ -34,7 +34,6 @@ VIEW = Timeline(origin=20.0, scale=10.0, width=200.0, height=60.0, pixel=1.0, si
 
 @pytest.fixture
 def take(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The tiny take opened, with three keyframes at 1, 7 and 13."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
     return active_take(bpy.context.scene)
 
@@ -52,17 +51,14 @@ def reading(frames: int = 13) -> Reading:
 
 
 def items_of(take: bpy.types.PropertyGroup, kind: type, view: Timeline = VIEW) -> list:
-    """The drawn items of one kind."""
     return [item for item in picture(bpy.context.scene, take, view) if isinstance(item, kind)]
 
 
 def test_a_take_of_which_nothing_is_known_draws_nothing(take: bpy.types.PropertyGroup) -> None:
-    """No reading, no review, no proposals."""
     assert picture(bpy.context.scene, take, VIEW) == []
 
 
 def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
-    """A diamond each, at its frame; of those only the keyed ones are filled."""
     for frame in (1, 4, 7):
         take.proposals.add().frame = frame
     (outline,), (filled,) = items_of(take, Stroke), items_of(take, Fill)
@@ -72,7 +68,6 @@ def test_proposals_are_filled_once_posed(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -> None:
-    """It comes from the last reading of the clip; proposals are drawn on it."""
     keep_reading(take, reading())
     area = items_of(take, Fill)[0]
     heights = area.corners[:, 3, 1] - VIEW.floor
@@ -87,7 +82,6 @@ def test_the_graph_rises_where_the_markers_move(take: bpy.types.PropertyGroup) -
 def test_without_markers_the_graph_is_the_speed_that_keyframes_were_proposed_by(
     take: bpy.types.PropertyGroup,
 ) -> None:
-    """Else that of the motion's review; a reading of nothing draws nothing."""
     bare = reading()
     tracks = RegionTracks.unmarked(bare.tracks.time_s, (160, 120))
     keep_reading(take, Reading(tracks, key="reading-of-no-marker"))
@@ -101,7 +95,6 @@ def test_without_markers_the_graph_is_the_speed_that_keyframes_were_proposed_by(
 
 
 def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -> None:
-    """The lowest bar stands in the middle, where the review is least sure."""
     keep_review(take, made_up_review())
     *_, ground, bars = items_of(take, Fill)
     heights = bars.corners[:, 2, 1] - bars.corners[:, 1, 1]
@@ -115,7 +108,6 @@ def test_confidence_is_told_by_height_and_color(take: bpy.types.PropertyGroup) -
 
 
 def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -> None:
-    """A triangle each."""
     for frame in (4.0, 9.0):
         take.review.weak_frames.add().frame = frame
     assert len(items_of(take, Fill)[0].corners) == 2
@@ -125,7 +117,6 @@ def test_weak_frames_point_until_they_are_posed(take: bpy.types.PropertyGroup) -
 
 
 def test_a_long_clip_is_drawn_no_finer_than_can_be_seen() -> None:
-    """Fewer positions than pixels, and the extremes survive."""
     x, values = np.linspace(0.0, 300.0, 3000), np.full(3000, 0.9)
     values[1234] = 0.1
     places, lowest = joined(x, values, lowest=True)
@@ -135,14 +126,12 @@ def test_a_long_clip_is_drawn_no_finer_than_can_be_seen() -> None:
 
 
 def test_only_what_the_region_shows_is_drawn() -> None:
-    """With one frame more on each side, so that lines leave it."""
     x = np.arange(-100.0, 500.0, 10.0)
     shown = x[in_view(x, 200.0)]
     assert (shown[0], shown[-1]) == (-10.0, 200.0)
 
 
 def test_figures_keep_gaps() -> None:
-    """A frame of which nothing is known has no bar and no area."""
     values = np.array([0.5, np.nan, 1.0])
     bars, _ = strip(np.arange(3.0), values, 0.0, 10.0)
     assert np.isnan(bars).any((1, 2)).tolist() == [False, True, False]
@@ -151,7 +140,6 @@ def test_figures_keep_gaps() -> None:
 
 
 def test_colors_and_heights_stay_in_range() -> None:
-    """Also for values out of the usual range."""
     colors = confidence_color(np.array([-1.0, 0.0, 0.75, 1.0, np.nan]))
     assert colors.min() >= 0.0 and colors.max() <= 1.0
     heights = relative(np.array([0.0, 1.0, 1.0, 50.0, np.nan]))
@@ -159,6 +147,5 @@ def test_colors_and_heights_stay_in_range() -> None:
 
 
 def test_the_editors_modes_exist() -> None:
-    """Blender has not renamed them."""
     known = {item.identifier for item in bpy.types.SpaceDopeSheetEditor.bl_rna.properties["mode"].enum_items}
     assert set(MODES) - {"TIMELINE"} <= known

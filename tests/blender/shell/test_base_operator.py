@@ -23,26 +23,21 @@ class Operator(BaseOperator):
 
     @classmethod
     def poll_message_set(cls, sentence: str) -> None:
-        """Keep the tooltip."""
         cls.tooltips.append(sentence)
 
     def report(self, kind: set[str], text: str) -> None:
-        """Keep the report."""
         self.reports.append((kind, text))
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Return or raise the outcome."""
         if isinstance(self.outcome, Exception):
             raise self.outcome
         return self.outcome
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Count the calls."""
         self.cancelled += 1
 
 
 def test_the_first_unmet_requirement_is_the_tooltip() -> None:
-    """Those after it are not asked."""
 
     class Demanding(Operator):
         tooltips = []
@@ -55,14 +50,12 @@ def test_the_first_unmet_requirement_is_the_tooltip() -> None:
 
 @pytest.mark.parametrize(("outcome", "result"), [(None, {"FINISHED"}), ({"CANCELLED"}, {"CANCELLED"})])
 def test_an_operator_that_did_nothing_is_cancelled(outcome: set[str] | None, result: set[str]) -> None:
-    """Blender adds an undo step only for one that has finished."""
     operator = Operator(outcome)
     assert operator.execute(CONTEXT) == result
     assert operator.reports == []
 
 
 def test_an_expected_failure_is_a_report_and_any_other_passes_through() -> None:
-    """The sentence is the error's own; a missing library is named."""
     operator = Operator(InputError("the clip is upside down"))
     assert operator.execute(CONTEXT) == {"CANCELLED"}
     assert operator.reports == [({"ERROR"}, "The clip is upside down")]
@@ -83,7 +76,6 @@ def test_an_expected_failure_is_a_report_and_any_other_passes_through() -> None:
     ],
 )
 def test_esc_cancels_and_a_right_click_cancels_a_click(kind: str, value: str, job: bool, click: bool) -> None:
-    """A job, which goes on behind the animator's clicks, says that it was cancelled."""
     event = SimpleNamespace(type=kind, value=value)
     working, waiting = Operator(), Operator()
     assert cancel_job(working, CONTEXT, event) is job

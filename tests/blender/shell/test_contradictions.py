@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from keymark.operators.shell.contradictions import contradictions_at, draw_contradictions, note_contradictions
+from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
+from keymark.operators.shell.panel import draw_contradictions
 from keymark.operators.shell.takes import active_take
 
 Group = bpy.types.PropertyGroup
@@ -14,16 +15,13 @@ class Layout:
     """Keeps what is drawn."""
 
     def __init__(self) -> None:
-        """Begin empty."""
         self.lines: list[str] = []
         self.scale_y = 1.0
 
     def column(self, align: bool = False) -> "Layout":
-        """The layout itself."""
         return self
 
     def label(self, text: str = "", icon: str = "NONE", translate: bool = True) -> None:
-        """Keep the line."""
         self.lines.append(text)
 
 
@@ -31,7 +29,6 @@ class Context:
     """What drawing asks of a context."""
 
     def __init__(self, scene: bpy.types.Scene) -> None:
-        """A wide sidebar."""
         self.scene, self.region = scene, SimpleNamespace(width=2000)
         self.window_manager = bpy.context.window_manager
         self.preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
@@ -39,14 +36,12 @@ class Context:
 
 @pytest.fixture
 def take(opened: bpy.types.Scene) -> Group:
-    """The tiny take with a contradiction at frame 5."""
     found = active_take(opened)
     note_contradictions(found, 5.0, ("shin.L", "wrist.R"))
     return found
 
 
 def drawn(scene: bpy.types.Scene, frame: int) -> str:
-    """What the panel says at a frame."""
     scene.frame_set(frame)
     layout = Layout()
     draw_contradictions(layout, Context(scene), active_take(scene))
@@ -54,14 +49,12 @@ def drawn(scene: bpy.types.Scene, frame: int) -> str:
 
 
 def test_it_is_said_at_its_frame_alone(take: Group, opened: bpy.types.Scene) -> None:
-    """By the names, and not at the frames around it."""
     take.follow.use_keypoints = True
     assert "shin.L, wrist.R" in drawn(opened, 5)
     assert drawn(opened, 4) == drawn(opened, 6) == ""
 
 
 def test_a_frame_that_is_looked_at_again_says_the_newest(take: Group) -> None:
-    """Another contradiction, or none."""
     note_contradictions(take, 5.0, ("trunk",))
     assert contradictions_at(take, 5.0) == ("trunk",)
     note_contradictions(take, 5.0, ())
@@ -69,7 +62,6 @@ def test_a_frame_that_is_looked_at_again_says_the_newest(take: Group) -> None:
 
 
 def test_what_is_followed_no_more_contradicts_no_more(take: Group) -> None:
-    """A kind that is switched off, a marker that is removed, and footage that was read anew."""
     take.follow.use_keypoints = take.follow.use_tracks = False
     assert contradictions_at(take, 5.0) == ("shin.L",)
     take.follow.use_keypoints = True
@@ -80,7 +72,6 @@ def test_what_is_followed_no_more_contradicts_no_more(take: Group) -> None:
 
 
 def test_storing_a_keyframe_settles_it(take: Group, opened: bpy.types.Scene) -> None:
-    """Whoever poses the frame knows better."""
     opened.frame_set(5)
     bpy.ops.keymark.store_keyframe()
     assert contradictions_at(active_take(opened), 5.0) == ()

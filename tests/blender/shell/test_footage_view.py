@@ -19,21 +19,18 @@ def view(lens: Camera | None) -> FootageView:
 
 
 def test_the_corners_of_the_picture_lie_where_the_region_shows_them() -> None:
-    """y points up in a region, down in the footage."""
     expected = np.array([[10.0, 300.0], [330.0, 300.0], [171.0, 237.5]])
     assert view(None).to_region(PIXELS) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("distortion", [(0.0, 0.0, 0.0), (-0.2, 0.05, 0.0)])
 def test_there_and_back(camera: Camera, distortion: tuple[float, float, float]) -> None:
-    """Undistorted or not, a position leads to the pixel it came from."""
     lens = replace(camera, matrix_world=np.eye(4), distortion=distortion)
     shown = view(lens)
     assert shown.to_footage(shown.to_region(PIXELS)) == pytest.approx(PIXELS, abs=0.01)
 
 
 def test_a_point_is_found_where_the_lens_put_it(camera: Camera) -> None:
-    """The undistorted picture shows a point where a lens without distortion projects it."""
     lens = replace(camera, matrix_world=np.eye(4), distortion=(-0.2, 0.05, 0.0), shift_x=0.05)
     point = np.array([1.2, 0.8, -3.0])
     recorded, _ = lens.project(point)
@@ -43,7 +40,6 @@ def test_a_point_is_found_where_the_lens_put_it(camera: Camera) -> None:
 
 
 def test_no_editor_shows_footage_whose_file_is_missing() -> None:
-    """Blender shows a picture of another size instead: marks would lie anywhere."""
     clip = SimpleNamespace(size=(256, 256))
     space = SimpleNamespace(clip=clip, view="CLIP")
     area = SimpleNamespace(type="CLIP_EDITOR", spaces=SimpleNamespace(active=space))

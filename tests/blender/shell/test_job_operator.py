@@ -22,11 +22,9 @@ class Job(JobOperator):
         self.closed = False
 
     def report(self, kind: set[str], text: str) -> None:
-        """Keep what is reported."""
         self.reports.append((kind, text))
 
     def start(self, scene: bpy.types.Scene):  # noqa: ANN201
-        """Twenty steps."""
         try:
             for step in range(20):
                 if step == self.fail_at:
@@ -37,13 +35,11 @@ class Job(JobOperator):
             self.closed = True
 
     def finish(self, scene: bpy.types.Scene, result: str) -> None:
-        """Write the result."""
         scene["result"] = result
 
 
 @pytest.fixture
 def context(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """The real context with a window manager that counts timers, as there are no timer events here."""
     timers: list[object] = []
     manager = bpy.context.window_manager
 
@@ -70,12 +66,10 @@ def context(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
 
 def event(kind: str, value: str = "NOTHING") -> SimpleNamespace:
-    """An event."""
     return SimpleNamespace(type=kind, value=value)
 
 
 def run_modal(job: Job, context: SimpleNamespace) -> set[str]:
-    """Send timer events until the operator ends."""
     for _ in range(100):
         result = job.modal(context, event("TIMER"))
         if result != {"RUNNING_MODAL"}:
@@ -84,14 +78,12 @@ def run_modal(job: Job, context: SimpleNamespace) -> set[str]:
 
 
 def test_at_once_the_whole_job_is_done(context: SimpleNamespace) -> None:
-    """Scripts get the result synchronously."""
     job = Job()
     assert job.execute(context) == {"FINISHED"}
     assert context.scene["result"] == "counted"
 
 
 def test_on_the_timer_the_job_ends_with_its_result(context: SimpleNamespace) -> None:
-    """The timer is gone afterwards."""
     job = Job()
     assert job.invoke(context, event("LEFTMOUSE")) == {"RUNNING_MODAL"}
     assert len(context.timers) == 1
@@ -103,7 +95,6 @@ def test_on_the_timer_the_job_ends_with_its_result(context: SimpleNamespace) -> 
 def test_escape_leaves_everything_as_it_was(
     context: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The job is closed in the middle, its result never written."""
     monkeypatch.setattr("keymark.operators.shell.job_operator.LONGEST_SLICE_S", 0.0)  # one step an event
     job = Job()
     job.invoke(context, event("LEFTMOUSE"))
@@ -119,7 +110,6 @@ def test_escape_leaves_everything_as_it_was(
 
 @pytest.mark.parametrize("modal", [True, False])
 def test_a_failing_job_is_one_sentence(context: SimpleNamespace, modal: bool) -> None:
-    """Expected errors are reported, the timer is removed, nothing is written."""
     job = Job(fail_at=3)
     if modal:
         job.invoke(context, event("LEFTMOUSE"))
@@ -132,7 +122,6 @@ def test_a_failing_job_is_one_sentence(context: SimpleNamespace, modal: bool) ->
 
 
 def test_a_reconstruction_that_is_cancelled_leaves_the_scene(tiny_take) -> None:  # noqa: ANN001
-    """The real job, stopped at every tenth step: Actions, frame and pose are as before."""
     from keymark.operators.reconstruct.reconstruct import KEYMARK_OT_reconstruct
 
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))

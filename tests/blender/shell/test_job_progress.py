@@ -12,7 +12,6 @@ def _operator(name: str, address: int) -> SimpleNamespace:
 
 @pytest.mark.parametrize(("browsed", "runs"), [(None, True), (7, False), (8, True)])
 def test_an_open_file_browser_is_no_running_job(browsed: int | None, runs: bool) -> None:
-    """An operator waits for the file browser of its own alone; with another's open it runs."""
     modal = _operator("KEYMARK_OT_load_footage", 7)
     asking = None if browsed is None else _operator("KEYMARK_OT_load_footage", browsed)
     space = SimpleNamespace(active_operator=asking)
@@ -25,7 +24,6 @@ def test_an_open_file_browser_is_no_running_job(browsed: int | None, runs: bool)
 
 
 def test_dragging_joints_lets_other_operators_go_on() -> None:
-    """It waits for the mouse in the view; only who asks for it by name hears of it."""
     modal = [_operator("KEYMARK_OT_drag_joints", 7)]
     window = SimpleNamespace(modal_operators=modal, screen=SimpleNamespace(areas=[]))
     context = SimpleNamespace(window_manager=SimpleNamespace(windows=[window]))

@@ -9,7 +9,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def test_newer_notices_replace_those_about_the_same(opened: bpy.types.Scene) -> None:
-    """Others stay; none given means that there is nothing to know any more."""
     take = active_take(opened)
     give_notices(take, "finish", "bake", ("the left foot slides", "the right one too"))
     give_notices(take, "finish", "asset", ("no catalog",))
@@ -21,7 +20,6 @@ def test_newer_notices_replace_those_about_the_same(opened: bpy.types.Scene) -> 
 
 
 def test_a_pose_beyond_the_skeleton_is_said_while_it_is_keyed(opened: bpy.types.Scene) -> None:
-    """Deleting the key ends it, and so does another pose there."""
     take = active_take(opened)
     opened.frame_set(5)
     thigh = take.armature.pose.bones["thigh.L"]

@@ -19,7 +19,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture
 def loads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
-    """A store of its own for the test, and the keys that were looked for in it."""
     keys: list[str] = []
 
     class Counting(ArrayCache):
@@ -33,12 +32,10 @@ def loads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
 
 @pytest.fixture
 def reading(tiny_take: Take) -> Reading:
-    """The reading of the tiny take."""
     return run(read_footage(tiny_take))
 
 
 def test_a_reading_is_found_in_memory_and_then_on_disk(loads: list[str], reading: Reading) -> None:
-    """The take's key alone leads to it."""
     take = add_take(bpy.context.scene, "Walk")
     assert results.reading_of(take) is None and loads == []
     results.keep_reading(take, reading)
@@ -50,7 +47,6 @@ def test_a_reading_is_found_in_memory_and_then_on_disk(loads: list[str], reading
 
 
 def test_what_is_nowhere_is_looked_for_once(loads: list[str]) -> None:
-    """Drawing may ask as often as it likes."""
     take = add_take(bpy.context.scene, "Walk")
     take.reading_key = "reading-1-2"
     assert [results.reading_of(take) for _ in range(5)] == [None] * 5
@@ -58,7 +54,6 @@ def test_what_is_nowhere_is_looked_for_once(loads: list[str]) -> None:
 
 
 def test_two_takes_and_a_key_that_goes_back_have_their_own(loads: list[str], reading: Reading) -> None:
-    """As undo sets a take's key back."""
     scene = bpy.context.scene
     results.keep_reading(add_take(scene, "Walk"), reading)
     other = replace(reading, key="reading-other-1")
@@ -70,7 +65,6 @@ def test_two_takes_and_a_key_that_goes_back_have_their_own(loads: list[str], rea
 
 
 def test_a_file_of_something_else_counts_as_absent(loads: list[str], reading: Reading) -> None:
-    """And what cannot be written is no reason to fail."""
     take = add_take(bpy.context.scene, "Walk")
     results.keep_reading(take, reading)
     results._store().save(reading.key, {"x": reading.tracks.time_s})
@@ -86,7 +80,6 @@ def test_a_file_of_something_else_counts_as_absent(loads: list[str], reading: Re
 
 
 def test_results_lie_in_the_extensions_own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Blender is asked by the extension's name, or a file that is opened again would find nothing."""
     asked: list[str] = []
 
     def extension_path_user(package: str, *, path: str = "", create: bool = False) -> str:

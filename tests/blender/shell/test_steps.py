@@ -10,12 +10,10 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def folded(take: bpy.types.PropertyGroup) -> set[str]:
-    """The steps that are folded."""
     return {step for step in STEPS if not is_open(take, step)}
 
 
 def test_steps_fold_once_the_work_has_left_them_behind(tiny_take: Take) -> None:
-    """Nothing folds while it is being worked on: not the footage before something is followed, for one."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     take = active_take(bpy.context.scene)
     assert folded(take) == set()
@@ -43,7 +41,6 @@ def test_steps_fold_once_the_work_has_left_them_behind(tiny_take: Take) -> None:
 
 
 def test_what_a_person_opens_stays_open_until_the_step_changes(opened: bpy.types.Scene) -> None:
-    """Per take, by the switch that the header follows."""
     take, switches = active_take(opened), bpy.context.window_manager.keymark_steps
     assert not switches.actor and switches.finish
     switches.actor, switches.finish = True, False
@@ -57,7 +54,6 @@ def test_what_a_person_opens_stays_open_until_the_step_changes(opened: bpy.types
 
 
 def test_panels_inside_a_folded_step_are_hidden(opened: bpy.types.Scene) -> None:
-    """Blender would draw them below the header."""
     lengths = bpy.types.Panel.bl_rna_get_subclass_py("KEYMARK_PT_actor_lengths")
     markers = bpy.types.Panel.bl_rna_get_subclass_py("KEYMARK_PT_markers")
     step = bpy.types.Panel.bl_rna_get_subclass_py("KEYMARK_PT_actor")

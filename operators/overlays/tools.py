@@ -1,4 +1,4 @@
-"""Overlay of the joints that can be dragged: a ring at each, a larger one under the mouse."""
+"""Overlays of running tools: joints to drag, lines that tell the camera, measuring, requests for clicks."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,7 +15,7 @@ from ..bridge.object_space import joint_places
 from ..footage.drawn_lines import Drawing, DrawnLine, current_camera, running
 from ..footage.found_camera import HINTS, is_found, values
 from ..shell.footage_clicks import WorldInRegion
-from ..shell.footage_view import FootageView, footage_view
+from ..shell.footage_view import FootageRequest, FootageView, footage_view, shown_request
 from ..shell.takes import find_take, footage_of
 from . import drawing
 from .drawing import side_color
@@ -26,34 +26,29 @@ if TYPE_CHECKING:
     from ...core.footage.camera_evidence import FloorGrid
 
 
-HANDLE_PX, HOVERED_PX = 6.0, 9.0
-"""Radius of a joint's ring, and of the one under the mouse."""
-INSIDE = 0.35
-"""Opacity of a ring's inside: the footage under it stays to be seen."""
-CORNERS = 24
+# --- Joints that can be dragged
 
 
 @dataclass
 class Handles:
-    """State of the running tool."""
+    """State of the tool that drags joints."""
 
-    hovered: str | None = None
-    """The joint that the mouse is over or drags."""
-
-
-_running: Handles | None = None
+    hovered: str | None = None  # the joint that the mouse is over or drags
 
 
-def show(handles: Handles | None) -> None:
+_handles: Handles | None = None
+
+
+def show_handles(handles: Handles | None) -> None:
     """Draw the joints from now on; None ends the drawing."""
-    global _running
-    _running = handles
+    global _handles
+    _handles = handles
 
 
-def draw(context: bpy.types.Context) -> None:
-    """Draw the joints of the active take's actor in a 3D view."""
+def draw_joints(context: bpy.types.Context) -> None:
+    """Draw a ring at each joint of the active take's actor in a 3D view, a larger one under the mouse."""
     take = find_take(context.scene)
-    if _running is None or take is None or take.armature is None:
+    if _handles is None or take is None or take.armature is None:
         return
     view = WorldInRegion(context.region, context.region_data)
     scale = drawing.ui_scale()
@@ -61,15 +56,13 @@ def draw(context: bpy.types.Context) -> None:
         position = view.position(place)
         if position is None:
             continue
-        hovered = name == _running.hovered
-        radius = (HOVERED_PX if hovered else HANDLE_PX) * scale
-        rim = circles(position[None], radius, CORNERS)
-        color = side_color(name)
-        drawing.polygons(rim, drawing.INK if hovered else drawing.faded(color, INSIDE))
+        hovered, color = name == _handles.hovered, side_color(name)
+        rim = circles(position[None], (9.0 if hovered else 6.0) * scale)
+        drawing.polygons(rim, drawing.INK if hovered else drawing.faded(color, 0.35))
         drawing.lines(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9)
 
 
-# --- Overlay of the tool that finds the camera
+# --- Lines that tell the camera
 
 
 COLORS: dict[str, drawing.Color] = {
@@ -79,12 +72,6 @@ COLORS: dict[str, drawing.Color] = {
     "HEIGHT": (1.0, 0.9, 0.3, 1.0),
 }
 """Plumb lines have the color of Blender's Z axis, level ones those of X and Y."""
-END_PX = 4.0
-"""Half the side of the square at an end."""
-MARGIN_PX, ROW_PX = 14.0, 18.0
-BESIDE_PX = 8.0
-ELSEWHERE = 0.45
-"""Opacity of a performer's height that was drawn in another frame."""
 
 
 def draw_camera_lines(context: bpy.types.Context) -> None:
@@ -100,27 +87,26 @@ def draw_camera_lines(context: bpy.types.Context) -> None:
         if line.kind == "HEIGHT":
             x, y = view.to_region(np.array(line.ends, dtype=np.float64)).mean(axis=0)
             words = f"{tool.length_of(line):.2f} m"
-            drawing.text(words, float(x) + BESIDE_PX * drawing.ui_scale(), float(y), COLORS[line.kind])
-    _draw_found(context, view, tool)
+            drawing.text(words, float(x) + 8.0 * drawing.ui_scale(), float(y), COLORS[line.kind])
+    _draw_found(view, tool)
 
 
 def _draw_line(view: FootageView, line: DrawnLine, active: bool, frame: int) -> None:
-    there = 1.0 if line.kind != "HEIGHT" or line.frame == frame else ELSEWHERE
+    there = 1.0 if line.kind != "HEIGHT" or line.frame == frame else 0.45
     color = drawing.faded(COLORS[line.kind], there)
     ends = view.to_region(np.array(line.ends, dtype=np.float64))
     drawing.lines(ends[None], color, width=2.5 if active else 1.5, halo=0.8 * there)
-    half = END_PX * drawing.ui_scale() * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    half = 4.0 * drawing.ui_scale() * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     drawing.polygons(ends[:, None] + half, color)
 
 
-def _draw_found(context: bpy.types.Context, view: FootageView, tool: Drawing) -> None:
+def _draw_found(view: FootageView, tool: Drawing) -> None:
     """Write what the lines say of the camera at the lower edge of the picture."""
     left = max(0.0, float(view.top_left[0]))
     bottom = max(0.0, float((view.top_left + view.extent)[1]))
     scale = drawing.ui_scale()
-    rows = _sentences(tool)
-    for number, sentence in enumerate(reversed(rows)):
-        drawing.text(sentence, left + MARGIN_PX * scale, bottom + (MARGIN_PX + ROW_PX * number) * scale)
+    for number, sentence in enumerate(reversed(_sentences(tool))):
+        drawing.text(sentence, left + 14.0 * scale, bottom + (14.0 + 18.0 * number) * scale)
 
 
 def _sentences(tool: Drawing) -> list[str]:
@@ -132,13 +118,11 @@ def _sentences(tool: Drawing) -> list[str]:
     return rows + [HINTS[name] for name in tool.fit.kept if name in ("height", "tilt", "roll")]
 
 
-# --- Overlay of the floor
+# --- The floor
 
 
 GRID: drawing.Color = (0.55, 0.95, 1.0, 0.9)
 HORIZON: drawing.Color = (1.0, 0.85, 0.45, 0.9)
-FADING_M = 8.0
-"""Depth over which the grid fades to a third [m]."""
 
 
 def draw_floor_grid(context: bpy.types.Context) -> None:
@@ -157,7 +141,7 @@ def draw_floor_grid(context: bpy.types.Context) -> None:
     grid = _grid(_key(camera))
     opacity = settings.opacity
     colors = np.tile(np.array(drawing.faded(GRID, opacity)), (len(grid.lines), 1))
-    colors[:, 3] /= 1.0 + 2.0 * np.minimum(grid.depth_m / FADING_M, 2.0)
+    colors[:, 3] /= 1.0 + 2.0 * np.minimum(grid.depth_m / 8.0, 2.0)  # a third at 8 m
     drawing.lines(view.to_region(grid.lines), colors, width=1.2, halo=0.0)
     drawing.lines(view.to_region(grid.horizon), drawing.faded(HORIZON, opacity), width=1.2, halo=0.3)
 
@@ -178,3 +162,78 @@ def _grid(key: tuple[float | int, ...]) -> "FloorGrid":
     size = (int(width), int(height))
     matrix = np.array(pose).reshape(4, 4)
     return floor_grid(Camera(lens_mm, sensor_width_mm, size, matrix, shift_x, shift_y, (k1, k2, k3)))
+
+
+# --- Measuring the performer: the clicked top of the head, and a line to the mouse
+
+
+@dataclass
+class Clicks:
+    """State of the operator that measures the performer."""
+
+    head: tuple[float, float] | None = None  # footage pixel of its top
+    mouse: tuple[int, int] = (0, 0)  # in the window [px]
+
+
+_clicks: Clicks | None = None
+
+
+def show_clicks(clicks: Clicks | None) -> None:
+    """Draw these clicks from now on; None ends the drawing."""
+    global _clicks
+    _clicks = clicks
+
+
+def draw_measuring(context: bpy.types.Context) -> None:
+    """Draw the first click and the height that a second one at the mouse would give."""
+    take = find_take(context.scene)
+    if _clicks is None or _clicks.head is None or take is None:
+        return
+    view = footage_view(context.scene, take, context.area, context.region)
+    if view is None:
+        return
+    reach = 7.0 * drawing.ui_scale()
+    head = view.to_region(_clicks.head)
+    mouse = np.array(_clicks.mouse, dtype=np.float64) - (context.region.x, context.region.y)
+    arms = reach * np.array([[[-1.0, 0.0], [1.0, 0.0]], [[0.0, -1.0], [0.0, 1.0]]])
+    drawing.lines(head + arms, drawing.INK, halo=1.0)
+    drawing.lines(np.stack([head, mouse])[None], drawing.INK, width=1.0, halo=0.6)
+    drawing.text("Top of Head", float(head[0]) + 1.5 * reach, float(head[1]) + 0.5 * reach)
+
+
+# --- What an operator asks for
+
+
+TITLE_SIZE, DETAIL_SIZE, NEAR_SIZE = 22.0, 14.0, 13.0
+
+
+def draw_request(context: bpy.types.Context) -> None:
+    """Write what is asked for at the region's top, below its headers, and beside the mouse."""
+    take, request = find_take(context.scene), shown_request()
+    if request is None or take is None:
+        return
+    view = footage_view(context.scene, take, context.area, context.region)
+    if view is None:
+        return
+    scale, region = drawing.ui_scale(), context.region
+    middle, top = 0.5 * region.width, region.height - 84.0 * scale
+    drawing.text(request.title, middle, top, size=TITLE_SIZE, align="middle")
+    if request.detail:
+        below = top - 1.6 * DETAIL_SIZE * scale
+        drawing.text(request.detail, middle, below, size=DETAIL_SIZE, align="middle")
+    x, y = request.mouse[0] - region.x, request.mouse[1] - region.y
+    if 0 <= x < region.width and 0 <= y < region.height:
+        _near_mouse(request, view, float(x), float(y))
+
+
+def _near_mouse(request: FootageRequest, view: FootageView, x: float, y: float) -> None:
+    scale = drawing.ui_scale()
+    if request.brush_px:
+        around = circles(np.zeros((1, 2)), request.brush_px, 48)
+        rim = view.to_region(view.to_footage((x, y)) + around)
+        drawing.lines(segments(rim, closed=True), drawing.INK, halo=1.0)
+        return
+    words = f"{request.title}, {request.detail}" if request.detail else request.title
+    width = drawing.text_size(words, NEAR_SIZE)[0]
+    left = min(x + 18.0 * scale, view.region.width - width - 18.0 * scale)
+    drawing.text(words, left, y + 18.0 * scale, size=NEAR_SIZE)

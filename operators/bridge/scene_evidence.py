@@ -1,4 +1,4 @@
-"""Keypoint files of a clip, each parsed once a session as long as it stays the same on disk."""
+"""What a scene's take is held against: markers, and keypoints of files, motion tracks and clicks."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from ...core.arrays import Array, IndexArray
+from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.files.digest import digest
-from ...core.footage.keypoints.keypoints import People
-from .clicked_keypoints import ClickedPoint, one_person, people_of_clicks
+from ...core.footage.keypoints.keypoints import People, SeenPeople
 from .footage import Footage
 from .scene_frames import shown_index
 
@@ -25,21 +24,12 @@ if TYPE_CHECKING:
     from ...core.footage.region_tracks import MarkerStyle
 
 
-MOST_FILES = 12
-"""Files that are remembered: those of the takes at hand, for a job and for panels."""
-
-
 def read_keypoint_file(
     path: Path, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
     """Everyone whom a file of keypoints, or a folder with a file a frame, says was seen.
 
-    Args:
-        path: The file or folder.
-        frame_count: Number of the clip's frames F; None where it is not known.
-        size: Width and height of the clip [px].
-        fps: Frames per second of the clip.
-        frame_start: Scene frame of its first one.
+    `frame_count` is None where it is not known; `size` is width and height of the clip [px].
 
     Raises:
         InputError: The file is missing or unusable, or it cannot be one of this clip.
@@ -63,7 +53,7 @@ def file_state(path: Path) -> str | None:
     return digest(tuple((name, state.st_size, state.st_mtime_ns) for name, state in states))
 
 
-@lru_cache(maxsize=MOST_FILES)
+@lru_cache(maxsize=12)
 def _read(
     path: Path, state: str, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
@@ -72,20 +62,69 @@ def _read(
     return read_keypoints(path, frame_count, size, fps, frame_start)
 
 
+def one_person(
+    names: Sequence[str], source: str, size: tuple[int, int], pixel: Array, score: Array
+) -> People:
+    """The people of a source that shows the performer alone.
+
+    `pixel` (F, N, 2) are places [px] of the N named points, NaN where one is not seen; `score` (F, N) is 0 to
+    1.
+    """
+    unknown = np.full((1, len(names), 3), np.nan)
+    nobody = SeenPeople(pixel[:0], score[:0], unknown[:0])
+    there = np.isfinite(pixel).all(axis=-1).any(axis=-1)
+    frames = tuple(
+        SeenPeople(pixel[[index]], score[[index]], unknown) if there[index] else nobody
+        for index in range(len(pixel))
+    )
+    return People(tuple(names), source, size, frames, by_hand=True)
+
+
+# --- Points that a person clicked on in single frames
+
+
+CLICKS = "clicks"
+
+
+@dataclass(frozen=True)
+class ClickedPoint:
+    """A body point that was clicked on in a frame."""
+
+    point: str
+    frame: int  # scene frames after the clip's first one: a clip may be moved in time
+    pixel: tuple[float, float]
+
+
+def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPoint]) -> tuple[People, ...]:
+    """The performer as a person clicked on points; no source where none was.
+
+    Clicks outside the clip, whose frames have the scene frames (F,), are left out; the last one of a frame
+    counts.
+    """
+    at = shown_index(frames, [footage.first_frame + click.frame for click in clicks])
+    inside = [(int(index), click) for index, click in zip(at, clicks, strict=True) if index >= 0]
+    names = list(dict.fromkeys(click.point for _, click in inside))
+    if not names:
+        return ()
+    pixel = np.full((len(frames), len(names), 2), np.nan)
+    for index, click in inside:
+        pixel[index, names.index(click.point)] = click.pixel
+    width, height = footage.clip.size
+    score = np.isfinite(pixel).all(axis=-1).astype(np.float64)
+    return (one_person(names, CLICKS, (width, height), pixel, score),)
+
+
 # --- Blender's own motion tracks of a clip as keypoints
 
 
-SOURCE = "tracks"
-FIRST_CLIP_FRAME = 1
-"""Frame of a track's marker in the first picture that the timeline shows."""
+TRACKS = "tracks"
 
 
 @dataclass(frozen=True)
 class AssignedTrack:
     """A motion track, and the body point that it follows."""
 
-    owner: str
-    """Name of the clip's tracking object that it belongs to; the clip's first is its camera."""
+    owner: str  # name of the clip's tracking object that it belongs to; the clip's first is its camera
     track: str
     point: str
 
@@ -103,12 +142,8 @@ def people_of_tracks(
     """The performer as tracks of a clip show them; further tracks of the same point are further sources.
 
     A track is seen in the frames that have a marker of its own, tracked or set by hand, that is not disabled.
-    What Blender shows before, between and after them is no observation.
-
-    Args:
-        footage: The clip in its scene.
-        frames: (F,) scene frame of each frame of the clip.
-        assigned: Tracks and their points; those that the clip does not have are left out.
+    What Blender shows before, between and after them is no observation. `frames` (F,) are scene frames of the
+    clip's; tracks that the clip does not have are left out.
     """
     tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
     sources: list[dict[str, bpy.types.MovieTrackingTrack]] = []
@@ -145,19 +180,13 @@ def _people(
     pixel = np.full((len(frames), len(points), 2), np.nan)
     score = np.zeros((len(frames), len(points)))
     for column, track in enumerate(points.values()):
-        index, places = _seen(footage, frames, track)
-        pixel[index, column] = places
+        markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
+        index = shown_index(frames, [_start(footage) + marker.frame for marker in markers])
+        pixel[index[index >= 0], column] = _places(footage, track, markers)[index >= 0]
         score[index, column] = float(track.weight)
     width, height = footage.clip.size
-    source = f"{SOURCE} {rank + 1}" if rank else SOURCE
+    source = f"{TRACKS} {rank + 1}" if rank else TRACKS
     return one_person(tuple(points), source, (width, height), pixel, score)
-
-
-def _seen(footage: Footage, frames: Array, track: bpy.types.MovieTrackingTrack) -> tuple[IndexArray, Array]:
-    """Indices (K,) of the clip's frames in which a track is seen, and its places there (K, 2) [px]."""
-    markers = [marker for marker in track.markers if not marker.mute] if track.weight > 0.0 else []
-    index = shown_index(frames, [_start(footage) + marker.frame for marker in markers])
-    return index[index >= 0], _places(footage, track, markers)[index >= 0]
 
 
 def _places(
@@ -171,7 +200,7 @@ def _places(
 
 def _start(footage: Footage) -> int:
     """Scene frame of a track's marker at frame 0."""
-    return int(footage.clip.frame_start) - FIRST_CLIP_FRAME
+    return int(footage.clip.frame_start) - 1
 
 
 # --- What a scene's take is held against
@@ -182,15 +211,12 @@ class SceneEvidence:
     """Evidence beside the keyframes, as far as it is switched on."""
 
     markers: "tuple[MarkerStyle, ...]" = ()
-    files: tuple[Path, ...] = ()
-    """Files of keypoints, or folders of them."""
+    files: tuple[Path, ...] = ()  # files of keypoints, or folders of them
     tracks: tuple[AssignedTrack, ...] = ()
     clicks: tuple[ClickedPoint, ...] = ()
-    depth_hints: bool = True
-    """Whether a detector's guess of depths is used."""
+    depth_hints: bool = True  # whether a detector's guess of depths is used
     contours: bool = True
-    ignored_regions: "tuple[IgnoredRegion, ...]" = ()
-    """Regions of the picture that are never a marker."""
+    ignored_regions: "tuple[IgnoredRegion, ...]" = ()  # regions of the picture that are never a marker
 
     @property
     def has_keypoints(self) -> bool:
@@ -198,15 +224,7 @@ class SceneEvidence:
         return bool(self.files or self.tracks or self.clicks)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
-        """Everyone whom each source of keypoints saw, clicked points first.
-
-        Args:
-            footage: The clip in its scene.
-            frames: (F,) scene frame of each frame of the clip.
-
-        Raises:
-            InputError: A file is missing, or cannot be one of this clip.
-        """
+        """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""
         width, height = footage.clip.size
         files = tuple(
             read_keypoint_file(path, len(frames), (width, height), footage.rate, footage.first_frame)

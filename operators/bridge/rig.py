@@ -1,0 +1,176 @@
+"""The actor's armature as core's `Rig`, and the channel values that an Action has for it."""
+
+from collections.abc import Collection, Generator, Mapping
+
+import bpy
+import numpy as np
+
+from ...core.arrays import Array
+from ...core.body.body_volume import sole_offsets
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
+from ...core.body.rotations import continuous_quaternions
+from ...core.body.skeleton import SIDES
+from ...core.errors import InputError
+from ...core.finish.rig import Rig, RigBone, RigPose, channel_count
+from .actions import existing_channelbag
+from .actor_lengths import skeleton_bones
+from .armature import BoneModel, bone_models
+from .fcurves import moved_paths
+from .object_space import ObjectSpace, object_space
+from .rotation_modes import bone_path, posture_from_frames, rotation_path
+
+
+def read_rig(armature_object: bpy.types.Object, body: Body, extremities: Collection[str] = ()) -> Rig:
+    """Read the bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
+
+    `bone_channels` run backwards: a bone's posed axes are its rest axes turned by its channels. The armature
+    has any location, even scale and rest pose; hands and feet that are not named are rigid with their limbs.
+    """
+    axes = {model.name: model.axes for model in skeleton_bones(armature_object, body.skeleton)}
+    names = list(axes)
+    bones = armature_object.data.bones
+    rest = {name: np.array(bones[name].matrix_local, dtype=np.float64) for name in names}
+    modes = {name: armature_object.pose.bones[name].rotation_mode for name in names}
+    return rig_at_rest(body, axes, rest, modes, object_space(armature_object), extremities)
+
+
+def rig_at_rest(
+    body: Body,
+    axes: Mapping[str, np.ndarray],
+    rest: Mapping[str, np.ndarray],
+    modes: Mapping[str, str],
+    space: ObjectSpace,
+    extremities: Collection[str] = (),
+) -> Rig:
+    """A rig as `read_rig` gives it, of bones that need not be in an armature.
+
+    By bone: its axes (3, 3) in its joint's frame, its rest matrix (4, 4) in the object's space, and its mode.
+    """
+    models = bone_models(body)
+    turning = [model for model in models if model.chain or model.name in extremities]
+    names = [model.name for model in turning]
+    bones = []
+    for model in turning:
+        own = rest[model.name][:3, :3]
+        if model.parent is None:
+            left = space.rotation @ own
+            origin, location_axes = space.to_world(rest[model.name][:3, 3]), space.scale * left
+        else:
+            # The bone's joint in its parent's joint's frame; a hand's is the wrist, a foot's the ankle.
+            origin, location_axes = body.offsets[model.chain[0]] if model.chain else model.start, None
+            left = axes[model.parent] @ rest[model.parent][:3, :3].T @ own
+        bones.append(
+            RigBone(
+                name=model.name,
+                parent=-1 if model.parent is None else names.index(model.parent),
+                mode=modes[model.name],
+                left=left,
+                right=axes[model.name].T,
+                origin=origin,
+                points=_fixed_points(model, body, models, names),
+                location_axes=location_axes,
+            )
+        )
+    return Rig(tuple(bones))
+
+
+def _fixed_points(
+    model: BoneModel, body: Body, models: tuple[BoneModel, ...], turning: Collection[str]
+) -> np.ndarray:
+    """(N, 3) the bone's own end, a foot's heel, and the ends of rigid hands and feet, in its frame [m]."""
+    if not model.chain:
+        kind, _, side = model.name.partition(".")
+        heel = [sole_offsets(body)[SIDES.index(side), 0]] if kind == "foot" else []
+        return np.stack([model.end - model.start, *heel])
+    leaves = [m.end for m in models if m.parent == model.name and not m.chain and m.name not in turning]
+    return np.stack([model.end, *leaves])
+
+
+# --- Channel values of an Action
+
+
+Channel = tuple[int, int, str, int]
+"""Index of a bone in the rig, column of its values, data path and array index of the property."""
+
+
+def rig_channels(rig: Rig) -> tuple[Channel, ...]:
+    """The armature's property for every column of every bone's values."""
+    found: list[Channel] = []
+    for bone, model in enumerate(rig.bones):
+        count = channel_count(model.mode)
+        path = bone_path(model.name, rotation_path(model.mode))
+        found += [(bone, index, path, index) for index in range(count)]
+        if model.location_axes is not None:
+            found += [(bone, count + i, bone_path(model.name, "location"), i) for i in range(3)]
+    return tuple(found)
+
+
+def motion_frames(armature_object: bpy.types.Object, action: bpy.types.Action, body: Body) -> Array:
+    """(F,) whole scene frames from the first to the last key of an Action's motion.
+
+    Raises:
+        InputError: It has fewer than two.
+    """
+    channelbag = existing_channelbag(action, armature_object)
+    wanted = set(moved_paths(armature_object, body.skeleton))
+    curves = channelbag.fcurves if channelbag is not None else ()
+    keyed = [curve for curve in curves if curve.data_path in wanted and not curve.is_empty]
+    ranges = [curve.range() for curve in keyed]
+    first = int(
+        np.ceil(min((r[0] for r in ranges), default=0.0) - 1e-3)
+    )  # keys as near as this lie on the frame
+    last = int(np.floor(max((r[1] for r in ranges), default=0.0) + 1e-3))
+    if last <= first:
+        raise InputError(
+            f"Action '{action.name}' has no motion of '{armature_object.name}' over two frames or more; "
+            "reconstruct the motion first"
+        )
+    return np.arange(first, last + 1, dtype=np.float64)
+
+
+def read_values(
+    armature_object: bpy.types.Object, action: bpy.types.Action, rig: Rig, frames: Array
+) -> Generator[float, None, list[Array]]:
+    """Evaluate an Action's curves at scene frames (F,), bone by bone; the scene is not touched.
+
+    Channels without a curve, or with a muted one, have the value that the armature has now, as when Blender
+    plays the Action. Yields the fraction done; returns values as in `Rig`, (F, C) a bone, quaternions of unit
+    length and without jumps of sign.
+    """
+    channelbag = existing_channelbag(action, armature_object)
+    channels = rig_channels(rig)
+    columns: list[list[Array]] = [[] for _ in rig.bones]
+    for number, (bone, _, path, index) in enumerate(channels):
+        fcurve = channelbag.fcurves.find(path, index=index) if channelbag is not None else None
+        if fcurve is None or fcurve.mute:
+            unkeyed = armature_object.path_resolve(path)[index]
+            columns[bone].append(np.full(len(frames), float(unkeyed)))
+        else:
+            columns[bone].append(np.array([fcurve.evaluate(frame) for frame in frames], dtype=np.float64))
+        yield (number + 1) / len(channels)
+    values = [np.column_stack(column) for column in columns]
+    for bone, model in enumerate(rig.bones):
+        if model.mode == "QUATERNION":
+            values[bone][:, :4] = unit_quaternions(values[bone][:, :4])
+    return values
+
+
+def unit_quaternions(quaternions: Array) -> Array:
+    """Quaternions (F, 4) of unit length without jumps of sign; no turn where all four numbers are zero."""
+    length = np.linalg.norm(quaternions, axis=1, keepdims=True)
+    unit = np.where(length > 1e-9, quaternions / np.maximum(length, 1e-9), [1.0, 0, 0, 0])
+    return continuous_quaternions(unit)
+
+
+def shown_postures(armature_object: bpy.types.Object, rig: Rig, shown: RigPose, body: Body) -> Posture:
+    """The postures nearest to a rig's poses, a batch of F."""
+    return nearest_postures(skeleton_bones(armature_object, body.skeleton), rig, shown, body)
+
+
+def nearest_postures(models: tuple[BoneModel, ...], rig: Rig, shown: RigPose, body: Body) -> Posture:
+    """The same of bones that need not be in an armature."""
+    turns = {bone.name: shown.rotation[index] for index, bone in enumerate(rig.bones)}
+    turns |= {model.name: turns[str(model.parent)] for model in models if model.name not in turns}
+    hips = shown.points[:, rig.point_slices[0].start] - body.offsets[0]
+    return posture_from_frames(body.skeleton, models, turns, hips)

@@ -1,0 +1,87 @@
+"""Regions of the 3D viewport and of the Movie Clip editor as views of the motion."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from ...core.arrays import Array, IndexArray
+from ..bridge.camera_placement import read_lens
+from ..shell.footage_view import FootageView
+from ..shell.takes import footage_of
+
+if TYPE_CHECKING:
+    from ...core.review.review import Review
+
+
+@dataclass(frozen=True, eq=False)
+class WorldView:
+    """A region of a 3D viewport as a view of the motion."""
+
+    footage: FootageView | None
+    matrix: Array  # (4, 4) from the world to the region's homogeneous coordinates, -1 to 1 after division
+    right: Array  # (3,) the viewer's right in the world
+    size: Array  # (2,) of the region [px]
+
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, NaN behind the viewer."""
+        return self.project(review.points[indices])
+
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
+        points = review.points[index]
+        depth = self._before(points)
+        return np.asarray(0.5 * self.size[0] * np.linalg.norm(self.matrix[0, :3] @ self.right) / depth)
+
+    def project(self, points: Array) -> Array:
+        """Region pixels (..., 2) of points (..., 3) in the world."""
+        flat = points @ self.matrix[:2, :3].T + self.matrix[:2, 3]
+        return np.asarray(0.5 * self.size * (1.0 + flat / self._before(points)[..., None]))
+
+    def _before(self, points: Array) -> Array:
+        """Homogeneous coordinate w (...) of points, which grows with the distance; NaN behind the viewer."""
+        divisor = points @ self.matrix[3, :3] + self.matrix[3, 3]
+        return np.where(divisor > 1e-6, divisor, np.nan)
+
+
+def world_view(
+    region: bpy.types.Region, view: bpy.types.RegionView3D, footage: FootageView | None
+) -> WorldView:
+    """A region of a 3D viewport as a view of the motion."""
+    right = np.array(view.view_matrix, dtype=np.float64)[0, :3]
+    return WorldView(
+        footage,
+        np.array(view.perspective_matrix, dtype=np.float64),
+        right / np.linalg.norm(right),
+        np.array([region.width, region.height], dtype=np.float64),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ClipView:
+    """A region of the Movie Clip editor as a view of the motion."""
+
+    footage: FootageView
+    to_camera: Array  # (4, 4) from the world to the footage's camera
+    focal_px: float  # focal length of that camera [px of the footage]
+
+    def point_positions(self, review: "Review", indices: IndexArray) -> Array:
+        """Region pixels (I, 13, 2) of the points, each as the camera of its own frame saw it."""
+        return self.footage.to_region(review.image_points[indices])
+
+    def pixels_per_meter(self, review: "Review", index: int) -> Array:
+        """Size (13,) of a meter across the view at each point."""
+        depth = -(review.points[index] @ self.to_camera[2, :3] + self.to_camera[2, 3])
+        magnified = abs(self.footage.extent[0]) / self.footage.size[0]
+        return np.asarray(magnified * self.focal_px / np.where(depth > 0.0, depth, np.nan))
+
+
+def clip_view(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, footage: FootageView) -> ClipView:
+    """A region of a Movie Clip editor as a view of a take's motion."""
+    source = footage_of(scene, take)
+    to_camera = np.array(source.camera.matrix_world.normalized().inverted(), dtype=np.float64)
+    return ClipView(footage, to_camera, read_lens(source).focal_px)
+
+
+MotionView = WorldView | ClipView
