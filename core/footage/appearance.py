@@ -68,10 +68,7 @@ class Appearance:
     def with_parts(self, images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> "Appearance":
         """This appearance with the colors of O parts learned from frames in which the body is known best.
 
-        Args:
-            images: Frames (rows, columns, 3).
-            labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-            parts: Number of parts, O.
+        `labels` are as in `learn_appearance`.
         """
         nothing = np.ones(labels[0].shape, dtype=np.bool_)
         seen = [_seen(image, label, nothing, parts) for image, label in zip(images, labels, strict=True)]
@@ -114,12 +111,9 @@ class Appearance:
 
 
 def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> Appearance:
-    """Learn appearance models of parts and background from frames with a rough part segmentation.
+    """Learn from frames (rows, columns, 3) of a static camera and a rough segmentation into O parts.
 
-    Args:
-        images: Frames (rows, columns, 3) of a static camera.
-        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-        parts: Number of parts, O.
+    `labels` are, for each frame, (rows, columns) the visible part of the body, `NO_PART` for none.
     """
     wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
     body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0

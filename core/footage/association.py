@@ -75,13 +75,7 @@ class Candidates:
 
 
 def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
-    """Gather the regions of one color, in pixels of the image.
-
-    Args:
-        regions: The regions detected in each frame.
-        color: Index of the color.
-        scale: Pixels of the image to one of the measuring grid.
-    """
+    """The regions of one color, in pixels of the image; `scale` are those to one of the measuring grid."""
     frame = np.repeat(np.arange(len(regions)), [len(found.color) for found in regions])
     own = np.concatenate([found.color for found in regions]) == color
     frame = frame[own]
@@ -146,10 +140,7 @@ def _still(found: Candidates, frames: int) -> BoolArray:
 def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """The Viterbi path: index of the marker's main region in each frame (F,), -1 where it is hidden.
 
-    Args:
-        found: The regions.
-        unary: (N,) cost of each region as the marker.
-        size_px: Length of the marker, the measure of its steps.
+    `unary` is the cost (N,) of each region as the marker, whose length in px measures its steps.
     """
     # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
     frame, start = found.frame.tolist(), found.start.tolist()
@@ -216,12 +207,7 @@ def rival_costs(
 ) -> Array:
     """Additional cost (N,) of each region because it may be another marker of the same color.
 
-    Args:
-        found: The regions.
-        taken: (N,) whether a region is assigned to a rival already.
-        expected: Expected regions of the markers.
-        marker: Index of the marker.
-        rivals: Indices of the other markers of its color.
+    `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
     """
     cost = np.where(taken, TAKEN_COST, 0.0)
     own = _relative_offset(found, expected, marker)
@@ -269,12 +255,8 @@ def join_fragments(
 ) -> MarkerRegion:
     """Join each frame's main region with the fragments that an occluding limb cut off from it.
 
-    Args:
-        found: The marker's regions.
-        path: (F,) main region of each frame, -1 where hidden.
-        cost: (N,) cost of each region; too costly ones are clutter.
-        reach_px: Widest gap between a fragment and the main region.
-        most_cost: Highest cost of a fragment.
+    `path` (F,) is the main region of each frame, -1 where hidden. Fragments lie within `reach_px` of it and
+    cost (N,) no more than `most_cost`; others are clutter.
     """
     frames = len(path)
     main = path[found.frame]  # (N,) of each region, the main one of its frame

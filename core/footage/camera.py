@@ -51,11 +51,7 @@ class Camera:
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> "Camera":
-        """Read a camera from the fields of `take.json`.
-
-        Args:
-            fields: Those of `CameraFields`.
-            where: Location in the file as messages name it, for instance "take.json: camera".
+        """Read a camera from the `CameraFields` of `take.json`; `where` is their place for messages.
 
         Raises:
             InputError: A field is missing or invalid; the sentence names it.
@@ -103,15 +99,10 @@ class Camera:
         return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
 
     def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Take world points (..., 3) in meters to camera coordinates (..., 3) in meters.
+        """Take world points (..., 3) to camera coordinates (..., 3) [m].
 
-        Args:
-            points: World points, (..., 3).
-            frame: Index of the pose of each point, integers broadcastable to the leading axes; a fixed camera
-                ignores it.
-
-        Raises:
-            ValueError: The camera moves and no frame is given.
+        Here and below, `frame` is the index of each point's pose, integers that broadcast to the leading
+        axes; a fixed camera ignores it.
         """
         rotation, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
@@ -137,15 +128,7 @@ class Camera:
         return np.array(np.broadcast_to(-rotation[..., 2], shape))
 
     def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """Project world points to the image.
-
-        Args:
-            points: World points, (..., 3), in meters.
-            frame: Index of each point's pose; see `world_to_camera`.
-
-        Returns:
-            Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in meters.
-        """
+        """Pixels (..., 2) of world points (..., 3), NaN for those not in front, and their depth (...) [m]."""
         x, y, depth = self._normalized(self.world_to_camera(points, frame))
         factor, _ = self._radial_factor(x * x + y * y)
         column, row = self.principal_point
@@ -159,18 +142,11 @@ class Camera:
         return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
 
     def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Jacobian of pixels by the rigid motion of the points' bodies, in the camera's own axes.
+        """Jacobian (..., 2, 6) of pixels by the rigid motion of the points' bodies, in the camera's own axes.
 
         This is the interaction matrix of visual servoing (Chaumette & Hutchinson 2006, *Visual servo control,
-        part I*, eq. 11) for a camera that looks along -Z.
-
-        Args:
-            points: World points, (..., 3), in meters.
-            frame: Index of each point's pose; see `world_to_camera`.
-
-        Returns:
-            (..., 2, 6) d pixel / d (velocity of the body's point that passes through the camera, its angular
-            velocity), in pixels per meter and per radian; NaN behind the camera.
+        part I*, eq. 11) for a camera that looks along -Z: px per meter of the velocity of the body's point
+        that passes through the camera, and per radian of its angular velocity; NaN behind the camera.
         """
         x, y, depth = self._normalized(self.world_to_camera(points, frame))
         near = 1.0 / np.where(depth > 0.0, depth, np.nan)
@@ -188,15 +164,9 @@ class Camera:
         return np.moveaxis(rates, (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """The line of sight of each pixel.
+        """Origin (3,) or (..., 3) [m] and unit direction (..., 3) of the lines of sight of pixels (..., 2).
 
-        Args:
-            pixels: Image points, (..., 2).
-            frame: Index of each pixel's pose; see `world_to_camera`.
-
-        Returns:
-            Origin (3,) or (..., 3) in meters and unit direction (..., 3), both in the world. Directions are
-            NaN for pixels the distortion polynomial reaches from nowhere.
+        Directions are NaN for pixels the distortion polynomial reaches from nowhere.
         """
         rotation, location = self.pose(frame)
         offset = np.asarray(pixels, dtype=np.float64) - self.principal_point
@@ -206,10 +176,7 @@ class Camera:
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
     def pose(self, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) in meters.
-
-        Args:
-            frame: Index of each pose wanted; a fixed camera ignores it.
+        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) [m].
 
         Raises:
             ValueError: The camera moves and no frame is given.
@@ -289,13 +256,10 @@ class LensGuess:
 
 
 def guess_lens(size: tuple[int, int]) -> LensGuess:
-    """Guess a lens from the size of the picture.
+    """Guess a lens from the size of the picture (width, height) [px] as shown, after any rotation.
 
     An upright picture is a phone's; its focal length is stated for photographs of 4 to 3, whose long side a
     video keeps. A small one of 4 to 3 is a webcam's, which crops the sides of its 16 to 9 view.
-
-    Args:
-        size: Width and height [px], as shown, so after any rotation that the file asks for.
     """
     width, height = size
     if height > width:
@@ -313,12 +277,7 @@ def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int,
     """Initial pose of a camera: (4, 4) camera to world [m].
 
     At eye height, looking level along +Y at the world's origin, from a distance at which the floor there and
-    a performer with outstretched arms are within the picture.
-
-    Args:
-        lens_mm: Focal length.
-        sensor_width_mm: Width of the sensor, which spans the picture's width.
-        size: Width and height of the picture [px].
+    a performer with outstretched arms are within a picture of `size` (width, height).
     """
     across = 0.5 * FILLED * sensor_width_mm / lens_mm
     down = across * size[1] / size[0]

@@ -60,13 +60,7 @@ class Uprights:
 
     @classmethod
     def persons(cls, ground_px: ArrayLike, crown_px: ArrayLike, stature_m: float) -> "Uprights":
-        """Someone who stands upright at N places, clicked on.
-
-        Args:
-            ground_px: (N, 2) the floor between the feet [px].
-            crown_px: (N, 2) the top of the head [px].
-            stature_m: Body height [m].
-        """
+        """Someone of a stature [m] at N places, clicked on the floor between the feet and on the crown."""
         return cls._standing(
             ground_px,
             crown_px,
@@ -176,12 +170,7 @@ class FloorGrid:
 
 
 def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:
-    """The grid of whole meters on the floor z = 0, about where the camera looks.
-
-    Args:
-        camera: The camera.
-        frame: Index of its pose, where it moves.
-    """
+    """The grid of whole meters on the floor z = 0, about where the camera looks."""
     rotation, location = camera.pose(frame)
     ahead = -rotation[:, 2]
     middle = np.round(location[:2] + _reach(location[2], ahead) * _level(rotation))

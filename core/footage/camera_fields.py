@@ -63,12 +63,7 @@ class CameraPlacement:
         return np.asarray(turn @ lift @ roll)
 
     def matrix(self, place: tuple[float, float] = (0.0, 0.0), heading_rad: float = 0.0) -> Array:
-        """The pose (4, 4), camera to world, above a place on the floor [m].
-
-        Args:
-            place: Where on the floor [m].
-            heading_rad: About the world's Z, counterclockwise from looking along +Y.
-        """
+        """The pose (4, 4), camera to world, above a place on the floor [m], turned from looking along +Y."""
         pose = np.eye(4)
         pose[:3, :3] = self.rotation(heading_rad)
         pose[:3, 3] = *place, self.height_m

@@ -75,12 +75,7 @@ class CameraFit:
 
 
 def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = False) -> CameraFit:
-    """Find the camera that took a picture.
-
-    Args:
-        camera: The still camera as it is believed now.
-        evidence: What the picture shows.
-        lens_is_known: Whether its lens is right; it is kept then.
+    """Find the camera that took a picture, from the still one believed now; a known lens is kept.
 
     Raises:
         ValueError: The camera moves.

@@ -171,13 +171,7 @@ class RegionFields(Record):
 def ignored_regions(
     regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
 ) -> tuple[IgnoredRegion, ...]:
-    """Regions of a take, from its fields.
-
-    Args:
-        regions: The fields.
-        size: Width and height of the footage in px.
-        frame_start: Scene frame of the clip's first frame.
-        source: The file that gives them.
+    """Regions of a take, from the fields that `source` gives, for footage of (width, height).
 
     Raises:
         InputError: One lies beside the picture.

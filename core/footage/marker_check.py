@@ -39,12 +39,8 @@ def assign_regions(
 ) -> dict[int, MarkerRegion]:
     """Assign regions to markers in every frame; return each marker's by its index.
 
-    Args:
-        found: The regions of each color.
-        groups: The markers of each color.
-        expected: Expected regions of the markers.
-        choose: Function of a color's regions, their costs (N,) and the marker's length in px that gives the
-            index of its main region in each frame (F,), -1 where it is hidden.
+    `found` and `groups` are the regions and the markers of each color. `choose` gives, of a color's regions,
+    their costs (N,) and the marker's length in px, the main region of each frame (F,), -1 where it is hidden.
     """
     alone = [len(group) == 1 for group in groups]
     clutter = [
@@ -125,16 +121,8 @@ def check_markers(
 ) -> Generator[float, None, MarkerCheck]:
     """Detect the markers in sampled frames as tracking does, but in each frame by itself.
 
-    A missing color does not prevent the check of the others.
-
-    Args:
-        samples: Frames spread over the clip.
-        styles: The markers, M of them, at least one.
-        expected: Expected region of each marker in every frame of the clip, (F, M); optional.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
+    A missing color does not prevent the check of the others. `expected` is that of the whole clip. Yields the
+    fraction done.
     """
     yield 0.0
     frames = len(samples.images)

@@ -30,22 +30,10 @@ def track_markers(
     expected: ExpectedRegions | None = None,
     ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, RegionTracks]:
-    """Track the markers through a clip.
+    """Track the markers through a clip; yields the fraction done.
 
     One pass over the clip in constant memory detects the regions of each marker's color; they are then
     assigned to the markers, apart from clutter of like hue, over the whole clip at once.
-
-    Args:
-        clip: The footage.
-        styles: The markers, M of them, in the order of the result.
-        expected: Expected region of each marker, (F, M); optional.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The markers' regions in every frame.
 
     Raises:
         InputError: A marker's color matches nothing in the clip, or a frame cannot be read.
@@ -204,16 +192,8 @@ def regions_of_frame(
 ) -> RegionTracks:
     """Detect the markers in one frame, by colors learned from frames spread over the clip.
 
-    Args:
-        clip: The footage.
-        time_s: Time of the frame in seconds from the first.
-        styles: The markers, M of them, in the order of the result.
-        expected: Expected regions in this frame, (1, M), which tell markers from clutter of their colors.
-        ignored: Regions of the picture that are never a marker.
-        index: Index of the frame, for regions that are ignored in some frames only.
-
-    Returns:
-        Tracks of one frame.
+    The frame is that at a time from the first; its index counts for regions that are ignored in some frames
+    only. Expected regions are those of this frame, (1, M).
 
     Raises:
         InputError: A marker's color matches nothing in the clip, or there is no such frame.

@@ -76,11 +76,7 @@ class PoseNetwork:
     """The network with its weights."""
 
     def __init__(self, model: Path = MODEL) -> None:
-        """Load the weights.
-
-        Raises:
-            InputError: They are missing or damaged.
-        """
+        """Load the weights; missing or damaged ones are refused."""
         again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
         try:
             weights = model.read_bytes()

@@ -57,12 +57,7 @@ class _Sighting:
 
 
 def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
-    """Find everyone in a clip.
-
-    Args:
-        clip: The clip.
-        network: The network.
-        longest: Most frames of a clip.
+    """Find everyone in a clip of at most `longest` frames.
 
     Raises:
         InputError: It is a picture, has no frames or too many, or nobody is in it.

@@ -70,11 +70,7 @@ def reading_arrays(reading: Reading) -> Arrays:
 
 
 def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
-    """The reading that `reading_arrays` gave as arrays.
-
-    Raises:
-        KeyError, ValueError: They are not of a reading.
-    """
+    """The reading that `reading_arrays` gave; KeyError or ValueError where they are not of one."""
     width, height = arrays["tracks.size"].tolist()
     tracks = RegionTracks(
         names=tuple(arrays["tracks.names"].tolist()),
@@ -145,18 +141,7 @@ def reading_key(
     expected: ExpectedRegions | None,
     ignored: Sequence[IgnoredRegion] = (),
 ) -> str:
-    """Cache key that changes with everything a reading depends on.
-
-    Args:
-        path: The clip, as `Clip.open` takes it.
-        fps: Frames per second of an image sequence.
-        styles: The markers.
-        expected: Their expected regions.
-        ignored: Regions of the picture that are never a marker.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Cache key that changes with everything a reading depends on, of a clip as `Clip.open` takes it."""
     try:
         footage = _footage(path, fps)
     except OSError as error:
@@ -173,14 +158,7 @@ def of_same_footage(key: str, other: str) -> bool:
 
 
 def footage_digest(path: Path) -> str:
-    """Digest of a clip's file, or of the images of a sequence, independent of their folder.
-
-    Args:
-        path: The clip, as `Clip.open` takes it.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Digest of a clip's file, or of the images of a sequence, independent of their folder."""
     try:
         return digest(*_footage(path, 0.0))
     except OSError as error:
@@ -210,21 +188,9 @@ def read_clip(
 ) -> Generator[float, None, Reading]:
     """Track the markers through a clip, check its frames and keep a small picture of each.
 
-    Args:
-        clip: The footage.
-        styles: The markers.
-        expected: Expected regions of the markers; optional.
-        with_album: Whether pictures are kept.
-        kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
-            if only the expected regions differ and the colors would be learned alike, its detections are
-            assigned to the markers anew.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The reading, to the last digit the same as without a cached one.
+    A cached reading of any clip may be `kept`: it is returned without decoding the clip if its key is the
+    same; if only the expected regions differ and the colors would be learned alike, its detections are
+    assigned to the markers anew. The result is the same to the last digit. Yields the fraction done.
 
     Raises:
         InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
@@ -281,22 +247,10 @@ def clip_times(
     styles: Sequence[MarkerStyle] = (),
     ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, Array]:
-    """Find the time of every frame of a clip, by a pass over it unless its file is known and unchanged.
+    """The times (F,) [s] of all frames, by a pass over the clip unless its file is known and unchanged.
 
-    Args:
-        clip: The clip.
-        kept: A cached reading of any clip; it knows the times where it is one of this clip, ...
-        styles: ... with these markers ...
-        ignored: ... and these regions that are never one.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        (F,) times [s].
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
+    A cached reading knows them where it is one of this clip with these markers and ignored regions. Yields
+    the fraction done.
     """
     key = footage_digest(clip.path), clip.fps
     if key not in _known and kept is not None:

@@ -75,11 +75,7 @@ class RegionTracks:
     """Sentences on possible faults of the tracks."""
 
     def __post_init__(self) -> None:
-        """Check the shapes and keep own, read-only copies.
-
-        Raises:
-            ValueError: Shapes disagree.
-        """
+        """Check the shapes and keep own, read-only copies."""
         frames, markers = len(self.time_s), len(self.names)
         tails: dict[str, tuple[int, ...]] = {
             "centroid": (frames, markers, 2),
@@ -101,12 +97,7 @@ class RegionTracks:
 
     @classmethod
     def unmarked(cls, time_s: Array, size: tuple[int, int]) -> "RegionTracks":
-        """Tracks of a performer who wears no marker, M = 0.
-
-        Args:
-            time_s: (F,) time stamps of the frames in seconds.
-            size: Width and height of the image [px].
-        """
+        """Tracks of a performer who wears no marker, M = 0, at the times (F,) [s]."""
         empty = np.zeros((len(time_s), 0))
         return cls(
             names=(),
@@ -154,11 +145,7 @@ class ExpectedRegions:
     """(F, M) px, a generous bound of the centroid's distance from the center."""
 
     def __post_init__(self) -> None:
-        """Check the shapes and keep own, read-only copies.
-
-        Raises:
-            ValueError: Shapes disagree.
-        """
+        """Check the shapes and keep own, read-only copies."""
         center = np.array(self.center, dtype=np.float64)
         radius = np.array(self.radius, dtype=np.float64)
         if center.ndim != 3 or center.shape[-1] != 2 or radius.shape != center.shape[:2]:

@@ -43,10 +43,7 @@ MOST_UNLIKE = 0.2
 def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights:
     """Moments in which the performer is upright, from the middle of the ankles to that of the head.
 
-    Args:
-        keypoints: The performer's.
-        body: The performer's body, or an average one of their height.
-        fps: Frames per second.
+    The body is the performer's, or an average one of their height.
     """
     principal = principal_keypoints(keypoints)
     pixel = np.where((principal.score >= SURE)[..., None], principal.pixel, np.nan)
@@ -98,13 +95,7 @@ def _along(first: Array, second: Array, least: float) -> BoolArray:
 
 
 def _on_floor(row: Array, size: Array, fps: float) -> BoolArray:
-    """(F,) whether the feet's row (F,) in the picture hardly changes about each frame.
-
-    Args:
-        row: Their rows [px].
-        size: (F,) length of the body in the picture [px].
-        fps: Frames per second.
-    """
+    """(F,) whether the feet's row (F,) hardly changes about each frame, beside the body's size (F,) [px]."""
     reach = max(1, round(FLIGHT_S * fps))
     padded = np.pad(row, reach, constant_values=np.nan)
     near = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)

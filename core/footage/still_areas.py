@@ -43,13 +43,7 @@ def marker_warnings(
 ) -> tuple[str, ...]:
     """Warnings of a marker that was detected, the gravest first.
 
-    Args:
-        name: The marker's name.
-        found: Number of frames in which it is detected.
-        sampled: Number of sampled frames.
-        grid_area: Its median area in pixels of the measuring grid.
-        likeness: Other things that look like it.
-        still: Where in the picture still areas have its color.
+    `grid_area` is its median area in pixels of the measuring grid; `still` says where its color stays still.
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
@@ -135,17 +129,10 @@ def still_areas(
     found: Sequence[Candidates],
     ignored: IgnoredPixels,
 ) -> dict[int, tuple[PixelBox, ...]]:
-    """Boxes around the still areas of each marker's color, by the marker's index.
+    """Boxes around the still areas of each marker's color, by its index, the largest's first, in px.
 
-    Args:
-        samples: Frames spread over the clip.
-        model: The colors learned from them.
-        groups: The markers of each color; where several share one, either may be the one at rest.
-        found: The regions of each color in the sampled frames.
-        ignored: What is ignored already, by sample.
-
-    Returns:
-        Boxes in pixels of the clip, the largest area's first; none where it is not sure.
+    None where it is not sure, or where several markers share a color: either may be the one at rest. `found`
+    are the regions of each color in the samples.
     """
     boxes: dict[int, tuple[PixelBox, ...]] = {marker: () for group in groups for marker in group}
     count = len(samples.images)
@@ -176,10 +163,7 @@ def places(boxes: Sequence[PixelBox], size: tuple[int, int]) -> tuple[str, ...]:
 def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[PixelBox, ...]:
     """Boxes around the still areas that are no marker, in px of a clip of (width, height).
 
-    Args:
-        share: (rows, columns) share of the sampled frames in which each pixel has the color.
-        found: The regions of the color in the sampled frames.
-        size: Width and height of the clip.
+    `share` (rows, columns) is that of the sampled frames in which each pixel has the color.
     """
     scale, still = 1 << halvings(size), share >= NEARLY_ALWAYS
     grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=MARGIN), dtype=np.uint8)
@@ -200,12 +184,7 @@ def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[Pixe
 
 
 def _rests(area: BoolArray, share: Array) -> bool:
-    """Whether the outline of a still area rests: few pixels about it have the color now and then.
-
-    Args:
-        area: (rows, columns) the still area.
-        share: (rows, columns) share of the sampled frames in which each pixel has the color.
-    """
+    """Whether the outline of a still area rests: few pixels about it have the color now and then."""
     mask = area.view(np.uint8)
     around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
     now_and_then = around & (share >= SELDOM) & (share < NEARLY_ALWAYS)
@@ -216,10 +195,7 @@ def _rests(area: BoolArray, share: Array) -> bool:
 def _moving_area(still: Image, found: Candidates, scale: int) -> float:
     """Usual area of what moves beside the still areas, in pixels of the measuring grid; 0 if it is not sure.
 
-    Args:
-        still: (rows, columns) 1 in the still areas and around them.
-        found: The regions of the color in N sampled frames.
-        scale: Pixels of the clip to one of the grid.
+    `still` (rows, columns) is 1 in and around them, `scale` pixels of the clip to one of the grid.
     """
     place, area = found.centroid / scale, found.area / scale**2
     total = cv2.integral(still)

@@ -38,11 +38,7 @@ def marker_surfaces(
 ) -> list[Surface | None]:
     """The color of each of M markers in an album; None where it is never seen well enough.
 
-    Args:
-        album: Pictures of the frames.
-        centroid: (F, M, 2) of the markers' regions [px of the clip]; NaN where hidden.
-        second_moment: (F, M, 2, 2).
-        quality: (F, M).
+    Arrays (F, M, ...) are those of `RegionTracks`.
     """
     return [
         _marker_surface(album, centroid[:, m], second_moment[:, m], quality[:, m])
@@ -74,11 +70,7 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
 
 
 def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
-    """Colors that the body's parts commonly have, the commonest first.
-
-    Returns:
-        Colors (K, 3) as `contrast` gives them, and the part (K,) that each was seen on.
-    """
+    """Common colors (K, 3), as of `contrast`, of the body's parts, the commonest first, and the parts (K,)."""
     found: list[tuple[float, int, Array]] = []
     for part, log_density in enumerate(appearance.parts[:-1]):
         share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
@@ -102,10 +94,7 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
 def bare_surfaces(common: Array, markers: Sequence[Surface | None], beside: BoolArray) -> list[Surface]:
     """The body's surfaces that no marker covers: its common colors without the markers' own and their edges'.
 
-    Args:
-        common: (K, 3) colors of the body as `common_colors` gives them.
-        markers: The M markers' colors.
-        beside: (K, M) whether a color was seen on the limb that a marker is worn on.
+    `beside` (K, M) says whether a color was seen on the limb that a marker is worn on.
     """
     worn = [one for one in markers if one is not None]
     bare: list[Surface] = []
@@ -173,14 +162,10 @@ class BandColors:
 def learn_band_colors(
     images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], count: int
 ) -> BandColors:
-    """Learn the colors along all parts.
+    """Learn the colors along all O parts, from frames and labels as in `learn_appearance`.
 
-    Args:
-        images: Frames (rows, columns, 3).
-        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
-            the part is seen end on.
-        count: Number of parts, O.
+    `shares` are (rows, columns) the place along the visible part, from 0 to 1 between its ends; NaN where it
+    is seen end on.
     """
     size = count * BANDS * CELLS
     counts, background = np.zeros(size), np.zeros(CELLS)

@@ -71,9 +71,7 @@ class Album:
         return index in self._pictures
 
     def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
-        """The small pictures of F frames (F, rows, columns, 3), and (F,) which of them exist.
-
-        Missing ones are black.
+        """The small pictures (F, rows, columns, 3) of F frames, and (F,) which exist; others are black.
 
         Raises:
             KeyError: The album is empty.
@@ -156,17 +154,9 @@ TAIL_PERCENT = 2.0
 
 
 def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
-    """Roughly the speed of whatever moves in front of a camera that stands still.
+    """Roughly the speed (F,) [px per frame] of whatever moves in front of a camera that stands still.
 
-    Args:
-        album: The pictures; missing ones repeat the one before.
-        frames: Number of frames F of the clip.
-
-    Yields:
-        The fraction done.
-
-    Returns:
-        (F,) [px per frame], zero where nothing changes.
+    Zero where nothing changes. Missing pictures repeat the one before. Yields the fraction done.
     """
     swept = np.zeros(max(frames - 1, 0))
     rows: Array | None = None

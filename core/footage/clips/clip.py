@@ -58,11 +58,8 @@ class Clip:
     def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
         """Open a video, a folder of images, or a numbered sequence by one of its files or a pattern.
 
-        Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10).
-
-        Args:
-            path: The video, folder, numbered image or pattern.
-            fps: Frames per second of an image sequence; a video has its own.
+        Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10);
+        `fps` is theirs, a video has its own.
 
         Raises:
             InputError: The path does not exist, or cannot be decoded.
@@ -157,15 +154,9 @@ class FrameReader:
         self._coming: Stamped | None = None
 
     def image_at(self, time_s: float) -> Image | None:
-        """The last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
+        """The last frame (rows, columns, 3) that begins no later than a time from the first frame.
 
         None before the first frame, and once the last has been shown for an interval.
-
-        Args:
-            time_s: Seconds from the first frame.
-
-        Raises:
-            InputError: The clip is gone, or an image of a sequence cannot be read.
         """
         interval = 1.0 / self._clip.fps
         limit = time_s + EARLY * interval
@@ -211,14 +202,7 @@ class ClipSamples:
 
 
 def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Sample frames evenly over a clip.
-
-    Args:
-        clip: The footage.
-        count: Number of samples; fewer for a shorter clip.
-
-    Yields:
-        The fraction done, from 0 to 1.
+    """Sample up to `count` frames evenly over a clip; yields the fraction done.
 
     Raises:
         InputError: None of them can be read.
@@ -250,18 +234,7 @@ FEWEST = 3
 
 
 def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Sample frames evenly over a clip like `sample_clip`, within a budget of decoded pixels.
-
-    Args:
-        clip: The footage.
-        count: Most samples.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Raises:
-        InputError: None of them can be read.
-    """
+    """Sample frames like `sample_clip`, within a budget of decoded pixels."""
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
         affordable = max(MOST_DECODED_PX // (IMAGE_COST * pixels), FEWEST)

@@ -9,15 +9,10 @@ STAMP_RESOLUTION_S = 1.1e-3
 
 
 def is_variable_frame_rate(time_s: ArrayLike) -> bool:
-    """Whether frames are unevenly spaced in time.
+    """Whether frames with these time stamps (F,) [s] are unevenly spaced in time.
 
-    Args:
-        time_s: (F,) time stamps in seconds.
-
-    Returns:
-        True if an interval differs from the median interval by more than a tenth and more than a container's
-        rounding to milliseconds explains. A dropped frame counts: Blender shows such clips by time, not by
-        index.
+    That is, whether an interval differs from the median by more than a tenth and more than a container's
+    rounding to milliseconds explains. A dropped frame counts: Blender shows such clips by time, not by index.
     """
     intervals = np.diff(np.asarray(time_s, dtype=np.float64))
     if intervals.size < 2:

@@ -33,14 +33,11 @@ def opencv_silence() -> Iterator[None]:
 
 
 def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
-    """Repeat the last written row in the uninitialized rows below it.
+    """Repeat the last written row in the uninitialized rows below it, in place.
 
     OpenCV 4.11 does not write the last three rows of pictures of more than eight bits in 4:2:0 whose height
-    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run.
-
-    Args:
-        capture: Source of the image.
-        image: (rows, columns, 3), rotated as the file asks for; changed in place.
+    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run. The image is
+    rotated as the file asks for.
     """
     code = int(capture.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little")
@@ -88,14 +85,7 @@ TRANSPORT = ((188, 0), (192, 4), (204, 0))
 
 
 def check_container(path: Path) -> None:
-    """Refuse files that are no video container.
-
-    Args:
-        path: A supposed video file.
-
-    Raises:
-        InputError: It is missing, no regular file, empty, or does not begin like a video.
-    """
+    """Refuse files that are missing, irregular, empty, or do not begin like a video container."""
     if regular_file_size(path, VALID) == 0:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
@@ -111,11 +101,7 @@ def check_container(path: Path) -> None:
 
 
 def check_pixels(path: Path, width: float, height: float) -> None:
-    """Refuse pictures larger than `MOST_PIXELS`.
-
-    Raises:
-        InputError: The picture is too large.
-    """
+    """Refuse pictures larger than `MOST_PIXELS`."""
     if width * height > MOST_PIXELS:
         raise InputError(
             f"{path}: its pictures have {width:.0f} x {height:.0f} pixels; at most {MOST_PIXELS} pixels, as "

@@ -20,14 +20,7 @@ COLUMNS = 320
 
 
 def combed_shares(image: Image) -> tuple[float, float]:
-    """Combed shares of a picture: by rows, as interlacing makes them, and by columns for comparison.
-
-    Args:
-        image: (rows, columns, 3) as decoded: scaling removes combs.
-
-    Returns:
-        Two shares of the sampled pixels.
-    """
+    """Combed shares of a picture as decoded: by rows, as of interlacing, and by columns, to compare."""
     green = image[..., 1].astype(np.int16)
     across = max(image.shape[1] // COLUMNS, 1)
     down = max(image.shape[0] // COLUMNS, 1)

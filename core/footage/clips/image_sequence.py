@@ -184,10 +184,7 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
 
 
 def find_images(path: Path) -> list[Path] | None:
-    """The images that a path names, in natural order, or None where it names something else.
-
-    Args:
-        path: A folder, a pattern (`img_####.png`, `img_%04d.png`), or one image of a numbered sequence.
+    """The images of a folder, a pattern or a numbered image, in natural order; None of anything else.
 
     Raises:
         InputError: A folder or pattern without an image, or a folder with several sequences.

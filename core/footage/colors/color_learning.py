@@ -53,11 +53,10 @@ def learn_colors(
     and so on.
 
     Args:
-        images: Sampled frames, (rows, columns, 3) uint8, on the searching grid.
+        images: Sampled frames, (rows, columns, 3) uint8, on the learning grid.
         samples_srgb: One (red, green, blue) in 0..255 per marker.
         allowed: Per image, (M, rows, columns) 1 where each marker may be, or None for everywhere.
-        ignored: Per image, the mask (rows, columns) of pixels that are neither a marker nor background, or
-            None; empty for none at all.
+        ignored: Per image, the mask (rows, columns) of ignored pixels, or None; empty for none at all.
     """
     sampled = IndexedFrames(images, ignored)
     initial = [sample_distribution(sample) for sample in samples_srgb]
@@ -94,12 +93,9 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
 
 
 def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> ColorDistribution:
-    """Fit a distribution to a surface's pixels, robustly, and never narrower than pixel noise.
+    """Fit a distribution to a surface's N pixels, robustly, and never narrower than pixel noise.
 
-    Args:
-        chroma: (N, 2) chromaticity.
-        luma: (N,) offset luma in levels.
-        start: The sample's own distribution; the fit's center stays within its reach.
+    Its center stays within the reach of the sample's own distribution.
     """
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])

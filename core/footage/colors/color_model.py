@@ -30,14 +30,9 @@ RED_SCALE = 0.713
 
 
 def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
-    """Split colors into chromaticity and luma.
+    """Split gamma-encoded colors (..., 3), blue, green, red in 0..255, into chromaticity and luma.
 
-    Args:
-        bgr: (..., 3) in 0..255, blue, green, red, gamma-encoded.
-
-    Returns:
-        Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in
-        levels.
+    Returns blue and red difference over offset luma (..., 2), without unit, and offset luma (...) in levels.
     """
     color = np.asarray(bgr, dtype=np.float64)
     # Written out: for so short a product, linear algebra libraries start threads that only wait.
@@ -127,16 +122,7 @@ class ColorDistribution:
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
     ) -> tuple[Array, Array]:
-        """The squared Mahalanobis distance and the log density of colors.
-
-        Args:
-            chroma: (..., 2) chromaticity.
-            luma: (...) offset luma in levels, as `chromaticity` gives it.
-            noise_levels: Standard deviation of a pixel's color difference in levels.
-
-        Returns:
-            Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
-        """
+        """The squared Mahalanobis distance and log density over (chromaticity, log luma), (...) each."""
         light = np.log(luma) - self.log_luma
         noise = (noise_levels / luma) ** 2
         first = float(self.covariance[0, 0]) + noise
@@ -188,10 +174,8 @@ def color_model(
 ) -> ColorModel:
     """Classify every color cell as a marker's, the background's or unknown, by posterior probability.
 
-    Args:
-        distributions: The markers' colors.
-        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
-        background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighboring cells.
+    `pixel_counts` (M,) are the markers' in the frames in which `background_counts` (CELL_COUNT,) were
+    counted.
     """
     near = _cells_near(distributions)
     chroma, luma = cell_chromaticity(near)
@@ -230,12 +214,7 @@ def weigh(
 ) -> tuple[IndexArray, Array]:
     """The likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
 
-    Args:
-        distributions: The markers' colors.
-        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
-        background_counts: (N,) background pixels in each cell.
-        chroma: (N, 2) chromaticity of the cells' middles.
-        luma: (N,) their offset luma in levels.
+    Counts are as in `color_model`, those of the background by cell (N,), like chromaticity and luma.
     """
     counts = np.asarray(pixel_counts, dtype=np.float64)
     best, total = np.zeros(len(luma)), np.asarray(background_counts, dtype=np.float64).copy()
@@ -267,12 +246,7 @@ SHARE = 2e-5
 
 
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first.
-
-    Args:
-        counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: The sought color in 0..255.
-    """
+    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first."""
     count = np.asarray(counts, dtype=np.float64)
     common = np.flatnonzero(count > max(SHARE * count.sum(), 0.5))
     colors = cell_colors()[common]
@@ -289,12 +263,7 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
 
 
 def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
-    """The share of the clip's pixels that look like a color.
-
-    Args:
-        counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: The color, (red, green, blue) in 0..255.
-    """
+    """The share of the clip's pixels, counted by color cell, that look like a color."""
     count = np.asarray(counts, dtype=np.float64)
     present = np.flatnonzero(count)
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])

@@ -49,15 +49,7 @@ class StreamingColorLearner:
         expected: ExpectedRegions | None = None,
         ignored: IgnoredPixels | None = None,
     ) -> None:
-        """Prepare for a clip.
-
-        Args:
-            path: The clip, for messages.
-            size: Width and height of its images in px.
-            styles: The markers, M of them.
-            expected: Their expected regions, to learn from the markers rather than from clutter.
-            ignored: The pixels that are no marker's in each frame.
-        """
+        """Prepare for a clip of (width, height); expected regions keep clutter from being learned."""
         self.groups = color_groups(styles)
         self._path, self._styles, self._expected, self._ignored = path, styles, expected, ignored
         self._size, self._times = size, halvings(size)
@@ -110,12 +102,7 @@ class StreamingColorLearner:
         return bool(earlier.learning_rounds)
 
     def check_found(self) -> None:
-        """Refuse colors that were found nowhere.
-
-        Raises:
-            InputError: A marker's color matches nothing in the clip; the sentence names colors that occur, or
-                says that the surroundings have it too.
-        """
+        """Refuse colors that match nothing in the clip, or that the surroundings have too."""
         for sentence in self.complaints().values():
             raise InputError(f"{self._path}: marker {sentence}")
 

@@ -114,9 +114,6 @@ def color_confusion(model: ColorModel) -> Array:
 
     Pixels drawn from a color's learned density count by the posterior probability of their cells, as in
     tracking; rows sum to 1.
-
-    Args:
-        model: C colors learned for a clip.
     """
     cells = np.arange(len(model.label), dtype=np.int32)
     chroma, luma = cell_chromaticity(cells)

@@ -27,17 +27,10 @@ def held_against_clip(
     fps: float | None,
     frame_start: int,
 ) -> People:
-    """The people of each frame of the clip, in its pixels.
+    """The people of each frame of the clip, in its pixels; `frame_count` and `fps` are None where unknown.
 
     A point is not seen where its score is 0, where it lies at exactly (0, 0), which stands for nothing found,
     and outside the picture, where a network can only guess.
-
-    Args:
-        detected: What a file holds.
-        frame_count: Frames of the clip; None where it is not known.
-        size: Width and height of the clip's pictures [px].
-        fps: Frames per second of the clip; None where it is not known.
-        frame_start: Scene frame of the clip's first frame.
 
     Raises:
         InputError: It is of another clip, or nobody is seen in it.
@@ -171,11 +164,7 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
 def _check_places(
     detected: DetectedFrames, place: Array, seen: BoolArray, inside: BoolArray, size: tuple[int, int]
 ) -> None:
-    """Refuse coordinates that are not those of the clip's pixels.
-
-    Raises:
-        InputError: Most are outside the picture, or all in its corner, as shares of it would be.
-    """
+    """Refuse places most of which are outside the picture, or all in its corner, as shares of it would be."""
     if not seen.any():
         raise InputError(f"{detected.where}: no point has a score above 0; it must show a person")
     reach = float(np.abs(place[seen]).max())

@@ -62,16 +62,7 @@ class DetectedFrames:
 
 
 def person_array(value: Any, shape: tuple[int, ...], farthest: float, where: str) -> Array:
-    """Nested lists of numbers as an array; null becomes NaN.
-
-    Args:
-        value: The value in the file.
-        shape: Its shape; -1 stands for any length.
-        farthest: Largest absolute value.
-        where: Location in the file.
-
-    Raises:
-        InputError: It is something else.
+    """Nested lists of numbers as an array of a shape, in which -1 is any length; null becomes NaN.
     """
     array = number_array(value, nulls=True)
     fits = array is not None and len(shape) == array.ndim
@@ -84,31 +75,19 @@ def person_array(value: Any, shape: tuple[int, ...], farthest: float, where: str
 
 
 def check_people(count: int, where: str) -> None:
-    """Refuse more people in a frame than are read.
-
-    Raises:
-        InputError: There are more.
-    """
+    """Refuse more people in a frame than are read."""
     if count > MOST_PEOPLE:
         raise InputError(f"{where} has {count} people; at most {MOST_PEOPLE} in a frame are read")
 
 
 def check_points(count: int, where: str) -> None:
-    """Refuse more points of all people in all frames than are read.
-
-    Raises:
-        InputError: There are more.
-    """
+    """Refuse more points of all people in all frames than are read."""
     if count > MOST_POINTS:
         raise InputError(f"{where}: has {count} points in all frames; at most {MOST_POINTS} are read")
 
 
 def known_layout(count: int, where: str) -> Layout:
-    """The layout with so many points.
-
-    Raises:
-        InputError: There is none.
-    """
+    """The layout with so many points; it is refused where there is none."""
     layout = layout_of(count)
     if layout is None:
         raise InputError(f"{where} has {count} points; layouts that are read have {layout_words()}")
@@ -116,11 +95,7 @@ def known_layout(count: int, where: str) -> Layout:
 
 
 def same_layout(layout: Layout | None, count: int, where: str) -> Layout:
-    """The layout of all people so far, or the first one's.
-
-    Raises:
-        InputError: This person has another number of points.
-    """
+    """The layout of all people so far, or the first one's; another number of points is refused."""
     if layout is None:
         return known_layout(count, where)
     if layout.count != count:

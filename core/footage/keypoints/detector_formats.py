@@ -33,13 +33,6 @@ def openpose_people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
     """The people of a frame, each with the number of its body's points.
 
     Where a hand was found, the 21 points of the left hand and those of the right follow the body's.
-
-    Args:
-        value: The frame.
-        where: The file.
-
-    Raises:
-        InputError: A list is no list of x, y and score of every point.
     """
     people = []
     for index, entry in enumerate(value["people"]):
@@ -89,14 +82,6 @@ def read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
 
     An image is numbered by its identifier, or by the number with which its name ends. Images in which nobody
     was seen are not listed.
-
-    Args:
-        entries: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: An entry is something else.
     """
     layout: Layout | None = None
     people: dict[int, list[DetectedPerson]] = {}
@@ -152,25 +137,12 @@ def is_instances(value: Any) -> bool:
 
 
 def instance_people(instances: list[Any], where: str) -> list[DetectedPerson]:
-    """The people of one frame.
-
-    Raises:
-        InputError: An entry has no points in the picture.
-    """
+    """The people of one frame."""
     return [_person(instance, f"{where}[{index}]") for index, instance in enumerate(instances)]
 
 
 def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
-    """Read MMPose's results of a video.
-
-    Args:
-        value: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: An entry is something else, or the file has one picture's people only.
-    """
+    """Read MMPose's results of a video; a file of one picture is refused."""
     entries = value[INFO] if isinstance(value, dict) else value
     place = f"{where}: {INFO}" if isinstance(value, dict) else f"{where}: "
     if not entries:
@@ -245,16 +217,7 @@ def is_mediapipe(value: Any) -> bool:
 
 
 def read_mediapipe(value: Any, where: str, source: str) -> DetectedFrames:
-    """Read a list of frames, or an object with one as `frames`.
-
-    Args:
-        value: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: A frame is something else.
-    """
+    """Read a list of frames, or an object with one as `frames`."""
     frames = value["frames"] if isinstance(value, dict) else value
     people = {}
     for index, frame in enumerate(frames):

@@ -39,17 +39,7 @@ def tolerance(frame_count: int) -> int:
 
 
 def align_listed(count: int, frame_count: int | None, where: str, why: str = "") -> Alignment:
-    """Align a list with one entry a frame, the first of which is the clip's first frame.
-
-    Args:
-        count: Number of entries.
-        frame_count: Frames of the clip; None where it is not known.
-        where: The file.
-        why: What is known of the reason for a difference, to end the sentence.
-
-    Raises:
-        InputError: The list is of another clip.
-    """
+    """Align a list with one entry a frame, beginning with the clip's first; `why` may end its refusal."""
     if frame_count is None or count == frame_count:
         return Alignment(0, count)
     difference = count - frame_count
@@ -68,15 +58,7 @@ def align_numbered(
 ) -> Alignment:
     """Align frames that carry numbers, which count from 0, from 1, from the scene's first frame or otherwise.
 
-    Args:
-        numbers: The numbers that are there, at least one.
-        frame_count: Frames of the clip; None where it is not known.
-        frame_start: Scene frame of the clip's first frame.
-        where: The file or folder.
-        complete: Whether frames in which nobody was seen have a number too.
-
-    Raises:
-        InputError: The numbers do not fit the clip.
+    `complete` says whether frames in which nobody was seen have a number too.
     """
     lowest, highest = min(numbers), max(numbers)
     bases = sorted({0, 1, frame_start})

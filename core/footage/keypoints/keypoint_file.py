@@ -92,15 +92,7 @@ class OwnFile(Record):
 
 
 def read_own(fields: Fields, name: str) -> DetectedFrames:
-    """Read a file of our own.
-
-    Args:
-        fields: The file's fields.
-        name: The file's name, which stands for a detector that is not named.
-
-    Raises:
-        InputError: A field is missing or not what it must be.
-    """
+    """Read a file of our own, whose name stands for a detector that is not named."""
     said = read_record(OwnFile, fields)
     layout = _layout(said, fields)
     several = said.people is not None
@@ -140,12 +132,6 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
 
 def write_keypoints(path: Path, people: People, frame_start: int, fps: float | None = None) -> None:
     """Write a file of our own, atomically; `read_keypoints` reads it back.
-
-    Args:
-        path: The file; an older one is replaced.
-        people: Whom a source saw, in every frame of the clip.
-        frame_start: Scene frame of the clip's first frame.
-        fps: Frames per second of the clip.
 
     Raises:
         ConversionError: The file cannot be written.

@@ -47,16 +47,12 @@ HIGH_SHARE = 0.95
 
 
 def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
-    """Scores as confidences, and a sentence where they had to be changed.
+    """Scores (S,) of all placed points as confidences, and a sentence where they had to be changed.
 
     Probabilities stay as they are; a negative one among them stands for nothing found. Negative scores beside
     such above 1 are logits, the logarithm of the odds. Responses of networks that exceed 1 (SimCC's heat
     maps, percentages) are divided by the one that most stay below: only their order and proportion mean
     anything. A file without any score vouches for all of its points.
-
-    Args:
-        scores: (S,) all scores of points that have a place; NaN where there is none.
-        where: The file.
     """
     known = scores[np.isfinite(scores)]
     if not len(known) or not known.any():
@@ -95,11 +91,7 @@ class Keypoints:
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
 
     def __post_init__(self) -> None:
-        """Check names and shapes and keep own, read-only copies.
-
-        Raises:
-            ValueError: A name is unknown, or shapes disagree.
-        """
+        """Check names and shapes and keep own, read-only copies."""
         unknown = set(self.names) - set(BODY_POINTS)
         if unknown:
             raise ValueError(f"unknown body points {sorted(unknown)}")

@@ -63,13 +63,7 @@ class Expected:
 
 
 def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> IndexArray:
-    """The performer's index among the people of each frame, `NOBODY` where it is none of them.
-
-    Args:
-        seen: The people of F frames.
-        expected: Where the performer is expected; None where nothing is known.
-        fps: Frames per second.
-    """
+    """The performer's index among the people of each of F frames, `NOBODY` where it is none of them."""
     frames = len(seen.pixel)
     costs, absent = _costs(seen, expected)
     before = np.concatenate([[0.0], np.cumsum(absent)])  # of all frames before each

@@ -35,14 +35,10 @@ class Characteristics(NamedTuple):
 
 
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:
-    """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
+    """M00, m10, m01, m20, m11, m02 (6,) of a weighted region (rows, columns) at an origin (x, y) (eq. 1).
 
     Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
     rectangle.
-
-    Args:
-        weights: Coverage of each pixel, (rows, columns), booleans or numbers >= 0.
-        origin: Image coordinates (x, y) of the window's top left corner, in pixels.
     """
     # OpenCV takes pixels for points and the first pixel's center for the origin.
     points = cv2.moments(np.asarray(weights, dtype=np.float64))
@@ -56,13 +52,9 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
-    """Centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
+    """Centroids (..., 2) and A = [[μ20, μ11], [μ11, μ02]] / m00 (..., 2, 2) of raw moments (..., 6).
 
-    Args:
-        moments: Raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
-
-    Returns:
-        Centroid and A = [[μ20, μ11], [μ11, μ02]] / m00; NaN where m00 is zero.
+    Eqs. 2 to 4, in px; NaN where m00 is zero. Moments of disjoint regions add up.
     """
     m = np.asarray(moments, dtype=np.float64)
     area = np.where(m[..., 0] > 0.0, m[..., 0], np.nan)[..., None]
@@ -81,15 +73,11 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
 
 
 def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
-    """Return S_x, S_y, S_θ, S_λ of regions.
+    """S_x, S_y, S_θ, S_λ of regions with centroids (..., 2) [px] and A (..., 2, 2) [px²].
 
     S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the
     sentence after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the
     axes.
-
-    Args:
-        centroid: (..., 2) in px.
-        second_moment: A, (..., 2, 2) in px².
     """
     centroid = np.asarray(centroid, dtype=np.float64)
     matrix = np.asarray(second_moment, dtype=np.float64)
@@ -132,14 +120,10 @@ class Coverage(NamedTuple):
 
 
 def coverage(image: Image, mask: Image) -> Coverage:
-    """The share of each pixel that the masked regions cover.
+    """The share of each pixel of an image, with even rows and columns, that the masked regions (1) cover.
 
     Computed in the band of two pixels to either side of a region's edge, in which optics and halved chroma
     blur edges; elsewhere the mask holds.
-
-    Args:
-        image: (rows, columns, 3) uint8 blue, green, red; rows and columns even.
-        mask: (rows, columns) uint8, 1 in the classified regions.
     """
     first = cv2.erode(mask, CROSS)
     second = cv2.erode(first, CROSS)

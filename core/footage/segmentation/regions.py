@@ -61,17 +61,11 @@ def find_regions(
     before: Regions = NO_REGIONS,
     ignored: Sequence[Image | None] = (),
 ) -> list[Regions]:
-    """Detect the regions of the markers' colors in each of some successive images.
+    """Detect the regions of the markers' colors in each of some successive images of one size.
 
     A search on a coarse grid finds the windows to measure; those around the regions of the frame before are
-    added. Only these are segmented finely. Several images together take less time than one by one.
-
-    Args:
-        images: (rows, columns, 3), all of one size, to be halved `times` to become the measuring grid.
-        times: Number of halvings.
-        model: The markers' colors.
-        before: The regions of the frame before.
-        ignored: Of each image, the mask of its ignored pixels on the measuring grid, or None; empty for none.
+    added. Only these are segmented finely. Several images together take less time than one by one. Halved
+    `times`, the images become the measuring grid, on which are the masks of their ignored pixels, if any.
     """
     grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
     factor = searching_factor(grid)
@@ -99,11 +93,6 @@ def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -
     """Coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
     For previews: as tracking measures it, clutter of the markers' colors included.
-
-    Args:
-        image: (rows, columns, 3) of the clip's size.
-        model: The markers' colors, C of them.
-        ignored: Mask of the ignored pixels on the measuring grid; None for none.
     """
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
@@ -230,16 +219,7 @@ SUBSAMPLES = 2
 
 
 def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int = CORNERS) -> Array:
-    """Closed outlines of the uniform ellipses with given moments.
-
-    Args:
-        centroid: (..., 2) [px].
-        second_moment: (..., 2, 2) second central moment matrices [px²].
-        corners: Corners K of each outline; the last joins the first.
-
-    Returns:
-        (..., K, 2) [px]; NaN where the moments are.
-    """
+    """Closed outlines (..., K, 2) [px] of the uniform ellipses with given moments; NaN where those are."""
     center = np.asarray(centroid, dtype=np.float64)
     moments = np.asarray(second_moment, dtype=np.float64)
     known = np.isfinite(center).all(-1) & np.isfinite(moments).all((-1, -2))
@@ -253,14 +233,9 @@ def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int 
 
 
 def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
-    """Outlines of the area that a mask covers at least half, the longest first.
+    """Closed outlines (N, 2) [px] of the area that a mask covers at least half, the longest first.
 
-    Args:
-        mask: (rows, columns) coverage in 0..1.
-        scale: Pixels of the image to one of the mask.
-
-    Returns:
-        Closed outlines (N, 2) in pixels of the image.
+    `scale` are pixels of the image to one of the mask.
     """
     fine = cv2.resize(mask, None, fx=SUBSAMPLES, fy=SUBSAMPLES, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)

@@ -19,13 +19,7 @@ MARGIN = 6
 
 
 def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
-    """Boxes (left, top, right, bottom) around the components of a color, in pixels of the measuring grid.
-
-    Args:
-        label: (rows, columns) color of each pixel of the coarse grid.
-        color: Index of the color.
-        factor: Pixels of the measuring grid to one of the coarse grid.
-    """
+    """Boxes around a color's components on a grid `factor` as coarse as the measuring one, in its pixels."""
     mask = np.equal(label, color).view(np.uint8)
     x, y, columns, rows = cv2.boundingRect(mask)
     if not columns:
@@ -42,13 +36,9 @@ def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
 
 
 def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
-    """Boxes to measure; those that overlap with their margins are merged.
+    """Boxes seen, and those of the frame before that none of them shows, too small for the coarse grid.
 
-    So no pixel is measured twice for a color.
-
-    Args:
-        seen: Boxes of the color on the coarse grid.
-        followed: Boxes in the frame before, for regions too small for the coarse grid.
+    Those that overlap with their margins are merged: no pixel is measured twice for a color.
     """
     pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
     boxes = []
@@ -111,12 +101,9 @@ class Atlas(NamedTuple):
 def pack_windows(
     images: Sequence[Image], windows: Sequence[Window], masks: Sequence[Image | None] = ()
 ) -> Atlas:
-    """Cut windows out of images and lay them side by side.
+    """Cut windows out of images of one size and of the masks of their ignored pixels; lay them side by side.
 
-    Args:
-        images: (rows, columns, 3), all of one size.
-        windows: What to cut out, at least one; each overlaps its image.
-        masks: Of each image, the ignored pixels of the image halved as its windows are; empty for none.
+    The masks are of images halved as the windows are; empty for none. Each window overlaps its image.
     """
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))

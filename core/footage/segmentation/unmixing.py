@@ -117,14 +117,10 @@ class Palette:
         return np.array([other.deviation for other in self.others])
 
     def unmix(self, picture: Image, background: SingleArray, deviation: SingleArray) -> Unmixed:
-        """The share of the surface in the pixels of a window.
+        """The share of the surface in the pixels of a window (rows, columns, 3).
 
         It may lie before the background, and before another surface where that one is seen beside it.
-
-        Args:
-            picture: (rows, columns, 3) blue, green, red.
-            background: (rows, columns, 3) its usual colors; NaN where unknown, which tells nothing.
-            deviation: (rows, columns) theirs.
+        Background colors are NaN where unknown, which tells nothing.
         """
         differs = np.abs(picture - background) > UNCHANGED
         odd = differs[..., 0] | differs[..., 1] | differs[..., 2]
@@ -240,12 +236,7 @@ def _dot(one: Array, other: Array) -> Array:
 
 
 def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
-    """Connected regions of a window in which a surface shows.
-
-    Args:
-        seen: The window's pixels.
-        origin: The window's left and top in the picture.
-    """
+    """Connected regions in which a surface shows, of a window with its left and top at `origin`."""
     core = (seen.gain > LEAST_GAIN).astype(np.uint8)
     shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & (cv2.dilate(core, RIM) > 0)
     count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
