@@ -70,7 +70,7 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
 
 
 def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
-    """Common colors (K, 3), as of `contrast`, of the body's parts, the commonest first, and the parts (K,)."""
+    """Common colors (K, 3), as of `contrast`, of parts, the commonest first, and those parts (K,)."""
     found: list[tuple[float, int, Array]] = []
     for part, log_density in enumerate(appearance.parts[:-1]):
         share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)

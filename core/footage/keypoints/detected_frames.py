@@ -62,8 +62,7 @@ class DetectedFrames:
 
 
 def person_array(value: Any, shape: tuple[int, ...], farthest: float, where: str) -> Array:
-    """Nested lists of numbers as an array of a shape, in which -1 is any length; null becomes NaN.
-    """
+    """Nested lists of numbers as an array of a shape, in which -1 is any length; null becomes NaN."""
     array = number_array(value, nulls=True)
     fits = array is not None and len(shape) == array.ndim
     if not fits or array is None or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
