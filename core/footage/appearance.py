@@ -16,54 +16,39 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
-NO_PART = -1
-"""Label of pixels without a part of the body."""
+NO_PART = -1  # label of pixels without a part of the body
 BITS = 5
 LEVELS = 1 << BITS
 CELLS = LEVELS**3
 CELL_VOLUME = (256 / LEVELS) ** 3
-UNSEEN = 0.02
-"""Share of any surface's colors that a few frames do not show."""
+UNSEEN = 0.02  # share of any surface's colors that a few frames do not show
 BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
 """Smoothing matrix of a histogram along one axis."""
 UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
-MARGIN_PX = 5
-"""Error of a predicted body: pixels nearer to it do not count as background."""
-FEWEST_FREE = 3
-"""Frames that must show a pixel's background for its Gaussian to be known."""
-HIGHEST = 255
-"""Replaces occluded levels, so that they are sorted last."""
-SPARSE = 2
-"""Sampling step, in rows and columns, of the background's histogram."""
+MARGIN_PX = 5  # error of a predicted body: pixels nearer to it do not count as background
+FEWEST_FREE = 3  # frames that must show a pixel's background for its Gaussian to be known
+HIGHEST = 255  # replaces occluded levels, so that they are sorted last
+SPARSE = 2  # sampling step, in rows and columns, of the background's histogram
 SMALLEST_DEVIATION, LARGEST_DEVIATION = 3.0, 12.0
 """Bounds of a background pixel's standard deviation in levels."""
-STEADY = 6.0
-"""Standard deviation below which a background pixel is static, in levels."""
-STEADY_SHARE = 0.9
-"""Share of static pixels in a static background."""
+STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
+STEADY_SHARE = 0.9  # share of static pixels in a static background
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
-LEAST_KNOWN_SHARE = 0.5
-"""Least share of static pixels among all, where each is judged by itself."""
-CHANGED = 0.1
-"""Prior share of pixels that differ from the background's usual color."""
+LEAST_KNOWN_SHARE = 0.5  # least share of static pixels among all, where each is judged by itself
+CHANGED = 0.1  # prior share of pixels that differ from the background's usual color
 
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
     """Log likelihoods of colors, as densities per level³."""
 
-    parts: Array
-    """(O + 1, cells) histogram of each part of the body and, last, of the whole background."""
-    color: Array
-    """(rows, columns, 3) median color of the background."""
-    deviation: Array
-    """(rows, columns) standard deviation of the background's color, in levels."""
-    known: BoolArray
-    """(rows, columns) whether the background was visible in enough frames."""
-    steady: bool
-    """Whether the background is static, so that pixels that differ from it are foreground."""
+    parts: Array  # (O + 1, cells) histogram of each part of the body and, last, of the whole background
+    color: Array  # (rows, columns, 3) median color of the background
+    deviation: Array  # (rows, columns) standard deviation of the background's color, in levels
+    known: BoolArray  # (rows, columns) whether the background was visible in enough frames
+    steady: bool  # whether the background is static, so that pixels that differ from it are foreground
 
     def with_parts(self, images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> "Appearance":
         """This appearance with the colors of O parts learned from frames in which the body is known best.

@@ -17,15 +17,11 @@ from .region_tracks import ExpectedRegions
 from .segmentation.moments import MOMENT_POWERS
 from .segmentation.regions import Regions
 
-HIDING_COST = 4.0
-"""Cost of becoming hidden: a visible marker is visible in the next frame in 98 of 100 cases."""
-HIDDEN_COST = 2.5
-"""Cost of each hidden frame: once hidden, a marker stays so for a while."""
-CERTAINTY_WEIGHT = 3.0
-"""Effective number of independent pixels of a region: their errors are correlated."""
+HIDING_COST = 4.0  # cost of becoming hidden: a visible marker is visible in the next frame in 98 of 100 cases
+HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
+CERTAINTY_WEIGHT = 3.0  # effective number of independent pixels of a region: their errors are correlated
 RESTART_COST = 10.0
-LONGEST_GAP = 12
-"""Hidden frames over which the speed still bounds where a marker reappears."""
+LONGEST_GAP = 12  # hidden frames over which the speed still bounds where a marker reappears
 AREA_DEVIATION = 1.2
 """Standard deviation of the log area: foreshortening and occlusion change areas by a factor of three."""
 STEP_IN_SIZES = 0.35
@@ -35,33 +31,25 @@ STEP_TAIL = 1.0
 STILL_SHARE = 0.5
 STILL_STEP_PX = 1.5
 STILL_LOG_AREA = 0.4
-STILL_CELL = 2.0 / 3.0
-"""Width of a cell in steps, so that a cell and its neighbors reach one step on average."""
+STILL_CELL = 2.0 / 3.0  # width of a cell in steps, so that a cell and its neighbors reach one step on average
 STILL_COST = 20.0
 TAKEN_COST = 20.0
 RIVAL_DEVIATION = 0.2
 """Standard deviation of a marker from its expected position, in units of its generous radius."""
 RIVAL_SHARE = 0.25
-RIVAL_AREA = 0.1
-"""Least area of a moving region that is no noise, relative to the static one's."""
+RIVAL_AREA = 0.1  # least area of a moving region that is no noise, relative to the static one's
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
     """The detected regions of one color over a clip, N in all."""
 
-    frame: IntArray
-    """(N,) frame index of each region, ascending."""
-    moments: Array
-    """(N, 6) raw moments."""
-    box: Array
-    """(N, 4) left, top, right, bottom in px."""
-    certainty: Array
-    """(N,) color certainty in 0..1."""
-    clipped: BoolArray
-    """(N,) whether the region touches the image's border."""
-    start: IntArray
-    """(F + 1,) index of each frame's first region."""
+    frame: IntArray  # (N,) frame index of each region, ascending
+    moments: Array  # (N, 6) raw moments
+    box: Array  # (N, 4) left, top, right, bottom in px
+    certainty: Array  # (N,) color certainty in 0..1
+    clipped: BoolArray  # (N,) whether the region touches the image's border
+    start: IntArray  # (F + 1,) index of each frame's first region
 
     @property
     def centroid(self) -> Array:
@@ -232,22 +220,17 @@ def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker
 # --- Joining the fragments of a marker's region, and the quality of the result
 
 
-AREA_WINDOW = 31
-"""Window in frames for a marker's full area; the marker turns and approaches more slowly."""
+AREA_WINDOW = 31  # window in frames for a marker's full area; the marker turns and approaches more slowly
 CLIPPED_QUALITY = 0.4
 
 
 class MarkerRegion(NamedTuple):
     """A marker's joined region in each of F frames."""
 
-    moments: Array
-    """(F, 6) raw moments, zero where hidden."""
-    clipped: BoolArray
-    """(F,) whether it touches the image's border."""
-    certainty: Array
-    """(F,) certainty of its color, in 0..1."""
-    share: Array
-    """(F,) share of its main fragment in its area."""
+    moments: Array  # (F, 6) raw moments, zero where hidden
+    clipped: BoolArray  # (F,) whether it touches the image's border
+    certainty: Array  # (F,) certainty of its color, in 0..1
+    share: Array  # (F,) share of its main fragment in its area
 
 
 def join_fragments(

@@ -25,18 +25,12 @@ NEWTON_TOLERANCE = 1e-12
 class Camera:
     """A fixed or moving pinhole camera with polynomial radial distortion."""
 
-    lens_mm: float
-    """Focal length in millimeters."""
-    sensor_width_mm: float
-    """Width of the sensor in millimeters; it spans the image's width."""
-    resolution: tuple[int, int]
-    """Image width and height in pixels (square pixels)."""
-    matrix_world: Array
-    """Camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters."""
-    shift_x: float = 0.0
-    """Shift of the view to the right, in image widths."""
-    shift_y: float = 0.0
-    """Shift of the view upwards, in image widths (as in Blender, not heights)."""
+    lens_mm: float  # focal length in millimeters
+    sensor_width_mm: float  # width of the sensor in millimeters; it spans the image's width
+    resolution: tuple[int, int]  # image width and height in pixels (square pixels)
+    matrix_world: Array  # camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters
+    shift_x: float = 0.0  # shift of the view to the right, in image widths
+    shift_y: float = 0.0  # shift of the view upwards, in image widths (as in Blender, not heights)
     distortion: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """K1, k2, k3 of Blender's polynomial model, which takes undistorted normalized coordinates to
     distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y²."""
@@ -222,14 +216,11 @@ class Camera:
 # --- The default camera of new footage
 
 
-FULL_FRAME_MM = 36.0
-"""Long side of the full-frame sensor that focal lengths are compared on [mm]."""
+FULL_FRAME_MM = 36.0  # long side of the full-frame sensor that focal lengths are compared on [mm]
 FULL_FRAME_DIAGONAL_MM = hypot(36.0, 24.0)
 
-PHONE_MM = 26.0
-"""Full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28."""
-STABILISED = 1.1
-"""Crop factor of phones' video stabilization: a tenth is usual."""
+PHONE_MM = 26.0  # full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28
+STABILISED = 1.1  # crop factor of phones' video stabilization: a tenth is usual
 WEBCAM_DEGREES = 68.0
 """Diagonal view of a webcam in 16 to 9: makers state 60 (plain ones) to 78 (better ones)."""
 WEBCAM_HEIGHT_PX = 600
@@ -238,10 +229,8 @@ USUAL_MM = 35.0
 """Lens of any other camera: between the wide end of a usual zoom (24 to 28) and its middle (50) [mm]."""
 
 EYE_HEIGHT_M = 1.4
-REACH_M = 1.0
-"""Half the arm span of an adult [m]."""
-FILLED = 0.9
-"""Largest share of the picture that a performer at the origin fills."""
+REACH_M = 1.0  # half the arm span of an adult [m]
+FILLED = 0.9  # largest share of the picture that a performer at the origin fills
 
 
 @dataclass(frozen=True)
@@ -251,8 +240,7 @@ class LensGuess:
     lens_mm: float
     sensor_width_mm: float
     """Width of the sensor, which spans the picture's width; its long side is that of full frame [mm]."""
-    reason: str
-    """Kind of camera that was assumed, to follow "as of"."""
+    reason: str  # kind of camera that was assumed, to follow "as of"
 
 
 def guess_lens(size: tuple[int, int]) -> LensGuess:

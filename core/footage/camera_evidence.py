@@ -9,8 +9,7 @@ from ..arrays import Array
 from .camera import Camera
 from .camera_fields import heading_rad
 
-CLICK_STD_PX = 1.5
-"""Standard deviation of a click, or of a line's end drawn by hand [px]."""
+CLICK_STD_PX = 1.5  # standard deviation of a click, or of a line's end drawn by hand [px]
 PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.02, float(np.radians(3.0))
 """Someone who stands or walks upright: share by which they are shorter than their stature or taller, as heads
 rise and fall by 3 % in every step, and lean to any side."""
@@ -31,26 +30,16 @@ def no_lines() -> Array:
 class Uprights:
     """N upright things of known length that stand on the floor, or a performer at N moments."""
 
-    lower_px: Array
-    """(N, 2) the lower point in the picture [px]."""
-    upper_px: Array
-    """(N, 2) the point above it [px]."""
-    lower_m: Array
-    """(N,) height of the lower point above the floor [m]."""
-    length_m: Array
-    """(N,) length between the two [m]."""
-    pixel_std: Array
-    """(N,) standard deviation of a point in the picture [px]."""
-    length_std: Array
-    """(N,) share by which each length may be off."""
-    lean_std_rad: Array
-    """(N,) lean to the side."""
-    common_std: float = 0.0
-    """Share by which all lengths may be off together."""
-    common_lean_rad: float = 0.0
-    """Lean that all may have together, as somebody who walks to one side has."""
-    doubtful: bool = False
-    """Whether single ones may be far off, as where nobody has looked at them."""
+    lower_px: Array  # (N, 2) the lower point in the picture [px]
+    upper_px: Array  # (N, 2) the point above it [px]
+    lower_m: Array  # (N,) height of the lower point above the floor [m]
+    length_m: Array  # (N,) length between the two [m]
+    pixel_std: Array  # (N,) standard deviation of a point in the picture [px]
+    length_std: Array  # (N,) share by which each length may be off
+    lean_std_rad: Array  # (N,) lean to the side
+    common_std: float = 0.0  # share by which all lengths may be off together
+    common_lean_rad: float = 0.0  # lean that all may have together, as somebody who walks to one side has
+    doubtful: bool = False  # whether single ones may be far off, as where nobody has looked at them
 
     @classmethod
     def none(cls) -> "Uprights":
@@ -136,20 +125,17 @@ class CameraEvidence:
     """(V, 2, 2) plumb in the world: door frames, corners of walls."""
     along: Array = field(default_factory=no_lines)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
-    across: Array = field(default_factory=no_lines)
-    """(C, 2, 2) level and at right angles to those."""
+    across: Array = field(default_factory=no_lines)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
 
 
 # --- The floor as a grid of meters in the picture, by which people judge a camera
 
 
-REACH_M = 8
-"""Lines lie so far to each side of the floor's part that is looked at."""
+REACH_M = 8  # lines lie so far to each side of the floor's part that is looked at
 AHEAD_M = 4.0
 """Distance of that part where the camera does not look down on it: a whole person fits the picture there."""
-PIECES = 4
-"""Pieces of a meter, each straight, as a lens with distortion bends lines."""
+PIECES = 4  # pieces of a meter, each straight, as a lens with distortion bends lines
 MARGIN = 0.1
 """Share of the picture's size beyond which nothing is drawn: distortion is not defined far outside."""
 HORIZON_DEGREES = 60.0
@@ -161,12 +147,9 @@ FAR_M = 1e5
 class FloorGrid:
     """Straight pieces of lines in the picture, each from one point to another [px]."""
 
-    lines: Array
-    """(S, 2, 2) of the grid."""
-    depth_m: Array
-    """(S,) distance of each from the camera, along the viewing axis [m]."""
-    horizon: Array
-    """(H, 2, 2) where the floor would end."""
+    lines: Array  # (S, 2, 2) of the grid
+    depth_m: Array  # (S,) distance of each from the camera, along the viewing axis [m]
+    horizon: Array  # (H, 2, 2) where the floor would end
 
 
 def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:

@@ -19,18 +19,15 @@ from ..files.kinds import Items, Kind, Number, Whole, refuse
 from ..files.records import Record, read_record
 from ..files.safe_path import number_array
 
-STRAIGHT_DOWN = 1e-6
-"""Horizontal share of a viewing direction below which it has no heading."""
+STRAIGHT_DOWN = 1e-6  # horizontal share of a viewing direction below which it has no heading
 
 
 @dataclass(frozen=True)
 class CameraPlacement:
     """Height and attitude of a camera over the floor z = 0."""
 
-    height_m: float
-    """Above the floor [m]."""
-    tilt_rad: float
-    """Of the viewing direction above the horizon; negative where the camera looks down."""
+    height_m: float  # above the floor [m]
+    tilt_rad: float  # of the viewing direction above the horizon; negative where the camera looks down
     roll_rad: float
     """About the viewing direction, counterclockwise as the camera's operator sees it: the picture then leans
     clockwise."""
@@ -87,23 +84,16 @@ def heading_rad(matrix_world: ArrayLike) -> float:
 # --- Validation of a camera's fields in a take
 
 
-LENGTHS_MM = (0.1, 100_000.0)
-"""A focal length or a sensor's width lies between these [mm]."""
-MOST_SHIFT = 100.0
-"""Largest shift [image widths]."""
+LENGTHS_MM = (0.1, 100_000.0)  # A focal length or a sensor's width lies between these [mm]
+MOST_SHIFT = 100.0  # largest shift [image widths]
 LARGEST_SIDE_PX = 2**16
-MOST_DISTORTION = 100.0
-"""Largest coefficient; those of real lenses are below 1."""
-FARTHEST_M = 1e6
-"""Largest entry of a pose: distance from the origin along an axis, or scale."""
-FACING = "distance_m"
-"""Says where the world's origin is, which is of no use without the rest."""
+MOST_DISTORTION = 100.0  # largest coefficient; those of real lenses are below 1
+FARTHEST_M = 1e6  # largest entry of a pose: distance from the origin along an axis, or scale
+FACING = "distance_m"  # says where the world's origin is, which is of no use without the rest
 MATRICES = ("matrix_world", "matrix_world_frames")
-HEIGHTS_M = (0.01, 1000.0)
-"""A camera's height above the floor lies between these [m]."""
+HEIGHTS_M = (0.01, 1000.0)  # A camera's height above the floor lies between these [m]
 SMALLEST_SCALE = 1e-4
-ROTATION_TOLERANCE = 1e-3
-"""Files written by hand or in single precision have errors of about 1e-6."""
+ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision have errors of about 1e-6
 
 
 class Pose(Kind):

@@ -35,16 +35,12 @@ KNOWN_LENS_STD = 0.01
 """Of the logarithm of a focal length that somebody knows: zooms state theirs to a hundredth."""
 DETERMINED = 0.5
 """Largest ratio of the standard deviation found to that believed before, of what the picture determines."""
-STARTS = 8
-"""Headings of the level lines from which the descent starts, over half a turn."""
-START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])
-"""Tilts from which it starts."""
-FOLLOWED_STARTS = 3
-"""The likeliest of them, which are followed to their end."""
+STARTS = 8  # headings of the level lines from which the descent starts, over half a turn
+START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])  # tilts from which it starts
+FOLLOWED_STARTS = 3  # the likeliest of them, which are followed to their end
 HEADING = len(PARAMETERS)
 DIFFERENCE = 1e-5
-DEGREES = 4.0
-"""Degrees of freedom of Student's t of what may be far off."""
+DEGREES = 4.0  # degrees of freedom of Student's t of what may be far off
 EXPECTED_WEIGHT = 4.0
 """Degrees of freedom with which the image noise is believed beforehand, as few lines tell little of it."""
 EXACT = 1e-6
@@ -56,13 +52,11 @@ LEAST_RISE_M, FLATTEST = 0.01, 1e-3
 class CameraFit:
     """A camera as a picture shows it."""
 
-    camera: Camera
-    """With the lens and the pose found; the place on the floor and the heading are as before."""
+    camera: Camera  # with the lens and the pose found; the place on the floor and the heading are as before
     std: dict[str, float]
     """Standard deviation of each of `PARAMETERS`: height [m], tilt and roll [rad], lens [mm]; of those kept,
     how open they are."""
-    kept: tuple[str, ...]
-    """Those of `PARAMETERS` that the picture does not determine, which kept their value."""
+    kept: tuple[str, ...]  # those of `PARAMETERS` that the picture does not determine, which kept their value
     misfit_px: float
     """Root of the mean square distance of the lines' and uprights' ends from where they should be [px]."""
     excess: float
@@ -129,10 +123,8 @@ def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
 class _Residuals(NamedTuple):
     """Residuals of all lines and uprights."""
 
-    px: Array
-    """(R,) [px]."""
-    scaled: Array
-    """(R,) in standard deviations."""
+    px: Array  # (R,) [px]
+    scaled: Array  # (R,) in standard deviations
 
 
 @dataclass(frozen=True, eq=False)

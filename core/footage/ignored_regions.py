@@ -21,31 +21,24 @@ from ..files.records import Record
 from .camera_fields import LARGEST_SIDE_PX
 from .segmentation.working_image import halvings
 
-IGNORED = 255
-"""Value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored."""
+IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
 SUBPIXEL_BITS = 4
-SUBPIXELS = 1 << SUBPIXEL_BITS
-"""Parts of a pixel in drawn coordinates."""
-MOST_MASKS = 16
-"""Masks of a session that are kept, some hundred kilobytes each."""
+SUBPIXELS = 1 << SUBPIXEL_BITS  # parts of a pixel in drawn coordinates
+MOST_MASKS = 16  # masks of a session that are kept, some hundred kilobytes each
 
 Point = tuple[float, float]
-PixelBox = tuple[float, float, float, float]
-"""Left, top, right, bottom in pixels of the footage."""
+PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
 
 
 @dataclass(frozen=True)
 class IgnoredRegion:
     """One region of the picture that is never a marker, in pixels of the footage."""
 
-    box: PixelBox | None = None
-    """A box; None for a stroke."""
+    box: PixelBox | None = None  # A box; None for a stroke
     stroke: tuple[Point, ...] = ()
     """Points of a brush's path, all pixels within the radius of which are ignored."""
-    radius_px: float = 0.0
-    """The brush's radius."""
-    frames: tuple[int, int] | None = None
-    """Index of the first frame and of the last one; None for all."""
+    radius_px: float = 0.0  # the brush's radius
+    frames: tuple[int, int] | None = None  # index of the first frame and of the last one; None for all
 
     def holds_in(self, frame: int) -> bool:
         """Whether it is ignored in a frame of the clip, by its index."""
@@ -57,8 +50,7 @@ class IgnoredPixels:
     """The ignored pixels of a clip, frame by frame."""
 
     regions: tuple[IgnoredRegion, ...]
-    size: tuple[int, int]
-    """Width and height of the footage in px."""
+    size: tuple[int, int]  # width and height of the footage in px
     sampled: tuple[int, ...] | None = None
     """Index in the clip of each frame that is asked for; None where frames are the clip's own."""
 
@@ -122,8 +114,7 @@ def _draw_between(mask: Image, one: Array, other: Array, radius: float) -> None:
 
 IGNORED_REGIONS = "ignored_regions"
 MOST_REGIONS = 200
-MOST_POINTS = 1000
-"""Points of one stroke."""
+MOST_POINTS = 1000  # points of one stroke
 VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
 VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
 VALID_FRAMES = "[first, last], scene frames in order"

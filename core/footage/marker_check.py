@@ -27,8 +27,7 @@ from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
 from .still_areas import Likeness, alike_warnings, marker_warnings, places, still_areas
 
-HIGHEST_FRAGMENT_COST = 10.0
-"""Highest cost of a region that counts as a fragment of a marker."""
+HIGHEST_FRAGMENT_COST = 10.0  # highest cost of a region that counts as a fragment of a marker
 
 
 def assign_regions(
@@ -79,21 +78,15 @@ def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
 class MarkerReadout:
     """Result of the check for one marker, from N sampled frames."""
 
-    name: str
-    """The marker's name."""
-    found: int
-    """Number of frames in which it is detected."""
-    sampled: int
-    """Number of sampled frames, N."""
-    area_px: float
-    """Median area where it is detected, in pixels of the clip; 0 if it never is."""
-    area_share: float
-    """The same as a share of the picture."""
+    name: str  # the marker's name
+    found: int  # number of frames in which it is detected
+    sampled: int  # number of sampled frames, N
+    area_px: float  # median area where it is detected, in pixels of the clip; 0 if it never is
+    area_share: float  # the same as a share of the picture
     distinctness: float
     """Probability in 0..1 that a pixel of the marker is classified as such, times the share of the pixels so
     classified that are the marker's; 0 if it is never detected."""
-    warnings: tuple[str, ...]
-    """Sentences that name the marker."""
+    warnings: tuple[str, ...]  # sentences that name the marker
     still_boxes: tuple[PixelBox, ...] = ()
     """Boxes around still areas of its color that are surely no marker, in pixels of the clip."""
 
@@ -102,12 +95,9 @@ class MarkerReadout:
 class MarkerCheck:
     """Result of the check for M markers in C colors."""
 
-    readouts: tuple[MarkerReadout, ...]
-    """One a marker."""
-    model: ColorModel
-    """The learned color model, for previews."""
-    groups: tuple[tuple[int, ...], ...]
-    """The markers of each color."""
+    readouts: tuple[MarkerReadout, ...]  # one a marker
+    model: ColorModel  # the learned color model, for previews
+    groups: tuple[tuple[int, ...], ...]  # the markers of each color
     missing: Mapping[int, str]
     """For each marker whose color is nowhere, by index, a sentence that begins with its name; tracking
     refuses such a clip."""

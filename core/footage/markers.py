@@ -20,8 +20,7 @@ from .segmentation.working_image import halvings, measuring_image
 
 STRETCH_BYTES = 100_000_000
 """Memory of the images buffered until the colors are learned: five seconds of video and more."""
-BATCH_SIZE = 4
-"""Images segmented together: enough to amortize the overhead of each step."""
+BATCH_SIZE = 4  # images segmented together: enough to amortize the overhead of each step
 
 
 def track_markers(

@@ -21,12 +21,10 @@ MODEL = FOLDER / "pose_landmark.tflite"
 CHECKSUMS = FOLDER / "SHA256SUMS"
 NAME = "BlazePose"
 LAYOUT = LAYOUTS["blazepose33"]
-SIDE, CELLS = 256, 64
-"""Of the network's input and of its heat maps."""
+SIDE, CELLS = 256, 64  # of the network's input and of its heat maps
 POINTS, CENTER, ABOVE = 39, 33, 34
 """Point 33 is between the hips, 34 above it on the circle about the whole person."""
-CIRCLE = 2.5
-"""Side of a crop by the circle's radius."""
+CIRCLE = 2.5  # side of a crop by the circle's radius
 NEIGHBORS, CLEAR = 3, 0.5
 """A point goes to the middle of its heat map within so many cells, where that has such a peak."""
 OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
@@ -36,12 +34,9 @@ OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
 class Crop:
     """A square of a picture, which may reach beyond it."""
 
-    center: Array
-    """(2,) [px]"""
-    side: float
-    """[px]"""
-    angle: float = 0.0
-    """Clockwise turn of the person within the picture [rad]."""
+    center: Array  # (2,) [px]
+    side: float  # [px]
+    angle: float = 0.0  # clockwise turn of the person within the picture [rad]
 
     @property
     def matrix(self) -> Array:
@@ -60,16 +55,11 @@ class Crop:
 class Pose:
     """A person as the network sees one, N points of `LAYOUT`."""
 
-    pixel: Array
-    """(N, 2) [px]"""
-    score: Array
-    """(N,) 0 to 1."""
-    hint_m: Array
-    """(N, 3) as in `Keypoints`."""
-    presence: float
-    """How sure it is that the crop shows anybody, 0 to 1."""
-    crop: Crop
-    """About this person."""
+    pixel: Array  # (N, 2) [px]
+    score: Array  # (N,) 0 to 1
+    hint_m: Array  # (N, 3) as in `Keypoints`
+    presence: float  # how sure it is that the crop shows anybody, 0 to 1
+    crop: Crop  # about this person
 
 
 class PoseNetwork:

@@ -21,26 +21,17 @@ from .keypoints.keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 60
-"""Frames kept at a time, 170 MB."""
-LARGEST_SIDE_PX = 1280
-"""Pictures are made as small; the network sees 256 pixels of a person."""
-HEIGHTS = (1.15, 0.75, 0.5, 0.33)
-"""Sides of the crops that are looked into, by the height of the picture."""
-SIZES = (0.75,)
-"""The same by the largest person who is followed already."""
+STRETCH = 60  # frames kept at a time, 170 MB
+LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
+HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
+SIZES = (0.75,)  # the same by the largest person who is followed already
 STEP, FEWEST_HIDDEN = 0.5, 0.3
 """Between crops, and least presence of one that is looked into again about whom it shows."""
-LOOKS = 2
-"""More of these, each about the person as last seen."""
-PRESENT, SURE = 0.5, 0.9
-"""Presence of somebody who is followed, and of somebody new."""
-SCORE, NEW_SCORE = 0.3, 0.5
-"""The same of the mean score of all points."""
-FARTHEST, MOST_GROWN = 0.35, 1.5
-"""Of a step between frames: shares of the crop's side, and a ratio of sides."""
-APART = 0.3
-"""Share of a crop's side within which two crops show the same person."""
+LOOKS = 2  # more of these, each about the person as last seen
+PRESENT, SURE = 0.5, 0.9  # presence of somebody who is followed, and of somebody new
+SCORE, NEW_SCORE = 0.3, 0.5  # the same of the mean score of all points
+FARTHEST, MOST_GROWN = 0.35, 1.5  # of a step between frames: shares of the crop's side, and a ratio of sides
+APART = 0.3  # share of a crop's side within which two crops show the same person
 FEWEST_FRAMES, MOST_OTHER = 4, 1.6
 """Frames in which somebody must be seen, and ratio of sizes beyond which a later person is another."""
 SMALLEST, MOST_PEOPLE = 0.35, 4
@@ -51,8 +42,7 @@ SMALLEST, MOST_PEOPLE = 0.35, 4
 class _Sighting:
     """A person in one frame."""
 
-    track: int
-    """Number of the person, a new one where somebody was lost in between."""
+    track: int  # number of the person, a new one where somebody was lost in between
     pose: Pose
 
 

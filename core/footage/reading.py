@@ -26,18 +26,12 @@ from .segmentation.regions import Regions
 class Reading:
     """Result of one pass over a clip."""
 
-    tracks: RegionTracks
-    """The markers' regions in every frame."""
-    album: Album | None = None
-    """A small picture of every frame; None where only markers are used."""
-    detections: Detections | None = None
-    """All regions of the markers' colors; None where they were not kept."""
-    notes: tuple[str, ...] = ()
-    """Sentences on possible faults of the clip."""
-    key: str = ""
-    """Cache key of the clip and the settings, see `reading_key`; empty where unknown."""
-    frame_findings: FrameFindings = NO_FINDINGS
-    """Blank frames, cuts and interlacing."""
+    tracks: RegionTracks  # the markers' regions in every frame
+    album: Album | None = None  # A small picture of every frame; None where only markers are used
+    detections: Detections | None = None  # all regions of the markers' colors; None where they were not kept
+    notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
+    key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
+    frame_findings: FrameFindings = NO_FINDINGS  # blank frames, cuts and interlacing
 
 
 # --- A reading as named arrays of numbers and text, and back
@@ -127,10 +121,8 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
 # --- Cache key of a reading
 
 
-FORMAT = 2
-"""Version of the reading's algorithm and arrays; raised whenever either changes."""
-MOST_SAMPLED = 24
-"""Images of a longer sequence whose content is hashed, evenly spread."""
+FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
+MOST_SAMPLED = 24  # images of a longer sequence whose content is hashed, evenly spread
 PREFIX = "reading"
 
 
@@ -236,8 +228,7 @@ def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
 # --- Times of a clip's frames
 
 
-MOST_CLIPS = 8
-"""Clips whose times are remembered: those of the takes at hand."""
+MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand
 _known: dict[tuple[str, float], Array] = {}
 
 

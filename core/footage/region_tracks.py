@@ -10,20 +10,16 @@ from .clips.clip_timing import is_variable_frame_rate
 from .colors.color_learning import sample_distribution
 from .segmentation.regions import Regions
 
-ALIKE_DISTANCE = 2.5
-"""Squared Mahalanobis distance of two samples below which light may make them equal."""
+ALIKE_DISTANCE = 2.5  # squared Mahalanobis distance of two samples below which light may make them equal
 
 
 @dataclass(frozen=True)
 class MarkerStyle:
     """A colored surface marker as the performer wears it."""
 
-    name: str
-    """The marker's name."""
-    segment: str
-    """The body segment it is bound to."""
-    color_srgb: tuple[int, int, int]
-    """One eyedropper sample of the footage, (red, green, blue) in 0..255."""
+    name: str  # the marker's name
+    segment: str  # the body segment it is bound to
+    color_srgb: tuple[int, int, int]  # one eyedropper sample of the footage, (red, green, blue) in 0..255
 
 
 def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
@@ -55,24 +51,16 @@ def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> floa
 class RegionTracks:
     """The markers' image regions over a clip of F frames and M markers; NaN where a marker is hidden."""
 
-    names: tuple[str, ...]
-    """The markers, in the order of the second axis."""
-    centroid: Array
-    """(F, M, 2) px, origin at the outer corner of the top left pixel."""
-    second_moment: Array
-    """(F, M, 2, 2) px², the second central moment matrix A of eq. 2."""
-    area: Array
-    """(F, M) px."""
+    names: tuple[str, ...]  # the markers, in the order of the second axis
+    centroid: Array  # (F, M, 2) px, origin at the outer corner of the top left pixel
+    second_moment: Array  # (F, M, 2, 2) px², the second central moment matrix A of eq. 2
+    area: Array  # (F, M) px
     quality: Array
     """(F, M) in 0..1; confidence that the region is the whole marker and nothing else, 0 where hidden."""
-    clipped: BoolArray
-    """(F, M) whether the region touches the image's border."""
-    time_s: Array
-    """(F,) time stamps of the frames in seconds, from the first frame."""
-    size: tuple[int, int]
-    """Width and height of the image in px."""
-    notes: tuple[str, ...] = ()
-    """Sentences on possible faults of the tracks."""
+    clipped: BoolArray  # (F, M) whether the region touches the image's border
+    time_s: Array  # (F,) time stamps of the frames in seconds, from the first frame
+    size: tuple[int, int]  # width and height of the image in px
+    notes: tuple[str, ...] = ()  # sentences on possible faults of the tracks
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies."""
@@ -139,10 +127,8 @@ class RegionTracks:
 class ExpectedRegions:
     """Expected region of each marker in each frame, to tell it from clutter of like hue."""
 
-    center: Array
-    """(F, M, 2) px; NaN where unknown."""
-    radius: Array
-    """(F, M) px, a generous bound of the centroid's distance from the center."""
+    center: Array  # (F, M, 2) px; NaN where unknown
+    radius: Array  # (F, M) px, a generous bound of the centroid's distance from the center
 
     def __post_init__(self) -> None:
         """Check the shapes and keep own, read-only copies."""
@@ -164,23 +150,16 @@ class ExpectedRegions:
 class LearningRound:
     """One round of color learning."""
 
-    frames: tuple[int, ...]
-    """Indices of the frames learned from."""
-    model_digest: str
-    """Digest of the color model that was learned."""
+    frames: tuple[int, ...]  # indices of the frames learned from
+    model_digest: str  # digest of the color model that was learned
 
 
 @dataclass(frozen=True, eq=False)
 class Detections:
     """All regions of the markers' colors in a clip of F frames."""
 
-    regions: tuple[Regions, ...]
-    """Regions of each frame, in pixels of the measuring grid."""
-    time_s: Array
-    """(F,) time stamps of the frames in seconds."""
-    size: tuple[int, int]
-    """Width and height of the clip's images in px."""
-    learning_rounds: tuple[LearningRound, ...]
-    """Rounds in which the colors were learned, in order."""
-    samples: Mapping[int, Image]
-    """The images (rows, columns, 3) that were learned from, by frame."""
+    regions: tuple[Regions, ...]  # regions of each frame, in pixels of the measuring grid
+    time_s: Array  # (F,) time stamps of the frames in seconds
+    size: tuple[int, int]  # width and height of the clip's images in px
+    learning_rounds: tuple[LearningRound, ...]  # rounds in which the colors were learned, in order
+    samples: Mapping[int, Image]  # the images (rows, columns, 3) that were learned from, by frame

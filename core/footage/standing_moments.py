@@ -17,20 +17,15 @@ from .camera_evidence import COMMON_LEAN_RAD, STATURE_STD, Uprights
 from .keypoints.keypoints import Keypoints
 from .keypoints.performer import principal_keypoints
 
-APART_S = 0.3
-"""Time after which a posture is another one: half a step of someone who walks."""
-SURE = 0.3
-"""Least confidence of a keypoint."""
+APART_S = 0.3  # time after which a posture is another one: half a step of someone who walks
+SURE = 0.3  # least confidence of a keypoint
 PIXEL_SHARE = 0.025
 """Standard deviation of a detector's point, and of a rising heel, as a share from ankles to head."""
-LEVEL_SHARE = 0.06
-"""Largest difference of both ankles' heights in the picture, as such a share: a decimeter."""
+LEVEL_SHARE = 0.06  # largest difference of both ankles' heights in the picture, as such a share: a decimeter
 LENGTH_STD, LEAN_STD_RAD = 0.025, float(np.radians(3.0))
 """Of someone who walks: knees bend, heels rise, and the trunk leans."""
-DETECTOR_STD = 0.02
-"""Share by which detectors put ankles and head too high or too low throughout."""
-IN_LINE = float(np.cos(np.radians(15.0)))
-"""Cosine of the largest angle between trunk and legs."""
+DETECTOR_STD = 0.02  # share by which detectors put ankles and head too high or too low throughout
+IN_LINE = float(np.cos(np.radians(15.0)))  # cosine of the largest angle between trunk and legs
 PLUMB = float(np.cos(np.radians(30.0)))
 """The same between the body and the picture's vertical: whoever lies is in line as well."""
 FLIGHT_S, FLIGHT_SHARE = 0.25, 0.12

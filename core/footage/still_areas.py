@@ -13,29 +13,22 @@ from .colors.color_model import BACKGROUND, ColorModel
 from .ignored_regions import IgnoredPixels, PixelBox, is_ignored
 from .segmentation.working_image import halvings, smooth
 
-FEW = 0.6
-"""Share of the sampled frames below which a marker is detected too seldom."""
+FEW = 0.6  # share of the sampled frames below which a marker is detected too seldom
 ENOUGH = 6
 """Sampled frames needed to tell a marker that is seldom detected from one that was hidden by chance."""
-MUCH = 0.2
-"""Share of confused pixels from which a warning is due."""
-SMALL_PX = 40.0
-"""Pixels of the measuring grid below which a region is hardly more than its border."""
+MUCH = 0.2  # share of confused pixels from which a warning is due
+SMALL_PX = 40.0  # pixels of the measuring grid below which a region is hardly more than its border
 
 
 class Likeness(NamedTuple):
     """Other things that look like a marker."""
 
-    alike: Sequence[str]
-    """Names of the markers of the same color."""
+    alike: Sequence[str]  # names of the markers of the same color
     claimed: Sequence[tuple[str, float]]
     """Names of the other colors' markers, each with the share of the marker's pixels classified as theirs."""
-    background: float
-    """Share of the marker's pixels classified as background."""
-    clutter: float
-    """Share of the area of its color that is no marker's."""
-    rivals: float
-    """Share of the area of its color's markers that is another marker's."""
+    background: float  # share of the marker's pixels classified as background
+    clutter: float  # share of the area of its color that is no marker's
+    rivals: float  # share of the area of its color's markers that is another marker's
 
 
 def marker_warnings(
@@ -95,25 +88,18 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
 
 NEARLY_ALWAYS = 0.9
 """Share of the sampled frames in which a still pixel has the color; in others a passing limb may hide it."""
-FEWEST_SAMPLES = 8
-"""Sampled frames from which on that is no chance."""
-ELSEWHERE = 0.5
-"""Share of the sampled frames in which the marker must be seen elsewhere."""
-SELDOM = 0.25
-"""Share of the sampled frames below which a pixel has the color by the marker that passes."""
+FEWEST_SAMPLES = 8  # sampled frames from which on that is no chance
+ELSEWHERE = 0.5  # share of the sampled frames in which the marker must be seen elsewhere
+SELDOM = 0.25  # share of the sampled frames below which a pixel has the color by the marker that passes
 MOVES_PX = 2.0 * STILL_STEP_PX
 """Median distance of a moving marker from its usual place, in pixels of the measuring grid."""
 MOST_UNSURE = 1.5
 """Most pixels about a still area that have its color now and then, relative to its outline: the ring that
 blends into what is behind it may flicker with the noise, a second ring shows that it moves."""
-LEAST_SHARE = 0.1
-"""Least area of a still area that is worth a word, relative to the marker's."""
-MARGIN = 2
-"""Pixels of the measuring grid around a still area that lens and encoding blend its color into."""
-WELL_FILLED = 0.75
-"""Share of a box from which on one box does for an area; others are cut in two."""
-SMALLEST_SIDE = 8
-"""Side in px of the measuring grid of boxes that are not cut further."""
+LEAST_SHARE = 0.1  # least area of a still area that is worth a word, relative to the marker's
+MARGIN = 2  # pixels of the measuring grid around a still area that lens and encoding blend its color into
+WELL_FILLED = 0.75  # share of a box from which on one box does for an area; others are cut in two
+SMALLEST_SIDE = 8  # side in px of the measuring grid of boxes that are not cut further
 SIDE = cv2.getStructuringElement(cv2.MORPH_RECT, (3, 3))
 THIRDS = (
     ("top left", "top", "top right"),

@@ -13,24 +13,18 @@ from .clips.album import Album
 from .segmentation.unmixing import Surface, contrast, mixed, surface_of
 
 LEARNED_FRAMES = 8
-WHOLE = 0.6
-"""Least quality of regions that a marker's color is learned from, where there are any."""
+WHOLE = 0.6  # least quality of regions that a marker's color is learned from, where there are any
 INNER = 1.0
 """Squared distance from a region's center, in its deviations, within which a pixel is clear of the edge."""
 FEWEST_INNER = 3
-LEAST_MASS = 0.07
-"""Least share of a part's pixels that have a color of its own."""
-MOST_COLORS = 4
-"""Of a part."""
-NEAR_CELLS = 2
-"""Cells around a common one that belong to its color."""
+LEAST_MASS = 0.07  # least share of a part's pixels that have a color of its own
+MOST_COLORS = 4  # of a part
+NEAR_CELLS = 2  # cells around a common one that belong to its color
 PART_DEVIATION = 5.0
-APART = 12.0
-"""Distance of colors that are two surfaces', in levels of `contrast`."""
+APART = 12.0  # distance of colors that are two surfaces', in levels of `contrast`
 OWN_SHARE = 0.1
 """Share of a marker's color from which another is a mixture with it: of a sleeve's shaded side, or edge."""
-GRAY = np.array([60.0, 0.0, 0.0])
-"""Middle gray: what markers' edges are mixed with in front of most walls."""
+GRAY = np.array([60.0, 0.0, 0.0])  # middle gray: what markers' edges are mixed with in front of most walls
 
 
 def marker_surfaces(
@@ -135,28 +129,21 @@ def usual_background(appearance: Appearance) -> SingleArray:
 # --- Colors along limbs
 
 
-BANDS = 6
-"""Bands of a part's length."""
-BITS = 4
-"""Coarser than whole parts' colors: a band has a sixth of their pixels."""
+BANDS = 6  # bands of a part's length
+BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
 LEVELS_BAND_COLORS = 1 << BITS
 CELLS = LEVELS_BAND_COLORS**3
-BLUR = np.array([0.16, 0.68, 0.16])
-"""Smoothing of a histogram along each of its axes: noise of a few levels."""
-SHARED = 0.25
-"""Share of a band's colors that are the whole part's: folds and shadows wander."""
+BLUR = np.array([0.16, 0.68, 0.16])  # smoothing of a histogram along each of its axes: noise of a few levels
+SHARED = 0.25  # share of a band's colors that are the whole part's: folds and shadows wander
 
 
 @dataclass(frozen=True, eq=False)
 class BandColors:
     """Log likelihoods of colors, as densities per cell."""
 
-    bands: Array
-    """(O, BANDS, cells) of each part's bands."""
-    parts: Array
-    """(O, cells) of whole parts."""
-    anything: Array
-    """(cells,) of performer and background together."""
+    bands: Array  # (O, BANDS, cells) of each part's bands
+    parts: Array  # (O, cells) of whole parts
+    anything: Array  # (cells,) of performer and background together
 
 
 def learn_band_colors(

@@ -17,19 +17,16 @@ from ..segmentation.working_image import halvings, learning_image, measuring_ima
 from .clip import Clip, FrameSource
 from .frame_checks import FrameChecks
 
-QUALITY = 90
-"""JPEG quality; its error stays below that of the video's compression."""
+QUALITY = 90  # JPEG quality; its error stays below that of the video's compression
 
 
 @dataclass(eq=False)
 class Album:
     """Small pictures of the frames read so far, on the grid that colors are learned on."""
 
-    factor: int = 1
-    """Pixels of the clip to a pixel of the pictures, along either axis."""
+    factor: int = 1  # pixels of the clip to a pixel of the pictures, along either axis
     _pictures: dict[int, Image] = field(default_factory=dict)
-    _room: int = 0
-    """Bytes of pictures that may be kept as they are."""
+    _room: int = 0  # bytes of pictures that may be kept as they are
     _opened: dict[int, Image] = field(default_factory=dict)
 
     def add(self, index: int, image: Image) -> None:
@@ -144,13 +141,10 @@ def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
 # --- How much a clip's pictures change from frame to frame
 
 
-NOISE_FACTOR = 4.0
-"""A pixel changes where its difference exceeds the picture's usual one this many times ..."""
-LEAST_LEVELS = 6.0
-"""... and this many of 256 levels."""
+NOISE_FACTOR = 4.0  # A pixel changes where its difference exceeds the picture's usual one this many times ...
+LEAST_LEVELS = 6.0  # ... and this many of 256 levels
 MAD_TO_STD = 1.4826
-TAIL_PERCENT = 2.0
-"""Share of the changes at either edge that are not the performer's."""
+TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's
 
 
 def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:

@@ -15,8 +15,7 @@ from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
-DEFAULT_SEQUENCE_FPS = 24.0
-"""Default frame rate of an image sequence, that of a new Blender scene."""
+DEFAULT_SEQUENCE_FPS = 24.0  # default frame rate of an image sequence, that of a new Blender scene
 
 
 class FrameSource(Protocol):
@@ -47,12 +46,9 @@ class FrameSource(Protocol):
 class Clip:
     """A readable clip; opening it has decoded its first frame."""
 
-    path: Path
-    """The file, folder or pattern it was opened from."""
-    source: FrameSource
-    """Decoder of the frames."""
-    notes: tuple[str, ...] = ()
-    """Sentences on faults of the file itself."""
+    path: Path  # the file, folder or pattern it was opened from
+    source: FrameSource  # decoder of the frames
+    notes: tuple[str, ...] = ()  # sentences on faults of the file itself
 
     @classmethod
     def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
@@ -132,12 +128,9 @@ class Clip:
 
 Stamped = tuple[float, Image]
 
-EARLY = 0.1
-"""Share of a frame's interval by which its time stamp may be rounded up."""
-LONGEST_STEP = 12.0
-"""Intervals up to which frames are decoded on the way instead of seeking."""
-BEFORE = 2
-"""Frames before the wanted one at which a seek begins."""
+EARLY = 0.1  # share of a frame's interval by which its time stamp may be rounded up
+LONGEST_STEP = 12.0  # intervals up to which frames are decoded on the way instead of seeking
+BEFORE = 2  # frames before the wanted one at which a seek begins
 
 
 class FrameReader:
@@ -191,12 +184,9 @@ SAMPLED_FRAMES = 24
 class ClipSamples:
     """N sampled frames of a clip."""
 
-    path: Path
-    """The clip, for messages."""
-    size: tuple[int, int]
-    """Width and height of its frames in px."""
-    indices: tuple[int, ...]
-    """(N,) their frame indices."""
+    path: Path  # the clip, for messages
+    size: tuple[int, int]  # width and height of its frames in px
+    indices: tuple[int, ...]  # (N,) their frame indices
     images: tuple[Image, ...]
     """Their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid."""
 
@@ -223,13 +213,10 @@ def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, Non
 # --- Sampling spread frames on a budget
 
 
-MOST_DECODED_PX = 90_000_000
-"""Budget of decoded pixels: about half a second of a processor, at any size."""
-FRAMES_PER_SEARCH = 18
-"""Frames decoded for each seek."""
+MOST_DECODED_PX = 90_000_000  # budget of decoded pixels: about half a second of a processor, at any size
+FRAMES_PER_SEARCH = 18  # frames decoded for each seek
 MOST_SEARCHES = 12
-IMAGE_COST = 4
-"""Cost of opening an image, in decoded video frames."""
+IMAGE_COST = 4  # cost of opening an image, in decoded video frames
 FEWEST = 3
 
 

@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 RELATIVE_TOLERANCE = 0.1
-STAMP_RESOLUTION_S = 1.1e-3
-"""Containers that store whole milliseconds make even intervals jump by one."""
+STAMP_RESOLUTION_S = 1.1e-3  # containers that store whole milliseconds make even intervals jump by one
 
 
 def is_variable_frame_rate(time_s: ArrayLike) -> bool:

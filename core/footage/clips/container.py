@@ -14,10 +14,8 @@ from ...arrays import Array, Image
 from ...errors import InputError
 from ...files.control_characters import regular_file_size
 
-DEEP_YUV420 = b"Y3\x0b"
-"""FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows."""
-BLOCK = 16
-"""Coded pictures have a multiple of this many rows."""
+DEEP_YUV420 = b"Y3\x0b"  # FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows
+BLOCK = 16  # coded pictures have a multiple of this many rows
 ROWS = 3
 
 
@@ -136,22 +134,17 @@ def _is_text(data: bytes) -> bool:
 # --- Packets of a video file, undecoded
 
 
-MOST_PACKETS = 20_000
-"""Packets read of a longer file: ten minutes tell whether the frame rate varies."""
-SEARCH_BEGINS = 16
-"""Frames before a wanted one from which OpenCV seeks backwards for a video keyframe."""
-MORE = 2
-"""Packets that must follow a wanted frame, so that seeking never meets the end."""
+MOST_PACKETS = 20_000  # packets read of a longer file: ten minutes tell whether the frame rate varies
+SEARCH_BEGINS = 16  # frames before a wanted one from which OpenCV seeks backwards for a video keyframe
+MORE = 2  # packets that must follow a wanted frame, so that seeking never meets the end
 
 
 @dataclass(frozen=True, eq=False)
 class Packets:
     """Presentation times of a video file's first pictures."""
 
-    time_s: Array
-    """(N,) time of each picture, ascending."""
-    complete: bool
-    """Whether these are all of the file's pictures."""
+    time_s: Array  # (N,) time of each picture, ascending
+    complete: bool  # whether these are all of the file's pictures
 
 
 def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:

@@ -11,12 +11,9 @@ from numpy.typing import NDArray
 
 from ...arrays import Image
 
-STEP = 8
-"""Difference of neighboring rows where a moving edge is combed, in levels."""
-TEETH = 5
-"""Alternating steps that make a comb; noise and textures seldom have as many."""
-COLUMNS = 320
-"""Fewest sampled columns."""
+STEP = 8  # difference of neighboring rows where a moving edge is combed, in levels
+TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
+COLUMNS = 320  # fewest sampled columns
 
 
 def combed_shares(image: Image) -> tuple[float, float]:
@@ -42,16 +39,13 @@ def _teeth(levels: NDArray[np.int16]) -> float:
 # --- Notes on a video file's header
 
 
-NOTICEABLE_SHAPE = 0.01
-"""Difference from square pixels that is worth a note."""
-HDR_TRANSFERS = {16: "PQ", 18: "HLG"}
-"""Transfer characteristics of ITU-T H.273."""
+NOTICEABLE_SHAPE = 0.01  # difference from square pixels that is worth a note
+HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
 MATROSKA_BEGINS = b"\x1a\x45\xdf\xa3"
-HEAD = 2**16
-"""Bytes read of a Matroska file, within which it describes its tracks."""
+HEAD = 2**16  # bytes read of a Matroska file, within which it describes its tracks
 LARGEST_INDEX = 2**26
 
 
@@ -119,43 +113,30 @@ def _movie_box(path: Path) -> bytes:
 # --- Frame checks while a clip is read
 
 
-SIDE = 64
-"""Rows and columns, about, of the pictures that are compared."""
-COMBED_EVERY = 15
-"""Frames between two that are checked for combing."""
+SIDE = 64  # rows and columns, about, of the pictures that are compared
+COMBED_EVERY = 15  # frames between two that are checked for combing
 COMBED, COMBED_MORE = 5e-4, 10.0
 """Combed share of an interlaced picture by rows, and its ratio to that by columns. Sixteen progressive clips
 stay below 1.2e-4 and a ratio of three; three interlaced ones have 1e-2 and more."""
-COLORLESS = 10
-"""Difference of the channels of a gray pixel after compression, in levels."""
-CUT = 10.0
-"""Change of the median pixel at a cut, in levels."""
-CUT_MORE = 5.0
-"""Ratio of that change to the clip's usual one."""
-FEW_PIXELS = 4
-"""Pixels of a small picture that may have colors by accident."""
-NAMED = 3
-"""Ranges of frames that a note lists."""
-BLANK_SAMPLES = 64
-"""Sampled rows and columns, about, in the test for a blank frame."""
+COLORLESS = 10  # difference of the channels of a gray pixel after compression, in levels
+CUT = 10.0  # change of the median pixel at a cut, in levels
+CUT_MORE = 5.0  # ratio of that change to the clip's usual one
+FEW_PIXELS = 4  # pixels of a small picture that may have colors by accident
+NAMED = 3  # ranges of frames that a note lists
+BLANK_SAMPLES = 64  # sampled rows and columns, about, in the test for a blank frame
 BLANK_CONTRAST = 12
 """Levels between the darkest and the brightest pixel of a blank frame, but for stray pixels."""
-BLANK_STRAY_SHARE = 0.005
-"""Share of pixels that noise or a clock in a corner may make brighter or darker."""
+BLANK_STRAY_SHARE = 0.005  # share of pixels that noise or a clock in a corner may make brighter or darker
 
 
 @dataclass(frozen=True)
 class FrameFindings:
     """Findings of the frame checks of a clip."""
 
-    frames: int = 0
-    """Number of checked frames."""
-    blank: tuple[int, ...] = ()
-    """Indices of blank frames, in order."""
-    cuts: tuple[int, ...] = ()
-    """Indices of frames after a cut."""
-    interlaced: bool = False
-    """Whether each picture consists of two fields."""
+    frames: int = 0  # number of checked frames
+    blank: tuple[int, ...] = ()  # indices of blank frames, in order
+    cuts: tuple[int, ...] = ()  # indices of frames after a cut
+    interlaced: bool = False  # whether each picture consists of two fields
 
     def notes(self, first: int) -> tuple[str, ...]:
         """The findings as sentences; the clip's first frame has the number `first`."""

@@ -19,8 +19,7 @@ from ...files.control_characters import regular_file_size
 from ...files.fields import listed
 from .container import opencv_silence
 
-LARGEST_BYTES = 2**31
-"""Size limit of an image file: four channels of the largest image at sixteen bits."""
+LARGEST_BYTES = 2**31  # size limit of an image file: four channels of the largest image at sixteen bits
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -85,8 +84,7 @@ def _is_whole(data: bytes) -> bool:
 # --- Frames of a numbered image sequence
 
 
-MOST_IMAGES = 10**6
-"""Images of one folder at most; eleven hours of film."""
+MOST_IMAGES = 10**6  # images of one folder at most; eleven hours of film
 EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 PATTERN = re.compile(r"(#+|%0?\d*d)")
 LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -98,16 +96,11 @@ class ImageSequence:
     A missing number, as of a lost image, keeps its frame, which is black.
     """
 
-    paths: tuple[Path | None, ...]
-    """The file of every frame, in order; None where it is missing."""
-    size: tuple[int, int]
-    """Width and height of every image in pixels."""
-    fps: float
-    """Frames per second."""
-    frame_count: int
-    """Number of frames."""
-    notes: tuple[str, ...]
-    """Sentences on missing images."""
+    paths: tuple[Path | None, ...]  # the file of every frame, in order; None where it is missing
+    size: tuple[int, int]  # width and height of every image in pixels
+    fps: float  # frames per second
+    frame_count: int  # number of frames
+    notes: tuple[str, ...]  # sentences on missing images
 
     def __init__(self, paths: Sequence[Path], fps: float) -> None:
         """Take the files in order and read the first.

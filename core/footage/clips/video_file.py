@@ -17,10 +17,8 @@ FALLBACK_FPS = 24.0
 HIGHEST_PLAUSIBLE_FPS = 2000.0
 FRAMES_PER_SEEK = 125
 """Mean cost of seeking, which decodes from the last video keyframe on: half of the usual 250 frames."""
-PATIENCE = 500
-"""Failures in a row that end a file: the distance of two video keyframes."""
-LONGEST_PAUSE_S = 3600.0
-"""Longest step between valid time stamps."""
+PATIENCE = 500  # failures in a row that end a file: the distance of two video keyframes
+LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
 SMALLEST_FRAME_BYTES = 8
 """Least bytes of a frame in a container; bounds the frame count that a header may claim."""
 
@@ -34,14 +32,10 @@ class VideoFile:
     """A video file that OpenCV can decode."""
 
     path: Path
-    size: tuple[int, int]
-    """Width and height in pixels, after the rotation that the file asks for."""
-    fps: float
-    """Nominal frames per second."""
-    frame_count: int
-    """Number of frames according to the file, at least 1."""
-    notes: tuple[str, ...]
-    """Sentences on faults of the file."""
+    size: tuple[int, int]  # width and height in pixels, after the rotation that the file asks for
+    fps: float  # nominal frames per second
+    frame_count: int  # number of frames according to the file, at least 1
+    notes: tuple[str, ...]  # sentences on faults of the file
 
     def __init__(self, path: Path) -> None:
         """Open the file and decode its first frame.

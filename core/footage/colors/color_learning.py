@@ -13,8 +13,7 @@ from .indexed_frames import LEARNING_NOISE_LEVELS, CroppedMask, IndexedFrames
 SATURATION_DEVIATION = 0.15
 HUE_DEVIATION = 0.10
 LOG_LUMA_DEVIATION = 0.45
-LEAST_SATURATION = 0.04
-"""Saturation below which the deviations shrink no further: a gray has no hue."""
+LEAST_SATURATION = 0.04  # saturation below which the deviations shrink no further: a gray has no hue
 
 FARTHEST = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
 NEAR = 2.4  # half of it
@@ -23,8 +22,7 @@ LEARNED_SHARE = 0.7
 ROUNDS = 3
 FEWEST_PIXELS = 40
 SMALLEST_LOG_LUMA_DEVIATION = 0.3
-UNSEEN_SHARE = 0.2
-"""Share of the sample's own uncertainty that remains after learning."""
+UNSEEN_SHARE = 0.2  # share of the sample's own uncertainty that remains after learning
 STEEPEST_SLOPE = 0.25
 
 
@@ -32,12 +30,10 @@ STEEPEST_SLOPE = 0.25
 class LearnedColors:
     """Colors learned from sampled frames."""
 
-    model: ColorModel
-    """The color model, with the background as a class of its own."""
+    model: ColorModel  # the color model, with the background as a class of its own
     found: IntArray
     """(M,) pixels found of each marker over the sampled frames; 0 where its color matches nothing."""
-    background_counts: Array
-    """(CELL_COUNT,) background pixels per color cell."""
+    background_counts: Array  # (CELL_COUNT,) background pixels per color cell
 
 
 def learn_colors(

@@ -94,10 +94,8 @@ NOISE_LEVELS = 5.0
 """Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
 OUTLIER_DISTANCE = 16.0
 """Squared distance past which no color is a marker's, even one that the background lacks: 99.9 % of χ²."""
-GROUP_MARGIN = 2.0
-"""Ratio of squared distances between a group's center and its cells, at most."""
-BACKGROUND = 255
-"""Label of pixels that are no marker's."""
+GROUP_MARGIN = 2.0  # ratio of squared distances between a group's center and its cells, at most
+BACKGROUND = 255  # label of pixels that are no marker's
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,16 +106,11 @@ class ColorDistribution:
     it.
     """
 
-    log_luma: float
-    """Mean logarithm of offset luma."""
-    log_luma_deviation: float
-    """Its standard deviation."""
-    mean: Array
-    """(2,) chromaticity at the mean luma."""
-    slope: Array
-    """(2,) change of chromaticity per unit of log luma."""
-    covariance: Array
-    """(2, 2) of the chromaticity, without the pixel noise of dark colors."""
+    log_luma: float  # mean logarithm of offset luma
+    log_luma_deviation: float  # its standard deviation
+    mean: Array  # (2,) chromaticity at the mean luma
+    slope: Array  # (2,) change of chromaticity per unit of log luma
+    covariance: Array  # (2, 2) of the chromaticity, without the pixel noise of dark colors
 
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
@@ -152,12 +145,9 @@ class ColorDistribution:
 class ColorModel:
     """Classifier of colors as markers or background, learned for one clip."""
 
-    distributions: tuple[ColorDistribution, ...]
-    """One a color."""
-    label: Image
-    """(CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND."""
-    probability: Image
-    """(CELL_COUNT,) uint8, posterior probability in 1/255."""
+    distributions: tuple[ColorDistribution, ...]  # one a color
+    label: Image  # (CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND
+    probability: Image  # (CELL_COUNT,) uint8, posterior probability in 1/255
 
     def classify(self, image: Image) -> tuple[Image, Image]:
         """Label and probability in 1/255, (rows, columns), of every pixel of an image."""
@@ -237,12 +227,9 @@ def weigh(
 
 
 HOW_MANY = 3
-APART = 0.08
-"""Least difference in chromaticity of two suggested colors."""
-LIKE_LOG_LUMA = 0.25
-"""Difference in the logarithm of luma up to which two grays look alike."""
-SHARE = 2e-5
-"""Least share of the clip's pixels of a color that is no noise."""
+APART = 0.08  # least difference in chromaticity of two suggested colors
+LIKE_LOG_LUMA = 0.25  # difference in the logarithm of luma up to which two grays look alike
+SHARE = 2e-5  # least share of the clip's pixels of a color that is no noise
 
 
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:

@@ -26,8 +26,7 @@ CORE_DISTANCE = 7.8
 LEARNING_NOISE_LEVELS = 2.5
 """Noise assumed in learning, lower than in classification: pixels explained by noise alone teach nothing."""
 NO_MARKER = 255
-LARGEST_SHARE = 0.25
-"""Largest share of the image of a marker's region: larger ones are walls or floors."""
+LARGEST_SHARE = 0.25  # largest share of the image of a marker's region: larger ones are walls or floors
 BACKGROUND_MARGIN = 3
 KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 # A Gaussian kernel of one cell's deviation, cut off after two.
@@ -37,14 +36,10 @@ SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.aran
 class CroppedMask(NamedTuple):
     """A mask of an image, cropped to its bounding box."""
 
-    left: int
-    """First column of the box."""
-    top: int
-    """Its first row."""
-    mask: Image
-    """(rows, columns) uint8, 0 or 1."""
-    area: int
-    """Pixels that are 1."""
+    left: int  # first column of the box
+    top: int  # its first row
+    mask: Image  # (rows, columns) uint8, 0 or 1
+    area: int  # pixels that are 1
 
     def within(self, whole: Image) -> "CroppedMask":
         """The intersection with a mask of the whole image."""

@@ -18,28 +18,20 @@ from ..segmentation.working_image import halvings, learning_image, measuring_ima
 from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel, nearest_colors, share_of_color
 
-SAMPLES = 12
-"""Frames of the first learning; up to three times as many are kept later."""
-MOST_SAMPLES = 48
-"""Frames learned from if a marker is in none of the first ones."""
-WIDEST_SPACING = 96
-"""Frames between samples at most: light changes in seconds."""
+SAMPLES = 12  # frames of the first learning; up to three times as many are kept later
+MOST_SAMPLES = 48  # frames learned from if a marker is in none of the first ones
+WIDEST_SPACING = 96  # frames between samples at most: light changes in seconds
 FEWEST_LEARNED = 12
-FAR = 10000
-"""Limit of drawn coordinates in px."""
-COMMON_COLOR = 0.02
-"""Share of the picture from which a color is a wall's or a floor's."""
+FAR = 10000  # limit of drawn coordinates in px
+COMMON_COLOR = 0.02  # share of the picture from which a color is a wall's or a floor's
 
 
 class StreamingColorLearner:
     """Learns the colors of a clip's markers: from its first frames, and anew as it goes on."""
 
-    groups: list[list[int]]
-    """The markers of each color; several where their samples are alike."""
-    learning_rounds: list[LearningRound]
-    """Rounds of learning so far."""
-    samples: dict[int, Image]
-    """The images that were learned from, by frame."""
+    groups: list[list[int]]  # the markers of each color; several where their samples are alike
+    learning_rounds: list[LearningRound]  # rounds of learning so far
+    samples: dict[int, Image]  # the images that were learned from, by frame
 
     def __init__(
         self,

@@ -20,17 +20,12 @@ from .color_model import (
     chromaticity,
 )
 
-MOST = 12
-"""Most listed colors: five markers, skin, and things in the room."""
-LEAST_STRENGTH = 0.2
-"""Chromaticity below which a color is a dull one: wood and pale skin."""
-DARKEST = 25.0
-"""Luma in levels below which a color is too uncertain to name."""
-APART = 0.10
-"""Chromaticity within which colors are those of one surface."""
+MOST = 12  # most listed colors: five markers, skin, and things in the room
+LEAST_STRENGTH = 0.2  # chromaticity below which a color is a dull one: wood and pale skin
+DARKEST = 25.0  # luma in levels below which a color is too uncertain to name
+APART = 0.10  # chromaticity within which colors are those of one surface
 STEP = 0.04
-LEAST_SHARE = 2e-4
-"""Least share of the picture of a listed color."""
+LEAST_SHARE = 2e-4  # least share of the picture of a listed color
 HUES = (
     (15, "red"),
     (42, "orange"),
@@ -49,10 +44,8 @@ HUES = (
 class StrongColor:
     """A salient color."""
 
-    color_srgb: tuple[int, int, int]
-    """(red, green, blue) in 0..255, the median of its pixels."""
-    share: float
-    """Share of the pixels that have it."""
+    color_srgb: tuple[int, int, int]  # (red, green, blue) in 0..255, the median of its pixels
+    share: float  # share of the pixels that have it
 
     @property
     def hue(self) -> str:
@@ -105,8 +98,7 @@ def _median(colors: Array, weight: Array) -> list[int]:
 # --- Confusion matrix of the learned colors
 
 
-LEAST = 1e-300
-"""A density that vanishes everywhere stays zero."""
+LEAST = 1e-300  # A density that vanishes everywhere stays zero
 
 
 def color_confusion(model: ColorModel) -> Array:

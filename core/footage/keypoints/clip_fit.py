@@ -10,14 +10,10 @@ from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
 
-RATE_TOLERANCE = 0.01
-"""Frame rates closer than this share are one: 29.97 and 30."""
-MOST_OUTSIDE = 0.5
-"""Share of the points outside the picture, above which the detector saw another one."""
-LARGEST_SHARE = 2.0
-"""Shares of a picture lie about 0 to 1; guesses outside it are the exception."""
-SMALLEST_EXTENT_PX = 2.5
-"""Everyone's coordinates within so few pixels of the corner are no pixels."""
+RATE_TOLERANCE = 0.01  # frame rates closer than this share are one: 29.97 and 30
+MOST_OUTSIDE = 0.5  # share of the points outside the picture, above which the detector saw another one
+LARGEST_SHARE = 2.0  # shares of a picture lie about 0 to 1; guesses outside it are the exception
+SMALLEST_EXTENT_PX = 2.5  # everyone's coordinates within so few pixels of the corner are no pixels
 
 
 def held_against_clip(

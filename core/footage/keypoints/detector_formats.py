@@ -199,8 +199,7 @@ def _person(instance: Any, spot: str) -> DetectedPerson:
 
 LAYOUT = LAYOUTS["blazepose33"]
 IMAGE = ("landmarks", "poselandmarks")
-WORLD = ("worldlandmarks", "poseworldlandmarks")
-"""Names of the two lists, without capitals and underscores."""
+WORLD = ("worldlandmarks", "poseworldlandmarks")  # names of the two lists, without capitals and underscores
 
 
 def is_mediapipe(value: Any) -> bool:

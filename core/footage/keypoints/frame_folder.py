@@ -25,12 +25,9 @@ FEW_FRAMES, FEW_SHARE = 2, 0.01
 class Alignment:
     """How a result's frames lie in the clip."""
 
-    first: int
-    """Number of the clip's first frame in the result."""
-    frame_count: int
-    """Frames of the clip."""
-    notes: tuple[str, ...] = ()
-    """Sentences on what was taken for granted."""
+    first: int  # number of the clip's first frame in the result
+    frame_count: int  # frames of the clip
+    notes: tuple[str, ...] = ()  # sentences on what was taken for granted
 
 
 def tolerance(frame_count: int) -> int:
@@ -134,8 +131,7 @@ def _rate_words(count: int, frame_count: int) -> str:
 # --- A folder of JSON files, one a frame
 
 
-LARGEST_FILE_BYTES = 4 * 2**20
-"""A hundred people with hands and face."""
+LARGEST_FILE_BYTES = 4 * 2**20  # A hundred people with hands and face
 _NUMBER = re.compile(r"(\d{1,15})(?:_keypoints)?\.json$", re.IGNORECASE)
 
 

@@ -38,8 +38,7 @@ from .keypoints import BODY_POINTS, People, SeenPeople
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
-LONGEST_DETECTOR = 200
-"""Characters."""
+LONGEST_DETECTOR = 200  # characters
 PIXEL_DIGITS, SCORE_DIGITS, HINT_DIGITS = 3, 4, 4
 """Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
 
@@ -216,8 +215,7 @@ def _written_hints(hint: Array) -> Sequence[Any] | None:
 
 __all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
 
-LARGEST_BYTES = 128 * 2**20
-"""Twenty minutes of two people with their hints of depth."""
+LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth
 LONGEST_SOURCE = 200
 FORMATS = (
     "Keymark's own file (with layout and frames), a folder of OpenPose's files, or a result file of MMPose, "

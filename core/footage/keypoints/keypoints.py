@@ -76,14 +76,10 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
 class Keypoints:
     """N keypoints of one person in F frames; NaN where one is not seen."""
 
-    names: tuple[str, ...]
-    """(N,) the body point each shows; two sources may show the same one."""
-    sources: tuple[str, ...]
-    """(N,) what saw each: a detector, Blender's tracks, a person."""
-    pixel: Array
-    """(F, N, 2) [px] of the clip, origin at the outer corner of the top left pixel."""
-    score: Array
-    """(F, N) the source's confidence, 0 to 1; 0 where not seen."""
+    names: tuple[str, ...]  # (N,) the body point each shows; two sources may show the same one
+    sources: tuple[str, ...]  # (N,) what saw each: a detector, Blender's tracks, a person
+    pixel: Array  # (F, N, 2) [px] of the clip, origin at the outer corner of the top left pixel
+    score: Array  # (F, N) the source's confidence, 0 to 1; 0 where not seen
     hint_m: Array
     """(F, N, 3) a network's guess of the points in space [m]: x right, y down, z away from the camera, origin
     between the hips; NaN where there is none."""
@@ -158,32 +154,23 @@ class Keypoints:
 class SeenPeople:
     """One source's people of one frame, H of them; a person may be missing in any frame."""
 
-    pixel: Array
-    """(H, N, 2) [px] of the clip, NaN where not seen."""
-    score: Array
-    """(H, N) 0 to 1, 0 where not seen."""
-    hint_m: Array
-    """(H, N, 3) as in `Keypoints`."""
+    pixel: Array  # (H, N, 2) [px] of the clip, NaN where not seen
+    score: Array  # (H, N) 0 to 1, 0 where not seen
+    hint_m: Array  # (H, N, 3) as in `Keypoints`
 
 
 @dataclass(frozen=True, eq=False)
 class People:
     """Everyone whom a source saw in F frames, with N body points each."""
 
-    names: tuple[str, ...]
-    """(N,) the body points."""
-    source: str
-    """What saw them: the name of the detector, or of the file."""
-    size: tuple[int, int]
-    """Width and height of the pictures they were seen in [px]."""
-    frames: tuple[SeenPeople, ...]
-    """Those of each frame of the clip, none or several."""
-    file: str = ""
-    """The file they were read from, for sentences; empty where there is none."""
+    names: tuple[str, ...]  # (N,) the body points
+    source: str  # what saw them: the name of the detector, or of the file
+    size: tuple[int, int]  # width and height of the pictures they were seen in [px]
+    frames: tuple[SeenPeople, ...]  # those of each frame of the clip, none or several
+    file: str = ""  # the file they were read from, for sentences; empty where there is none
     by_hand: bool = False
     """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
-    notes: tuple[str, ...] = ()
-    """Sentences on what was taken for granted or mended."""
+    notes: tuple[str, ...] = ()  # sentences on what was taken for granted or mended
 
     @property
     def most_people(self) -> int:

@@ -16,8 +16,7 @@ from types import MappingProxyType
 from ...body.skeleton import SIDES
 from .keypoints import BODY_POINTS
 
-OWN = "own"
-"""Name of a layout whose file lists the names itself."""
+OWN = "own"  # name of a layout whose file lists the names itself
 HAND_POINTS = 21
 INDEX_KNUCKLE, THUMB_KNUCKLE, PINKY_KNUCKLE = 5, 2, 17
 """In the points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
@@ -28,10 +27,8 @@ class Layout:
     """An order of points."""
 
     name: str
-    count: int
-    """Number of points of a person in the file."""
-    points: Mapping[int, str]
-    """The body point by number; numbers that are missing show nothing that is used."""
+    count: int  # number of points of a person in the file
+    points: Mapping[int, str]  # the body point by number; numbers that are missing show nothing that is used
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -16,26 +16,18 @@ from ...body.human import HUMAN
 from .keypoints import Keypoints
 
 NOBODY = -1
-MOST_CANDIDATES = 8
-"""People a frame that are looked at: those nearest to the expected place, or the largest."""
-STEP_BACK_S = 1.0
-"""Time over which a sighting foretells another; after it a person may be anywhere."""
-FARTHEST_COST = 8.0
-"""Of a point: four standard deviations."""
-ABSENT_COST = 4.5
-"""Of taking nobody where the performer is expected: three standard deviations."""
+MOST_CANDIDATES = 8  # people a frame that are looked at: those nearest to the expected place, or the largest
+STEP_BACK_S = 1.0  # time over which a sighting foretells another; after it a person may be anywhere
+FARTHEST_COST = 8.0  # of a point: four standard deviations
+ABSENT_COST = 4.5  # of taking nobody where the performer is expected: three standard deviations
 UNKNOWN_ABSENT_COST = 1.0
 """The same where nobody says where the performer is; somebody who is there longer is preferred."""
-PREFERENCE = 0.25
-"""Where nothing is expected in the whole clip: of being small, and of scores near 0."""
-TIE = 0.01
-"""The same where it is expected in other frames."""
-JUMP_COST = 12.0
-"""Of a step to anywhere: five standard deviations."""
+PREFERENCE = 0.25  # where nothing is expected in the whole clip: of being small, and of scores near 0
+TIE = 0.01  # the same where it is expected in other frames
+JUMP_COST = 12.0  # of a step to anywhere: five standard deviations
 NOISE, ACCELERATION_PER_S2 = 0.02, 3.0
 """Of a person's place, as shares of its size: a detector's error, and half of what gravity does to a body."""
-UNKNOWN_SPEED_PER_S = 2.0
-"""Of somebody seen for the first time, in sizes a second: a run."""
+UNKNOWN_SPEED_PER_S = 2.0  # of somebody seen for the first time, in sizes a second: a run
 SHAPE_NOISE, SHAPE_PER_S, MOST_SHAPE = 0.05, 1.2, 0.4
 """Of the points about their middle: a detector's error, limbs at 2 m/s, any two postures."""
 
@@ -44,22 +36,17 @@ SHAPE_NOISE, SHAPE_PER_S, MOST_SHAPE = 0.05, 1.2, 0.4
 class Sightings:
     """People of every frame, H of them in each with K points, which need not be a detector's."""
 
-    pixel: tuple[Array, ...]
-    """(H, K, 2) [px] a frame, NaN where not seen."""
-    score: tuple[Array, ...]
-    """(H, K) 0 to 1 a frame."""
+    pixel: tuple[Array, ...]  # (H, K, 2) [px] a frame, NaN where not seen
+    score: tuple[Array, ...]  # (H, K) 0 to 1 a frame
 
 
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Where the performer's points are expected."""
 
-    pixel: Array
-    """(F, K, 2) [px], NaN where nothing is known."""
-    std_px: Array
-    """(F, K) standard deviation in each direction [px]."""
-    weight: Array
-    """(F,) how much a frame counts: more than 1 where a person has said where the performer is."""
+    pixel: Array  # (F, K, 2) [px], NaN where nothing is known
+    std_px: Array  # (F, K) standard deviation in each direction [px]
+    weight: Array  # (F,) how much a frame counts: more than 1 where a person has said where the performer is
 
 
 def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> IndexArray:
@@ -99,15 +86,12 @@ def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> 
 class _Reached:
     """The best path to each candidate of a frame."""
 
-    pixel: Array
-    """(H, K, 2)"""
-    rows: IndexArray
-    """(H,) their indices among the frame's people."""
+    pixel: Array  # (H, K, 2)
+    rows: IndexArray  # (H,) their indices among the frame's people
     cost: Array
     previous: IndexArray
     """(H, 2) frame and candidate from which the path comes; frame `NOBODY` where it begins."""
-    velocity: Array
-    """(H, 2) px a second along the path; NaN where it begins."""
+    velocity: Array  # (H, 2) px a second along the path; NaN where it begins
 
     @classmethod
     def start(cls, pixel: Array, rows: IndexArray, cost: float) -> "_Reached":
@@ -220,8 +204,7 @@ def _path(kept: list[_Reached], last: tuple[int, int], frames: int) -> IndexArra
 
 
 HEAD, EARS, NOSE = "head", ("ear.L", "ear.R"), "nose"
-NOSE_SHARE = 0.3
-"""Confidence in the head's center where only the nose shows it, a decimeter in front of it."""
+NOSE_SHARE = 0.3  # confidence in the head's center where only the nose shows it, a decimeter in front of it
 ALIKE_SHARE = 0.1
 """Distance of two sources' points, relative to the performer's size in the picture, within which both are
 believed."""
@@ -261,12 +244,9 @@ def performer_size_px(keypoints: Keypoints) -> Array:
 class _Point:
     """One point of the body over F frames."""
 
-    pixel: Array
-    """(F, 2) [px], NaN where not seen."""
-    score: Array
-    """(F,) 0 where not seen."""
-    hint_m: Array
-    """(F, 3) NaN where there is none."""
+    pixel: Array  # (F, 2) [px], NaN where not seen
+    score: Array  # (F,) 0 where not seen
+    hint_m: Array  # (F, 3) NaN where there is none
 
     def doubted(self, share: float) -> "_Point":
         """The same point with less confidence."""

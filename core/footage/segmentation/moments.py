@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
 
-PIXEL_VARIANCE = 1.0 / 12.0
-"""Variance along each axis of a unit square of even weight, in px²."""
+PIXEL_VARIANCE = 1.0 / 12.0  # variance along each axis of a unit square of even weight, in px²
 
 MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
 """Of a length, that the raw moments m00, m10, m01, m20, m11, m02 grow with."""
@@ -24,14 +23,11 @@ MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
 class Characteristics(NamedTuple):
     """The characteristics of one or more regions; fields (...)."""
 
-    x: Array
-    """S_x, the centroid's column in pixels."""
-    y: Array
-    """S_y, the centroid's row in pixels, downwards."""
+    x: Array  # S_x, the centroid's column in pixels
+    y: Array  # S_y, the centroid's row in pixels, downwards
     angle_rad: Array
     """S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π."""
-    ratio: Array
-    """S_λ = λ1/λ2 >= 1, of the squared axes."""
+    ratio: Array  # S_λ = λ1/λ2 >= 1, of the squared axes
 
 
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:
@@ -106,17 +102,14 @@ WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
 SUM = np.ones((1, 3), dtype=np.float32)
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-REACH = (5, 5)
-"""Sides, in halved pixels, of the squares that local colors are averaged over."""
+REACH = (5, 5)  # sides, in halved pixels, of the squares that local colors are averaged over
 
 
 class Coverage(NamedTuple):
     """Coverage of pixels by regions (alpha)."""
 
-    pixel: IndexArray
-    """(N,) flat indices of all pixels that may be covered."""
-    share: SingleArray
-    """(N,) float32 covered share of each, in 0..1."""
+    pixel: IndexArray  # (N,) flat indices of all pixels that may be covered
+    share: SingleArray  # (N,) float32 covered share of each, in 0..1
 
 
 def coverage(image: Image, mask: Image) -> Coverage:

@@ -15,10 +15,8 @@ from .moments import MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
 from .search_windows import MARGIN, Atlas, Box, Window, boxes_to_measure, colored_boxes, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
-MOST_REGIONS = 8
-"""Most regions kept of each color in a frame, the largest ones; bounds the memory of a clip."""
-SURE = 230
-"""Probability (in 1/255) that some pixels of a region must reach; blends of other colors do not."""
+MOST_REGIONS = 8  # most regions kept of each color in a frame, the largest ones; bounds the memory of a clip
+SURE = 230  # probability (in 1/255) that some pixels of a region must reach; blends of other colors do not
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
@@ -26,16 +24,11 @@ CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 class Regions(NamedTuple):
     """R connected regions of the markers' colors in one image, by color and from large to small."""
 
-    color: IntArray
-    """(R,) index of the color of each."""
-    moments: Array
-    """(R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid."""
-    box: IntArray
-    """(R, 4) left, top, right, bottom in its pixels."""
-    certainty: Array
-    """(R,) mean probability of the pixels' color in 0..1."""
-    clipped: BoolArray
-    """(R,) whether it touches the image's border."""
+    color: IntArray  # (R,) index of the color of each
+    moments: Array  # (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid
+    box: IntArray  # (R, 4) left, top, right, bottom in its pixels
+    certainty: Array  # (R,) mean probability of the pixels' color in 0..1
+    clipped: BoolArray  # (R,) whether it touches the image's border
 
     def part(self, first: int, end: int) -> "Regions":
         """The regions from `first` to before `end`."""
@@ -116,12 +109,9 @@ def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -
 class _Components(NamedTuple):
     """K connected components of an atlas that are measured."""
 
-    number: NDArray[np.uint16]
-    """(rows, columns) uint16, the component of each pixel, from 1; 0 for none."""
-    box: IntArray
-    """(K, 4) left, top, right, bottom on the atlas."""
-    certainty: Array
-    """(K,) mean probability of the pixels' color in 0..1."""
+    number: NDArray[np.uint16]  # (rows, columns) uint16, the component of each pixel, from 1; 0 for none
+    box: IntArray  # (K, 4) left, top, right, bottom on the atlas
+    certainty: Array  # (K,) mean probability of the pixels' color in 0..1
     cut: BoolArray
     """(K,) whether ignored pixels of its color touch it: it is seen in part, as at the image's border."""
 
@@ -214,8 +204,7 @@ def _rank(ascending: IntArray) -> IntArray:
 
 
 CORNERS = 32
-SUBSAMPLES = 2
-"""Sample points a pixel along either axis, on which the edge of half coverage is found."""
+SUBSAMPLES = 2  # sample points a pixel along either axis, on which the edge of half coverage is found
 
 
 def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int = CORNERS) -> Array:

@@ -12,10 +12,8 @@ from .working_image import measuring_image
 
 Box = tuple[int, int, int, int]
 
-MOST_BOXES = 12
-"""Most boxes kept of each color in a frame, those with most pixels of it."""
-MARGIN = 6
-"""Margin in px around a measured box: the border band, and enough background to know its color."""
+MOST_BOXES = 12  # most boxes kept of each color in a frame, those with most pixels of it
+MARGIN = 6  # margin in px around a measured box: the border band, and enough background to know its color
 
 
 def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
@@ -63,8 +61,7 @@ def _overlap(first: Box, second: Box, gap: int) -> bool:
 # --- Window atlas
 
 
-NO_COLOR = 254
-"""Color index of the columns between panels; no pixel has it."""
+NO_COLOR = 254  # color index of the columns between panels; no pixel has it
 
 
 class Window(NamedTuple):
@@ -82,20 +79,13 @@ class Window(NamedTuple):
 class Atlas(NamedTuple):
     """Windows side by side, their tops at the atlas's first row, with a column between them."""
 
-    picture: Image
-    """(rows, columns, 3) uint8, rows and columns even."""
-    image: IntArray
-    """(columns,) int64, index of each column's image."""
-    color: Image
-    """(columns,) uint8, index of the color to search for; NO_COLOR between panels."""
-    height: IntArray
-    """(columns,) rows in use."""
-    shift: IntArray
-    """(2, columns) offset of a column, and of its rows, to the halved image."""
-    scale: IntArray
-    """(columns,) pixels of the image to one of the atlas."""
-    ignored: BoolArray | None = None
-    """(rows, columns) pixels that are no region's; None where there are none."""
+    picture: Image  # (rows, columns, 3) uint8, rows and columns even
+    image: IntArray  # (columns,) int64, index of each column's image
+    color: Image  # (columns,) uint8, index of the color to search for; NO_COLOR between panels
+    height: IntArray  # (columns,) rows in use
+    shift: IntArray  # (2, columns) offset of a column, and of its rows, to the halved image
+    scale: IntArray  # (columns,) pixels of the image to one of the atlas
+    ignored: BoolArray | None = None  # (rows, columns) pixels that are no region's; None where there are none
 
 
 def pack_windows(

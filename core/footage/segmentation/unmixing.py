@@ -29,8 +29,7 @@ CONTRAST = np.array(
 """Turns blue, green, red into luma and chroma of like noise."""
 DARKEST, BRIGHTEST = 0.5, 1.15
 """Range of the light on the background, relative to its usual light: shadows are no surface."""
-UNCHANGED = 5.0
-"""Difference of levels up to which no pixel can be odd: a fast bound."""
+UNCHANGED = 5.0  # difference of levels up to which no pixel can be odd: a fast bound
 ODD = 6.0
 """Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
 BESIDE = 3.0
@@ -38,14 +37,11 @@ NEIGHBORS = np.ones((7, 7), dtype=np.uint8)
 """Where another surface is seen beside a pixel: within blurred edges and halved chroma."""
 RIM = np.ones((9, 9), dtype=np.uint8)
 """How far a region's rim reaches, where its color fits no worse than others: near it that is its blur."""
-SMALLEST_DEVIATION = 3.0
-"""Of a color, in levels: compression and the smoothing of what lies beside it."""
-MOST_GAIN = 12.0
-"""Largest gain of a pixel: models of color are wrong once in so many (e^12)."""
+SMALLEST_DEVIATION = 3.0  # of a color, in levels: compression and the smoothing of what lies beside it
+MOST_GAIN = 12.0  # largest gain of a pixel: models of color are wrong once in so many (e^12)
 LEAST_GAIN = 2.0
 LEAST_SHARE = 0.05
-ALIKE_PIXELS = 9.0
-"""Pixels that err together: those of halved chroma, smoothed over one pixel to each side."""
+ALIKE_PIXELS = 9.0  # pixels that err together: those of halved chroma, smoothed over one pixel to each side
 SMOOTHING_VARIANCE = 0.5
 """Of a region's coordinates by that smoothing, a binomial one over three pixels [px²]."""
 
@@ -53,17 +49,14 @@ SMOOTHING_VARIANCE = 0.5
 class Surface(NamedTuple):
     """A surface's color."""
 
-    color: Array
-    """(3,) as `contrast` gives it."""
-    deviation: float
-    """Its standard deviation in each component."""
+    color: Array  # (3,) as `contrast` gives it
+    deviation: float  # its standard deviation in each component
 
 
 class Unmixed(NamedTuple):
     """What is known of the pixels of a window."""
 
-    share: Array
-    """(rows, columns) share of the surface, 0 to 1."""
+    share: Array  # (rows, columns) share of the surface, 0 to 1
     gain: Array
     """(rows, columns) log likelihood with the surface less that without it, within ±MOST_GAIN;
     zero where the pixel is clearly something else."""
@@ -72,14 +65,10 @@ class Unmixed(NamedTuple):
 class Traces(NamedTuple):
     """R connected regions in which a surface shows."""
 
-    moments: Array
-    """(R, 6) raw moments of its share, the smoothing taken out."""
-    gain: Array
-    """(R,) sum of the gains, by as many independent pixels."""
-    peak: Array
-    """(R,) largest share."""
-    certainty: Array
-    """(R,) mean gain where it shows, relative to the largest."""
+    moments: Array  # (R, 6) raw moments of its share, the smoothing taken out
+    gain: Array  # (R,) sum of the gains, by as many independent pixels
+    peak: Array  # (R,) largest share
+    certainty: Array  # (R,) mean gain where it shows, relative to the largest
 
     def scaled(self, factor: int) -> "Traces":
         """The same in pixels that are `factor` times as small."""

@@ -11,10 +11,8 @@ from ...arrays import Image
 
 MEASURING_COLUMNS = 320
 """Fewest columns on which borders are measured more accurately than body models predict them."""
-LEARNING_COLUMNS = 240
-"""Fewest columns on which a forearm has pixels clear of its blurred border."""
-SEARCHING_COLUMNS = 160
-"""Fewest columns on which no marker of a measurable size is missed."""
+LEARNING_COLUMNS = 240  # fewest columns on which a forearm has pixels clear of its blurred border
+SEARCHING_COLUMNS = 160  # fewest columns on which no marker of a measurable size is missed
 
 
 def halvings(size: tuple[int, int]) -> int:
