@@ -27,16 +27,11 @@ BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
 UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
 MARGIN_PX = 5  # error of a predicted body: pixels nearer to it do not count as background
-FEWEST_FREE = 3  # frames that must show a pixel's background for its Gaussian to be known
 HIGHEST = 255  # replaces occluded levels, so that they are sorted last
 SPARSE = 2  # sampling step, in rows and columns, of the background's histogram
-SMALLEST_DEVIATION, LARGEST_DEVIATION = 3.0, 12.0
-"""Bounds of a background pixel's standard deviation in levels."""
 STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
-STEADY_SHARE = 0.9  # share of static pixels in a static background
 DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
 """Range and standard deviation of the light on a background pixel, relative to its usual light."""
-LEAST_KNOWN_SHARE = 0.5  # least share of static pixels among all, where each is judged by itself
 CHANGED = 0.1  # prior share of pixels that differ from the background's usual color
 
 
@@ -66,7 +61,8 @@ class Appearance:
         Before a flickering screen or waving leaves these are left out, and the others keep what they tell.
         """
         known = self.known & (self.deviation < STEADY)
-        return replace(self, known=known, steady=bool(np.mean(known) >= LEAST_KNOWN_SHARE))
+        # Where each pixel is judged by itself.
+        return replace(self, known=known, steady=bool(np.mean(known) >= 0.5))
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
@@ -105,9 +101,10 @@ def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts:
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
     counts = _counts(seen, parts)
     color, spread = _middle_and_spread(np.stack(images), ~body)
-    known = np.count_nonzero(~body, axis=0) >= FEWEST_FREE
-    steady = bool(known.any() and np.mean(spread[known] < STEADY) >= STEADY_SHARE)
-    deviation = np.clip(spread, SMALLEST_DEVIATION, LARGEST_DEVIATION)
+    # Frames that must show a pixel's background for its Gaussian to be known.
+    known = np.count_nonzero(~body, axis=0) >= 3
+    steady = bool(known.any() and np.mean(spread[known] < STEADY) >= 0.9)
+    deviation = np.clip(spread, 3.0, 12.0)  # of a background pixel, in levels
     return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 

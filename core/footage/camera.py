@@ -17,9 +17,6 @@ from ..arrays import Array
 from ..files.fields import Fields
 from .camera_fields import CameraFields
 
-NEWTON_STEPS = 20
-NEWTON_TOLERANCE = 1e-12
-
 
 @dataclass(frozen=True, eq=False)
 class Camera:
@@ -202,11 +199,11 @@ class Camera:
         target = np.linalg.norm(distorted, axis=-1)
         radius = target.copy()
         with np.errstate(all="ignore"):  # a diverging pixel ends as NaN, which is its answer
-            for _ in range(NEWTON_STEPS):
+            for _ in range(20):
                 factor, slope = self._radial_factor(radius**2)
                 radius = radius - (radius * factor - target) / (factor + 2.0 * radius**2 * slope)
             factor, slope = self._radial_factor(radius**2)
-            found = np.abs(radius * factor - target) <= NEWTON_TOLERANCE * (1.0 + target)
+            found = np.abs(radius * factor - target) <= 1e-12 * (1.0 + target)
             # Past the fold of the polynomial a root exists that no light takes.
             found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
             scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)
@@ -217,20 +214,13 @@ class Camera:
 
 
 FULL_FRAME_MM = 36.0  # long side of the full-frame sensor that focal lengths are compared on [mm]
-FULL_FRAME_DIAGONAL_MM = hypot(36.0, 24.0)
 
 PHONE_MM = 26.0  # full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28
 STABILISED = 1.1  # crop factor of phones' video stabilization: a tenth is usual
 WEBCAM_DEGREES = 68.0
 """Diagonal view of a webcam in 16 to 9: makers state 60 (plain ones) to 78 (better ones)."""
-WEBCAM_HEIGHT_PX = 600
-"""Largest height of a 4 to 3 picture that counts as a webcam's; other cameras film larger, wider pictures."""
-USUAL_MM = 35.0
-"""Lens of any other camera: between the wide end of a usual zoom (24 to 28) and its middle (50) [mm]."""
 
 EYE_HEIGHT_M = 1.4
-REACH_M = 1.0  # half the arm span of an adult [m]
-FILLED = 0.9  # largest share of the picture that a performer at the origin fills
 
 
 @dataclass(frozen=True)
@@ -251,13 +241,13 @@ def guess_lens(size: tuple[int, int]) -> LensGuess:
     """
     width, height = size
     if height > width:
-        photograph_mm = FULL_FRAME_DIAGONAL_MM * 4.0 / 5.0
+        photograph_mm = hypot(36.0, 24.0) * 4.0 / 5.0
         lens_mm, reason = STABILISED * PHONE_MM * FULL_FRAME_MM / photograph_mm, "a phone held upright"
-    elif 3 * width == 4 * height and height <= WEBCAM_HEIGHT_PX:
+    elif 3 * width == 4 * height and height <= 600:  # other cameras film larger, wider pictures
         focal_in_heights = 0.5 * hypot(16.0, 9.0) / 9.0 / np.tan(np.radians(WEBCAM_DEGREES / 2.0))
         lens_mm, reason = float(focal_in_heights * height / width * FULL_FRAME_MM), "a webcam"
     else:
-        lens_mm, reason = USUAL_MM, "a camera's usual zoom"
+        lens_mm, reason = 35.0, "a camera's usual zoom"  # between the wide end of a zoom and its middle
     return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
 
 
@@ -267,9 +257,10 @@ def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int,
     At eye height, looking level along +Y at the world's origin, from a distance at which the floor there and
     a performer with outstretched arms are within a picture of `size` (width, height).
     """
-    across = 0.5 * FILLED * sensor_width_mm / lens_mm
+    # Share of the picture that a performer at the origin fills.
+    across = 0.5 * 0.9 * sensor_width_mm / lens_mm
     down = across * size[1] / size[0]
-    distance = max(EYE_HEIGHT_M / down, REACH_M / across)
+    distance = max(EYE_HEIGHT_M / down, 1.0 / across)  # half the arm span of an adult [m]
     return np.array(
         [
             [1.0, 0.0, 0.0, 0.0],

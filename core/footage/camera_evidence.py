@@ -139,8 +139,6 @@ PIECES = 4  # pieces of a meter, each straight, as a lens with distortion bends 
 MARGIN = 0.1
 """Share of the picture's size beyond which nothing is drawn: distortion is not defined far outside."""
 HORIZON_DEGREES = 60.0
-HORIZON_PIECES = 48
-FAR_M = 1e5
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,12 +185,12 @@ def _level(rotation: Array) -> Array:
 def _horizon(camera: Camera, frame: int | None) -> Array:
     rotation, location = camera.pose(frame)
     x, y = _level(rotation)
-    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, HORIZON_PIECES + 1))
+    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, 48 + 1))
     far = np.stack(
         [x * np.cos(angles) - y * np.sin(angles), x * np.sin(angles) + y * np.cos(angles), 0.0 * angles],
         axis=-1,
     )
-    pixel, _ = camera.project(location + FAR_M * far, frame)
+    pixel, _ = camera.project(location + 1e5 * far, frame)
     pieces = np.stack([pixel[:-1], pixel[1:]], axis=-2)
     return np.asarray(pieces[_in_picture(camera, pieces)])
 

@@ -84,7 +84,6 @@ def heading_rad(matrix_world: ArrayLike) -> float:
 # --- Validation of a camera's fields in a take
 
 
-LENGTHS_MM = (0.1, 100_000.0)  # A focal length or a sensor's width lies between these [mm]
 MOST_SHIFT = 100.0  # largest shift [image widths]
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0  # largest coefficient; those of real lenses are below 1
@@ -92,7 +91,6 @@ FARTHEST_M = 1e6  # largest entry of a pose: distance from the origin along an a
 FACING = "distance_m"  # says where the world's origin is, which is of no use without the rest
 MATRICES = ("matrix_world", "matrix_world_frames")
 HEIGHTS_M = (0.01, 1000.0)  # A camera's height above the floor lies between these [m]
-SMALLEST_SCALE = 1e-4
 ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision have errors of about 1e-6
 
 
@@ -142,7 +140,8 @@ class Distortion(Kind):
         return k1, k2, k3
 
 
-LensNumber = Annotated[float, Number(*LENGTHS_MM, "mm")]
+# A focal length or a sensor's width lies between these [mm].
+LensNumber = Annotated[float, Number(*(0.1, 100_000.0), "mm")]
 Shift = Annotated[float, Number(-MOST_SHIFT, MOST_SHIFT)]
 
 
@@ -222,7 +221,7 @@ def _first_fault(matrices: Array) -> tuple[int, str] | None:
     far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
     sound = np.where((last | far)[:, None, None], np.eye(4), matrices)
     determinants = np.linalg.det(sound[:, :3, :3])
-    flat = determinants < SMALLEST_SCALE**3
+    flat = determinants < 1e-4**3
     rotations = _scaled(np.where(flat[:, None, None], np.eye(4), sound))
     error = np.abs(np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3)).max(axis=(1, 2))
     faults = last | far | flat | (error > ROTATION_TOLERANCE)

@@ -37,14 +37,11 @@ DETERMINED = 0.5
 """Largest ratio of the standard deviation found to that believed before, of what the picture determines."""
 STARTS = 8  # headings of the level lines from which the descent starts, over half a turn
 START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])  # tilts from which it starts
-FOLLOWED_STARTS = 3  # the likeliest of them, which are followed to their end
 HEADING = len(PARAMETERS)
 DIFFERENCE = 1e-5
-DEGREES = 4.0  # degrees of freedom of Student's t of what may be far off
 EXPECTED_WEIGHT = 4.0
 """Degrees of freedom with which the image noise is believed beforehand, as few lines tell little of it."""
-EXACT = 1e-6
-LEAST_RISE_M, FLATTEST = 0.01, 1e-3
+LEAST_RISE_M = 0.01
 """Least height of the camera above a point [m], and least slope of the line of sight down to it."""
 
 
@@ -152,7 +149,7 @@ class _Problem:
             std[PARAMETERS.index(LENS)] = KNOWN_LENS_STD
         heading = [np.inf] if self.has_level_lines else []
         uprights = self.evidence.uprights
-        return np.array([*std, *heading, *np.maximum([uprights.common_std, uprights.common_lean_rad], EXACT)])
+        return np.array([*std, *heading, *np.maximum([uprights.common_std, uprights.common_lean_rad], 1e-6)])
 
     def placement_of(self, x: Array) -> CameraPlacement:
         now = CameraPlacement.of(self.camera.matrix_world)
@@ -183,7 +180,7 @@ class _Problem:
         starts[:, PARAMETERS.index(TILT)] = np.tile(START_TILTS_RAD, len(headings))
         if self.has_level_lines:
             starts[:, HEADING] = np.repeat(headings, len(START_TILTS_RAD))
-        order = np.argsort([self._cost(start) for start in starts])[:FOLLOWED_STARTS]
+        order = np.argsort([self._cost(start) for start in starts])[:3]  # the likeliest
         nothing = np.zeros(0, dtype=np.intp)
         return min((self.descend_from(starts[index], nothing) for index in order), key=self._cost)
 
@@ -234,7 +231,7 @@ class _Problem:
         """Residuals whose squares are twice the negative logarithm of Student's t, where any are doubtful."""
         if not self.evidence.uprights.doubtful:
             return scaled
-        return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, DEGREES, 1)))
+        return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, 4.0, 1)))
 
     def _rows(self, x: Array) -> Array:
         """Residuals of picture and beliefs."""
@@ -245,7 +242,7 @@ class _Problem:
         uprights = self.evidence.uprights
         location, sight = camera.rays(uprights.lower_px)
         rise = np.maximum(location[2] - uprights.lower_m, LEAST_RISE_M)
-        lower = location + (rise / np.maximum(-sight[:, 2], FLATTEST))[:, None] * sight
+        lower = location + (rise / np.maximum(-sight[:, 2], 1e-3))[:, None] * sight
         upper = lower + (longer * uprights.length_m)[:, None] * np.array([0.0, 0.0, 1.0])
         shown = _in_front(camera, upper)
         drawn = uprights.upper_px - uprights.lower_px

@@ -24,7 +24,6 @@ from .segmentation.working_image import halvings
 IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
 SUBPIXEL_BITS = 4
 SUBPIXELS = 1 << SUBPIXEL_BITS  # parts of a pixel in drawn coordinates
-MOST_MASKS = 16  # masks of a session that are kept, some hundred kilobytes each
 
 Point = tuple[float, float]
 PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
@@ -73,7 +72,7 @@ def without(label: Image, mask: Image, nothing: int) -> Image:
     return np.where(is_ignored(mask), np.uint8(nothing), label)
 
 
-@lru_cache(MOST_MASKS)
+@lru_cache(16)  # a session's, some hundred kilobytes each
 def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
     """The pixels of the measuring grid whose centers lie in any of the regions."""
     times = halvings(size)

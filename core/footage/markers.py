@@ -178,9 +178,6 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
 # --- The markers' regions in a single frame, without a pass over the clip
 
 
-SAMPLED_FRAMES = 12
-
-
 def regions_of_frame(
     clip: Clip,
     time_s: float,
@@ -201,7 +198,7 @@ def regions_of_frame(
     if image is None:
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
-    samples = [(number, measuring_image(sample, times)) for number, sample in clip.sample(SAMPLED_FRAMES)]
+    samples = [(number, measuring_image(sample, times)) for number, sample in clip.sample(12)]
     pixels = IgnoredPixels(tuple(ignored), clip.size)
     of_samples = replace(pixels, sampled=tuple(number for number, _ in samples))
     colors = StreamingColorLearner(clip.path, clip.size, styles, ignored=of_samples)

@@ -25,16 +25,13 @@ STRETCH = 60  # frames kept at a time, 170 MB
 LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
-STEP, FEWEST_HIDDEN = 0.5, 0.3
+STEP = 0.5
 """Between crops, and least presence of one that is looked into again about whom it shows."""
-LOOKS = 2  # more of these, each about the person as last seen
-PRESENT, SURE = 0.5, 0.9  # presence of somebody who is followed, and of somebody new
-SCORE, NEW_SCORE = 0.3, 0.5  # the same of the mean score of all points
-FARTHEST, MOST_GROWN = 0.35, 1.5  # of a step between frames: shares of the crop's side, and a ratio of sides
+SURE = 0.9  # presence of somebody who is followed, and of somebody new
 APART = 0.3  # share of a crop's side within which two crops show the same person
-FEWEST_FRAMES, MOST_OTHER = 4, 1.6
+MOST_OTHER = 1.6
 """Frames in which somebody must be seen, and ratio of sizes beyond which a later person is another."""
-SMALLEST, MOST_PEOPLE = 0.35, 4
+SMALLEST = 0.35
 """Others are followed from this share of the largest one's size on, and so many together."""
 
 
@@ -145,7 +142,7 @@ def _next(network: PoseNetwork, picture: Image, before: Pose) -> Pose | None:
     now = network(picture, before.crop)
     moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
     grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    if now.presence < PRESENT or now.score.mean() < SCORE or moved > FARTHEST or grown > MOST_GROWN:
+    if now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5:
         return None
     return now if _is_inside(now, picture) else None
 
@@ -161,14 +158,14 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
             if any(_overlap(crop, pose.crop) for pose in chain(known, found)):
                 continue
             pose = network(picture, crop)
-            looks = LOOKS if pose.presence > FEWEST_HIDDEN else 0
+            looks = 2 if pose.presence > 0.3 else 0  # somebody may be there, in another place of the crop
             for _ in range(looks):
                 pose = network(picture, pose.crop)
-            sure = pose.presence > SURE and pose.score.mean() > NEW_SCORE and _is_inside(pose, picture)
+            sure = pose.presence > SURE and pose.score.mean() > 0.5 and _is_inside(pose, picture)
             if looks and sure and pose.crop.side > SMALLEST * largest:
                 here.append(pose)
         for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):
-            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < MOST_PEOPLE:
+            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < 4:
                 found.append(pose)
                 largest = max(largest, pose.crop.side)
         if found and not known and number:  # somebody else may be one size smaller
@@ -213,7 +210,7 @@ def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
     for one in chain.from_iterable(seen):
         sides.setdefault(one.track, []).append(one.pose.crop.side)
     longest = max(map(len, sides.values()), default=0)
-    kept = {track for track, own in sides.items() if len(own) >= min(longest, FEWEST_FRAMES)}
+    kept = {track for track, own in sides.items() if len(own) >= min(longest, 4)}
     if all(len(frame) < 2 for frame in seen) and kept:
         usual = float(np.median(max(sides.values(), key=len)))
         alike = (usual / MOST_OTHER, usual * MOST_OTHER)

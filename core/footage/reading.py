@@ -122,7 +122,6 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
 
 
 FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
-MOST_SAMPLED = 24  # images of a longer sequence whose content is hashed, evenly spread
 PREFIX = "reading"
 
 
@@ -163,7 +162,7 @@ def _footage(path: Path, fps: float) -> tuple[object, ...]:
         return (file_fingerprint(path),)
     states = [file.stat() for file in images]
     names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
-    step = max(1, len(images) // MOST_SAMPLED)
+    step = max(1, len(images) // 24)  # evenly spread
     return fps, names, tuple(file_fingerprint(file) for file in images[::step])
 
 

@@ -10,8 +10,6 @@ from .clips.clip_timing import is_variable_frame_rate
 from .colors.color_learning import sample_distribution
 from .segmentation.regions import Regions
 
-ALIKE_DISTANCE = 2.5  # squared Mahalanobis distance of two samples below which light may make them equal
-
 
 @dataclass(frozen=True)
 class MarkerStyle:
@@ -27,7 +25,8 @@ def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
     groups: list[list[int]] = []
     for index, style in enumerate(styles):
         for group in groups:
-            if any(_distance(style.color_srgb, styles[other].color_srgb) < ALIKE_DISTANCE for other in group):
+            # Light may make them equal.
+            if any(_distance(style.color_srgb, styles[other].color_srgb) < 2.5 for other in group):
                 group.append(index)
                 break
         else:

@@ -12,19 +12,9 @@ from .appearance import CELL_VOLUME, LEVELS, NO_PART, UNSEEN, UNSEEN_LOG_DENSITY
 from .clips.album import Album
 from .segmentation.unmixing import Surface, contrast, mixed, surface_of
 
-LEARNED_FRAMES = 8
-WHOLE = 0.6  # least quality of regions that a marker's color is learned from, where there are any
-INNER = 1.0
-"""Squared distance from a region's center, in its deviations, within which a pixel is clear of the edge."""
-FEWEST_INNER = 3
-LEAST_MASS = 0.07  # least share of a part's pixels that have a color of its own
-MOST_COLORS = 4  # of a part
 NEAR_CELLS = 2  # cells around a common one that belong to its color
 PART_DEVIATION = 5.0
 APART = 12.0  # distance of colors that are two surfaces', in levels of `contrast`
-OWN_SHARE = 0.1
-"""Share of a marker's color from which another is a mixture with it: of a sleeve's shaded side, or edge."""
-GRAY = np.array([60.0, 0.0, 0.0])  # middle gray: what markers' edges are mixed with in front of most walls
 
 
 def marker_surfaces(
@@ -45,8 +35,8 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
     usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
     if not usual.any():
         return None
-    good = np.flatnonzero(usual >= min(WHOLE, float(np.median(usual[usual > 0.0]))))
-    chosen = good[np.unique(np.linspace(0, len(good) - 1, LEARNED_FRAMES).round().astype(np.intp))]
+    good = np.flatnonzero(usual >= min(0.6, float(np.median(usual[usual > 0.0]))))
+    chosen = good[np.unique(np.linspace(0, len(good) - 1, 8).round().astype(np.intp))]
     inside = []
     for frame in chosen.tolist():
         picture = album.picture(frame)
@@ -57,8 +47,8 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
         row, column = np.indices((max(bottom - top, 0), max(right - left, 0)))
         offset = (np.stack([column + left, row + top], axis=-1) + 0.5) * album.factor - centroid[frame]
         away = np.einsum("rci,ij,rcj->rc", offset, np.linalg.pinv(second_moment[frame]), offset)
-        pixels = picture[top:bottom, left:right][away < INNER]
-        if len(pixels) >= FEWEST_INNER:
+        pixels = picture[top:bottom, left:right][away < 1.0]  # clear of the edge
+        if len(pixels) >= 3:
             inside.append(pixels)
     return surface_of(np.concatenate(inside)) if inside else None
 
@@ -70,11 +60,11 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
         share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
         share = np.maximum(share, 0.0).reshape(LEVELS, LEVELS, LEVELS) * CELL_VOLUME
         whole = share.sum()
-        for _ in range(MOST_COLORS):
+        for _ in range(4):
             peak = np.unravel_index(int(share.argmax()), share.shape)
             near = tuple(slice(max(int(at) - NEAR_CELLS, 0), int(at) + NEAR_CELLS + 1) for at in peak)
             mass = float(share[near].sum())
-            if mass < LEAST_MASS * whole or mass == 0.0:
+            if mass < 0.07 * whole or mass == 0.0:
                 break
             cells = np.moveaxis(np.indices(share[near].shape), 0, -1) + [one.start for one in near]
             color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
@@ -109,10 +99,12 @@ def _is_near(color: Array, known: Array) -> bool:
 
 def _is_blend(color: Array, marker: Surface, known: Array) -> bool:
     """Whether a color is a mixture of a marker's with black, gray or a known one (K, 3)."""
-    ends = np.concatenate([np.zeros((1, 3)), GRAY[None], known])
+    # What markers' edges are mixed with in front of most walls.
+    ends = np.concatenate([np.zeros((1, 3)), np.array([60.0, 0.0, 0.0])[None], known])
     share, _ = mixed(color, ends, PART_DEVIATION, marker.color, PART_DEVIATION)
     at = ends + share[:, None] * (marker.color - ends)
-    return bool(((share > OWN_SHARE) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
+    # Of a sleeve's shaded side, or edge.
+    return bool(((share > 0.1) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
 
 
 def is_alike(one: Surface, other: Surface) -> bool:
@@ -133,7 +125,6 @@ BANDS = 6  # bands of a part's length
 BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
 LEVELS_BAND_COLORS = 1 << BITS
 CELLS = LEVELS_BAND_COLORS**3
-BLUR = np.array([0.16, 0.68, 0.16])  # smoothing of a histogram along each of its axes: noise of a few levels
 SHARED = 0.25  # share of a band's colors that are the whole part's: folds and shadows wander
 
 
@@ -179,7 +170,8 @@ def _densities(counts: Array) -> Array:
     """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
     grid = counts.reshape(*counts.shape[:-1], LEVELS_BAND_COLORS, LEVELS_BAND_COLORS, LEVELS_BAND_COLORS)
     for axis in (-3, -2, -1):
-        grid = correlate1d(grid, BLUR, axis=axis, mode="nearest")
+        # Noise of a few levels.
+        grid = correlate1d(grid, np.array([0.16, 0.68, 0.16]), axis=axis, mode="nearest")
     smoothed = grid.reshape(counts.shape)
     total = smoothed.sum(axis=-1, keepdims=True)
     share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / CELLS)

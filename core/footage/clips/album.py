@@ -17,8 +17,6 @@ from ..segmentation.working_image import halvings, learning_image, measuring_ima
 from .clip import Clip, FrameSource
 from .frame_checks import FrameChecks
 
-QUALITY = 90  # JPEG quality; its error stays below that of the video's compression
-
 
 @dataclass(eq=False)
 class Album:
@@ -33,7 +31,8 @@ class Album:
         """Keep a frame (rows, columns, 3)."""
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
-        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
+        # Errs less than the video's compression.
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])
         self._pictures[index] = packed
 
     def every(self, step: int) -> "Album":
@@ -141,9 +140,6 @@ def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
 # --- How much a clip's pictures change from frame to frame
 
 
-NOISE_FACTOR = 4.0  # A pixel changes where its difference exceeds the picture's usual one this many times ...
-LEAST_LEVELS = 6.0  # ... and this many of 256 levels
-MAD_TO_STD = 1.4826
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's
 
 
@@ -176,5 +172,5 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
 def _changed(difference: Array) -> BoolArray:
     """Pixels that change, beside noise and the light of the whole picture."""
     difference = np.abs(difference - np.median(difference))
-    usual = MAD_TO_STD * float(np.median(difference))
-    return np.asarray(difference > max(NOISE_FACTOR * usual, LEAST_LEVELS))
+    usual = 1.4826 * float(np.median(difference))
+    return np.asarray(difference > max(4.0 * usual, 6.0))

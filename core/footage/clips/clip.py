@@ -15,8 +15,6 @@ from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
 
-DEFAULT_SEQUENCE_FPS = 24.0  # default frame rate of an image sequence, that of a new Blender scene
-
 
 class FrameSource(Protocol):
     """Decoder of a clip's frames."""
@@ -63,7 +61,8 @@ class Clip:
         path = Path(path)
         images = find_images(path)
         if images is not None:
-            sequence = ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS)
+            # Default frame rate of an image sequence, that of a new Blender scene.
+            sequence = ImageSequence(images, fps or 24.0)
             return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
@@ -129,8 +128,6 @@ class Clip:
 Stamped = tuple[float, Image]
 
 EARLY = 0.1  # share of a frame's interval by which its time stamp may be rounded up
-LONGEST_STEP = 12.0  # intervals up to which frames are decoded on the way instead of seeking
-BEFORE = 2  # frames before the wanted one at which a seek begins
 
 
 class FrameReader:
@@ -155,8 +152,9 @@ class FrameReader:
         limit = time_s + EARLY * interval
         if limit < 0.0:
             return None
-        if self._shown is None or not 0.0 <= limit - self._shown[0] < LONGEST_STEP * interval:
-            self._begin(max(int(limit / interval) - BEFORE, 0))
+        # More are not decoded on the way.
+        if self._shown is None or not 0.0 <= limit - self._shown[0] < 12.0 * interval:
+            self._begin(max(int(limit / interval) - 2, 0))
             if self._shown is None or self._shown[0] > limit:
                 self._begin(0)
         while self._coming is not None and self._coming[0] <= limit:
@@ -215,8 +213,6 @@ def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, Non
 
 MOST_DECODED_PX = 90_000_000  # budget of decoded pixels: about half a second of a processor, at any size
 FRAMES_PER_SEARCH = 18  # frames decoded for each seek
-MOST_SEARCHES = 12
-IMAGE_COST = 4  # cost of opening an image, in decoded video frames
 FEWEST = 3
 
 
@@ -224,11 +220,12 @@ def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[f
     """Sample frames like `sample_clip`, within a budget of decoded pixels."""
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
-        affordable = max(MOST_DECODED_PX // (IMAGE_COST * pixels), FEWEST)
+        # An image costs as much as four video frames.
+        affordable = max(MOST_DECODED_PX // (4 * pixels), FEWEST)
         return (yield from sample_clip(clip, min(count, affordable)))
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
-    most = min(count, MOST_SEARCHES, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
+    most = min(count, 12, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
     middles = (np.arange(most) + 0.5) * clip.frame_count / most
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:

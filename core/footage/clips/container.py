@@ -15,7 +15,6 @@ from ...errors import InputError
 from ...files.control_characters import regular_file_size
 
 DEEP_YUV420 = b"Y3\x0b"  # FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows
-BLOCK = 16  # coded pictures have a multiple of this many rows
 ROWS = 3
 
 
@@ -43,14 +42,13 @@ def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
         return
     turned = int(capture.get(cv2.CAP_PROP_ORIENTATION_META)) // 90
     coded = np.rot90(image, turned)
-    if coded.shape[0] % BLOCK and coded.shape[0] > ROWS:
+    if coded.shape[0] % 16 and coded.shape[0] > ROWS:  # coded rows are a multiple
         coded[-ROWS:] = coded[-ROWS - 1]
 
 
 # --- Magic numbers of video containers
 
 
-HEAD_BYTES = 4096
 VALID = "a video that OpenCV can read"
 
 BOXES = (
@@ -88,7 +86,7 @@ def check_container(path: Path) -> None:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
         with path.open("rb") as file:
-            beginning = file.read(HEAD_BYTES)
+            beginning = file.read(4096)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {VALID}") from error
     if not _begins_as_video(beginning):
@@ -136,7 +134,6 @@ def _is_text(data: bytes) -> bool:
 
 MOST_PACKETS = 20_000  # packets read of a longer file: ten minutes tell whether the frame rate varies
 SEARCH_BEGINS = 16  # frames before a wanted one from which OpenCV seeks backwards for a video keyframe
-MORE = 2  # packets that must follow a wanted frame, so that seeking never meets the end
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +166,8 @@ def quickly_found(path: Path, wanted: Sequence[int]) -> list[int]:
             if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
                 continue
             begins = int(capture.get(cv2.CAP_PROP_POS_FRAMES))
-            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + MORE)):
+            # So that seeking never meets the end.
+            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + 2)):
                 found.add(begins + SEARCH_BEGINS)
     return sorted(found)
 

@@ -39,14 +39,11 @@ def _teeth(levels: NDArray[np.int16]) -> float:
 # --- Notes on a video file's header
 
 
-NOTICEABLE_SHAPE = 0.01  # difference from square pixels that is worth a note
 HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
 MATROSKA_BEGINS = b"\x1a\x45\xdf\xa3"
-HEAD = 2**16  # bytes read of a Matroska file, within which it describes its tracks
-LARGEST_INDEX = 2**26
 
 
 def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
@@ -56,7 +53,7 @@ def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
 
 def _shape_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
     across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < NOTICEABLE_SHAPE:
+    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < 0.01:
         return ()
     return (
         (
@@ -84,7 +81,7 @@ def dynamic_range(path: Path) -> str | None:
     """Name of a video's high dynamic range transfer function, PQ or HLG; None for standard range."""
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD)
+            head = file.read(2**16)  # it describes its tracks within these
             if head.startswith(MATROSKA_BEGINS):
                 found = MATROSKA.search(head)
             else:
@@ -103,7 +100,7 @@ def _movie_box(path: Path) -> bytes:
             if size == 1:
                 size = int.from_bytes(file.read(8), "big") - 8
             if head[4:] == b"moov":
-                return file.read(min(max(size - 8, 0), LARGEST_INDEX))
+                return file.read(min(max(size - 8, 0), (2**26)))
             if not 8 <= size <= whole:
                 break
             file.seek(size - 8, 1)
@@ -113,20 +110,10 @@ def _movie_box(path: Path) -> bytes:
 # --- Frame checks while a clip is read
 
 
-SIDE = 64  # rows and columns, about, of the pictures that are compared
-COMBED_EVERY = 15  # frames between two that are checked for combing
 COMBED, COMBED_MORE = 5e-4, 10.0
 """Combed share of an interlaced picture by rows, and its ratio to that by columns. Sixteen progressive clips
 stay below 1.2e-4 and a ratio of three; three interlaced ones have 1e-2 and more."""
-COLORLESS = 10  # difference of the channels of a gray pixel after compression, in levels
-CUT = 10.0  # change of the median pixel at a cut, in levels
-CUT_MORE = 5.0  # ratio of that change to the clip's usual one
-FEW_PIXELS = 4  # pixels of a small picture that may have colors by accident
 NAMED = 3  # ranges of frames that a note lists
-BLANK_SAMPLES = 64  # sampled rows and columns, about, in the test for a blank frame
-BLANK_CONTRAST = 12
-"""Levels between the darkest and the brightest pixel of a blank frame, but for stray pixels."""
-BLANK_STRAY_SHARE = 0.005  # share of pixels that noise or a clock in a corner may make brighter or darker
 
 
 @dataclass(frozen=True)
@@ -181,10 +168,10 @@ class FrameChecks:
         if is_blank(image):
             self._blank.append(index)
             return False
-        step = max(min(image.shape[:2]) // SIDE, 1)
+        step = max(min(image.shape[:2]) // 64, 1)
         small = image[step // 2 :: step, step // 2 :: step].copy()
         self._color = max(self._color, _colorfulness(small))
-        if index % COMBED_EVERY == 0:
+        if index % 15 == 0:
             self._combed.append(combed_shares(image))
         if self._last is not None:
             self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
@@ -199,7 +186,7 @@ class FrameChecks:
         """The reason why no marker can be found in the clip; None without one."""
         if len(self._blank) == self._frames:
             return "all frames are blank: black, or of one color"
-        if self._color < COLORLESS:
+        if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
 
@@ -211,7 +198,8 @@ class FrameChecks:
 
     def _cuts(self) -> tuple[int, ...]:
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
-        return tuple(index for index, one in self._changes.items() if one > max(CUT, CUT_MORE * usual))
+        # Levels, and several times the usual change.
+        return tuple(index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual))
 
 
 def _colorfulness(image: Image) -> int:
@@ -219,7 +207,7 @@ def _colorfulness(image: Image) -> int:
     blue, green, red = cv2.split(image)
     brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)
     spread = (brightest - darkest).ravel()
-    last = spread.size - min(FEW_PIXELS, spread.size)
+    last = spread.size - min(4, spread.size)  # pixels that may have colors by accident
     return int(np.partition(spread, last)[last])
 
 
@@ -237,13 +225,13 @@ def _ranges(frames: Sequence[int], first: int) -> str:
 
 def is_blank(image: Image) -> bool:
     """Whether a picture (rows, columns, 3) shows one even color and nothing else."""
-    step = max(min(image.shape[:2]) // BLANK_SAMPLES, 1)
+    step = max(min(image.shape[:2]) // 64, 1)
     sampled = image[step // 2 :: step, step // 2 :: step]
     # Channel by channel: the first tells of almost every picture, and partitions along an axis are slow.
     return not any(_has_contrast(sampled[..., channel].ravel()) for channel in range(3))
 
 
 def _has_contrast(levels: Image) -> bool:
-    stray = int(BLANK_STRAY_SHARE * len(levels))
+    stray = int(0.005 * len(levels))  # noise, or a clock in a corner
     ordered = np.partition(levels, (stray, len(levels) - 1 - stray))
-    return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > BLANK_CONTRAST)
+    return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > 12)  # levels

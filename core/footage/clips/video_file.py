@@ -13,14 +13,9 @@ from ...errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
 from .frame_checks import video_notes
 
-FALLBACK_FPS = 24.0
-HIGHEST_PLAUSIBLE_FPS = 2000.0
 FRAMES_PER_SEEK = 125
 """Mean cost of seeking, which decodes from the last video keyframe on: half of the usual 250 frames."""
-PATIENCE = 500  # failures in a row that end a file: the distance of two video keyframes
 LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
-SMALLEST_FRAME_BYTES = 8
-"""Least bytes of a frame in a container; bounds the frame count that a header may claim."""
 
 CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
 
@@ -56,10 +51,10 @@ class VideoFile:
                 )
             self.size = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
-            self.fps = fps if 0.0 < fps < HIGHEST_PLAUSIBLE_FPS else FALLBACK_FPS
+            self.fps = fps if 0.0 < fps < 2000.0 else 24.0
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
             self.notes = video_notes(path, capture)
-        most = path.stat().st_size // SMALLEST_FRAME_BYTES
+        most = path.stat().st_size // 8  # bytes a frame bound what a header may claim
         self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
             self.frame_count = sum(1 for _ in self.time_stamps())
@@ -202,7 +197,7 @@ def _open_quietly(path: Path) -> cv2.VideoCapture:
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
     """Step from frame to frame; yield the number of decoder failures before each."""
     failures = 0
-    while failures <= PATIENCE:
+    while failures <= 500:  # the distance of two video keyframes
         if capture.grab():
             yield failures
             failures = 0

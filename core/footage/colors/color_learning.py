@@ -10,19 +10,8 @@ from .color_model import ColorDistribution, ColorModel, chromaticity, color_mode
 from .indexed_frames import LEARNING_NOISE_LEVELS, CroppedMask, IndexedFrames
 
 # Uncertainty of one sample: saturation by 15 %, hue by 6 degrees, light by a factor of 1.6 either way.
-SATURATION_DEVIATION = 0.15
-HUE_DEVIATION = 0.10
-LOG_LUMA_DEVIATION = 0.45
-LEAST_SATURATION = 0.04  # saturation below which the deviations shrink no further: a gray has no hue
 
 FARTHEST = 16.3  # squared distances: 99.9 % of a chi-squared with 3 degrees of freedom
-NEAR = 2.4  # half of it
-LEARNED_SHARE = 0.7
-"""Share of a marker's pixels, those nearest its sample, that its distribution is fitted to."""
-ROUNDS = 3
-FEWEST_PIXELS = 40
-SMALLEST_LOG_LUMA_DEVIATION = 0.3
-UNSEEN_SHARE = 0.2  # share of the sample's own uncertainty that remains after learning
 STEEPEST_SLOPE = 0.25
 
 
@@ -59,7 +48,7 @@ def learn_colors(
     distributions = list(initial)
     core = labels = sampled.near(initial)
     found, background = np.zeros(len(initial), dtype=np.int64), np.zeros(0)
-    for turn in range(ROUNDS):
+    for turn in range(3):
         if turn:
             labels = sampled.weighed(distributions, np.maximum(found, 1), background)
         masks = sampled.regions(labels, core, len(initial))
@@ -71,7 +60,7 @@ def learn_colors(
         for marker, start in enumerate(initial):
             chroma, luma = sampled.colors([own[marker] for own in masks])
             own = _near_sample(chroma, luma, start)
-            if np.count_nonzero(own) >= FEWEST_PIXELS:
+            if np.count_nonzero(own) >= 40:
                 distributions[marker] = fit_distribution(chroma[own], luma[own], start)
     return LearnedColors(color_model(distributions, np.maximum(found, 1), background), found, background)
 
@@ -82,10 +71,11 @@ def sample_distribution(sample_srgb: tuple[int, int, int]) -> ColorDistribution:
     saturation = float(np.linalg.norm(chroma))
     radial = chroma / saturation if saturation > 0.0 else np.array([1.0, 0.0])
     tangential = np.array([-radial[1], radial[0]])
-    extent = max(saturation, LEAST_SATURATION)
-    covariance = (SATURATION_DEVIATION * extent) ** 2 * np.outer(radial, radial)
-    covariance += (HUE_DEVIATION * extent) ** 2 * np.outer(tangential, tangential)
-    return ColorDistribution(float(np.log(luma)), LOG_LUMA_DEVIATION, chroma, np.zeros(2), covariance)
+    extent = max(saturation, 0.04)  # a gray has no hue
+    covariance = (0.15 * extent) ** 2 * np.outer(radial, radial)  # saturation is off by 15 %
+    covariance += (0.10 * extent) ** 2 * np.outer(tangential, tangential)  # hue by 6 degrees
+    # Light by a factor of 1.6.
+    return ColorDistribution(float(np.log(luma)), 0.45, chroma, np.zeros(2), covariance)
 
 
 def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> ColorDistribution:
@@ -95,7 +85,7 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
     """
     log_luma = np.log(luma)
     low, middle, high = np.quantile(log_luma, [0.1, 0.5, 0.9])
-    deviation = max(float(high - low) / 2.563, SMALLEST_LOG_LUMA_DEVIATION)
+    deviation = max(float(high - low) / 2.563, 0.3)
     light = log_luma - middle
     center = np.median(chroma, axis=0)
     keep = np.sum((chroma - center) ** 2, axis=1) <= np.quantile(np.sum((chroma - center) ** 2, axis=1), 0.9)
@@ -107,7 +97,7 @@ def fit_distribution(chroma: Array, luma: Array, start: ColorDistribution) -> Co
     covariance = 1.5 * residual.T @ residual / max(len(residual), 1)
     # The frames between the sampled ones show other light, folds and blur; the background limits what this
     # admits.
-    covariance += UNSEEN_SHARE * start.covariance
+    covariance += 0.2 * start.covariance
     fitted = replace(
         start,
         log_luma=float(middle),
@@ -133,7 +123,7 @@ def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolAr
     distance, _ = start.distance(chroma, luma, LEARNING_NOISE_LEVELS)
     if not len(distance):
         return np.zeros(0, dtype=np.bool_)
-    return distance <= np.clip(np.quantile(distance, LEARNED_SHARE), NEAR, FARTHEST)
+    return distance <= np.clip(np.quantile(distance, 0.7), 2.4, FARTHEST)
 
 
 def _allowed(masks: Sequence[CroppedMask], limits: Image | None) -> list[CroppedMask]:

@@ -94,7 +94,6 @@ NOISE_LEVELS = 5.0
 """Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
 OUTLIER_DISTANCE = 16.0
 """Squared distance past which no color is a marker's, even one that the background lacks: 99.9 % of χ²."""
-GROUP_MARGIN = 2.0  # ratio of squared distances between a group's center and its cells, at most
 BACKGROUND = 255  # label of pixels that are no marker's
 
 
@@ -190,7 +189,7 @@ def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]
     chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
     near = np.zeros((side, side, side), dtype=np.bool_)
     for distribution in distributions:
-        near |= (distribution.distance(chroma, luma)[0] < GROUP_MARGIN * OUTLIER_DISTANCE).reshape(near.shape)
+        near |= (distribution.distance(chroma, luma)[0] < 2.0 * OUTLIER_DISTANCE).reshape(near.shape)
     cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
     return np.flatnonzero(cells).astype(np.int32)
 
@@ -226,16 +225,13 @@ def weigh(
 # --- The colors of a clip nearest to a sample, as suggestions where the sample matches nothing
 
 
-HOW_MANY = 3
 APART = 0.08  # least difference in chromaticity of two suggested colors
-LIKE_LOG_LUMA = 0.25  # difference in the logarithm of luma up to which two grays look alike
-SHARE = 2e-5  # least share of the clip's pixels of a color that is no noise
 
 
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
     """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first."""
     count = np.asarray(counts, dtype=np.float64)
-    common = np.flatnonzero(count > max(SHARE * count.sum(), 0.5))
+    common = np.flatnonzero(count > max(2e-5 * count.sum(), 0.5))  # fewer are noise
     colors = cell_colors()[common]
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(colors)
@@ -244,7 +240,7 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
     for index in np.argsort(distance):
         if all(np.linalg.norm(chroma[index] - chroma[other]) >= APART for other in chosen):
             chosen.append(int(index))
-        if len(chosen) == HOW_MANY:
+        if len(chosen) == 3:
             break
     return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colors[chosen])]
 
@@ -256,6 +252,6 @@ def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> floa
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
     like = (np.linalg.norm(chroma - wanted, axis=1) < APART / 2.0) & (
-        np.abs(np.log(luma / wanted_luma)) < LIKE_LOG_LUMA
+        np.abs(np.log(luma / wanted_luma)) < 0.25
     )
     return float(count[present[like]].sum() / max(count.sum(), 1.0))

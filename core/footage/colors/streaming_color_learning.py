@@ -19,11 +19,8 @@ from .color_learning import LearnedColors, learn_colors
 from .color_model import ColorModel, nearest_colors, share_of_color
 
 SAMPLES = 12  # frames of the first learning; up to three times as many are kept later
-MOST_SAMPLES = 48  # frames learned from if a marker is in none of the first ones
 WIDEST_SPACING = 96  # frames between samples at most: light changes in seconds
-FEWEST_LEARNED = 12
 FAR = 10000  # limit of drawn coordinates in px
-COMMON_COLOR = 0.02  # share of the picture from which a color is a wall's or a floor's
 
 
 class StreamingColorLearner:
@@ -61,7 +58,7 @@ class StreamingColorLearner:
 
     def learn(self, images: Sequence[Image]) -> None:
         """Learn from the clip's first images, (rows, columns, 3) on the measuring grid."""
-        for count in (SAMPLES, MOST_SAMPLES):
+        for count in (SAMPLES, 48):
             # Centers of equal intervals: neither the first frame nor the last, which fades and cuts spoil.
             middles = (np.arange(count) + 0.5) * len(images) / count
             indices = sorted({int(middle) for middle in middles})
@@ -111,7 +108,7 @@ class StreamingColorLearner:
 
     @property
     def _missing(self) -> IndexArray:
-        return np.flatnonzero(self._most_found < FEWEST_LEARNED)
+        return np.flatnonzero(self._most_found < 12)  # pixels
 
     def _learn(self) -> None:
         """Learn from the present samples."""
@@ -159,7 +156,7 @@ def _complaint(style: MarkerStyle, counts: Array) -> str:
     """Why a color was not found, by the background's histogram (CELL_COUNT,), as a sentence."""
     color = list(style.color_srgb)
     share = share_of_color(counts, style.color_srgb)
-    if share > COMMON_COLOR:
+    if share > 0.02:  # a wall's or a floor's
         return (
             f"{style.name} has the color {color}, which {100.0 * share:.0f} % of the picture around the "
             "markers have too, so it cannot be told apart; wear a color that the surroundings do not "

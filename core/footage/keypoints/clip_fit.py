@@ -10,11 +10,6 @@ from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
 
-RATE_TOLERANCE = 0.01  # frame rates closer than this share are one: 29.97 and 30
-MOST_OUTSIDE = 0.5  # share of the points outside the picture, above which the detector saw another one
-LARGEST_SHARE = 2.0  # shares of a picture lie about 0 to 1; guesses outside it are the exception
-SMALLEST_EXTENT_PX = 2.5  # everyone's coordinates within so few pixels of the corner are no pixels
-
 
 def held_against_clip(
     detected: DetectedFrames,
@@ -127,7 +122,7 @@ def _aligned(
 
 def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, float] | None:
     """The file's frame rate and the clip's, where they differ."""
-    if fps is None or detected.fps is None or abs(detected.fps - fps) <= RATE_TOLERANCE * fps:
+    if fps is None or detected.fps is None or abs(detected.fps - fps) <= 0.01 * fps:  # 29.97 and 30 are one
         return None
     return detected.fps, fps
 
@@ -135,7 +130,8 @@ def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, flo
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
     known = place[np.isfinite(place)]
-    if detected.shares and (not len(known) or np.median(np.abs(known)) <= LARGEST_SHARE):
+    # Guesses outside 0 to 1 are the exception.
+    if detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0):
         return np.array(size, dtype=np.float64), ()
     if detected.size in (None, size):
         return np.ones(2), ()
@@ -164,12 +160,12 @@ def _check_places(
     if not seen.any():
         raise InputError(f"{detected.where}: no point has a score above 0; it must show a person")
     reach = float(np.abs(place[seen]).max())
-    if reach <= SMALLEST_EXTENT_PX < min(size) / 2:
+    if reach <= 2.5 < min(size) / 2:
         raise InputError(
             f"{detected.where}: all coordinates lie within {reach:.3g} of 0, as shares of a picture do; they "
             "must be pixels of the clip (OpenPose writes them with --keypoint_scale 0)"
         )
-    if (seen & ~inside).sum() > MOST_OUTSIDE * seen.sum():
+    if (seen & ~inside).sum() > 0.5 * seen.sum():
         x, y = np.median(place[seen], axis=0)
         raise InputError(
             f"{detected.where}: most points lie outside the clip's picture, around ({x:.0f}, {y:.0f}); "

@@ -17,8 +17,6 @@ from .detector_formats import BODY, instance_people, is_instances, is_openpose_f
 from .layouts import Layout, with_hands
 
 MOST_FRAMES = 10**6
-FEW_FRAMES, FEW_SHARE = 2, 0.01
-"""Decoders disagree by so many frames at a clip's end, or by this share of them; more is another clip."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ class Alignment:
 
 def tolerance(frame_count: int) -> int:
     """By how many frames a result may be longer or shorter than the clip."""
-    return max(FEW_FRAMES, round(FEW_SHARE * frame_count))
+    return max(2, round(0.01 * frame_count))
 
 
 def align_listed(count: int, frame_count: int | None, where: str, why: str = "") -> Alignment:

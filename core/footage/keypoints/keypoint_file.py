@@ -39,7 +39,7 @@ from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
 LONGEST_DETECTOR = 200  # characters
-PIXEL_DIGITS, SCORE_DIGITS, HINT_DIGITS = 3, 4, 4
+SCORE_DIGITS = 4
 """Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
 
 
@@ -195,7 +195,7 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
     seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
     # A score that is rounded to 0 would say that the point is not seen.
     score = np.where(seen, np.maximum(np.round(frame.score, SCORE_DIGITS), 10.0**-SCORE_DIGITS), 0.0)
-    pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), PIXEL_DIGITS)
+    pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
     rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
     hints = [_written_hints(hint) for hint in frame.hint_m]
     if all(hint is None for hint in hints):
@@ -206,7 +206,7 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
 def _written_hints(hint: Array) -> Sequence[Any] | None:
     if not np.isfinite(hint).any():
         return None
-    rounded = np.round(hint, HINT_DIGITS)
+    rounded = np.round(hint, 4)  # a tenth of a millimeter
     return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
 
 
@@ -216,7 +216,6 @@ def _written_hints(hint: Array) -> Sequence[Any] | None:
 __all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
 
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth
-LONGEST_SOURCE = 200
 FORMATS = (
     "Keymark's own file (with layout and frames), a folder of OpenPose's files, or a result file of MMPose, "
     "COCO or MediaPipe"
@@ -246,7 +245,7 @@ def read_keypoints(
 
 
 def _read(path: Path) -> DetectedFrames:
-    source = "".join("?" if is_control_character(char) else char for char in path.name)[:LONGEST_SOURCE]
+    source = "".join("?" if is_control_character(char) else char for char in path.name)[:200]
     if path.is_dir():
         return read_frame_folder(path)
     value = read_json_value(path, LARGEST_BYTES)

@@ -42,10 +42,6 @@ def mirror_images(names: Sequence[str], sources: Sequence[str]) -> list[int]:
 # --- Detectors' scores as confidences from 0 to 1, whatever they are
 
 
-HIGH_SHARE = 0.95
-"""Share of all scores that lie below the one that counts as certain: a few outliers set no scale."""
-
-
 def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     """Scores (S,) of all placed points as confidences, and a sentence where they had to be changed.
 
@@ -64,7 +60,7 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     if low < 0.0:
         note = f"{where}: its scores, {low:.3g} to {high:.3g}, were taken for logits and made confidences"
         return 1.0 / (1.0 + np.exp(-np.clip(scores, -50.0, 50.0))), (note,)
-    certain = max(1.0, float(np.quantile(known, HIGH_SHARE)))
+    certain = max(1.0, float(np.quantile(known, 0.95)))  # a few outliers set no scale
     note = f"{where}: its scores reach {high:.3g}; {certain:.3g} and more count as certain"
     return np.minimum(scores / certain, 1.0), (note,)
 

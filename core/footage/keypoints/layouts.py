@@ -18,8 +18,6 @@ from .keypoints import BODY_POINTS
 
 OWN = "own"  # name of a layout whose file lists the names itself
 HAND_POINTS = 21
-INDEX_KNUCKLE, THUMB_KNUCKLE, PINKY_KNUCKLE = 5, 2, 17
-"""In the points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ def _layout(
 
 def _hands(left: int, right: int) -> dict[int, str]:
     """Knuckles of the two hands, whose 21 points begin at these numbers."""
-    knuckles = {"index": INDEX_KNUCKLE, "thumb": THUMB_KNUCKLE, "pinky": PINKY_KNUCKLE}
+    knuckles = {"index": 5, "thumb": 2, "pinky": 17}
     return {
         first + knuckle: f"{finger}.{side}"
         for side, first in zip(SIDES, (left, right), strict=True)
@@ -155,11 +153,8 @@ SYNONYMS = {
 WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 """Words of a name, whatever separates them, as in `LeftWrist`, `left_wrist` and `wrist.L`; no numbers."""
 
-MOST_NAMES = 4096
-"""Names that are remembered: panels ask for those of all tracks of a clip whenever they are drawn."""
 
-
-@lru_cache(maxsize=MOST_NAMES)
+@lru_cache(maxsize=4096)  # panels ask for all tracks of a clip whenever they are drawn
 def named_point(name: str) -> str | None:
     """Body point that a track is named after, as `wrist.L`, `Left Wrist` or `l_wrist.001`; None if none."""
     words = [word.lower() for word in WORDS.findall(name)]

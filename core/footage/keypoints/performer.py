@@ -17,19 +17,8 @@ from .keypoints import Keypoints
 
 NOBODY = -1
 MOST_CANDIDATES = 8  # people a frame that are looked at: those nearest to the expected place, or the largest
-STEP_BACK_S = 1.0  # time over which a sighting foretells another; after it a person may be anywhere
-FARTHEST_COST = 8.0  # of a point: four standard deviations
 ABSENT_COST = 4.5  # of taking nobody where the performer is expected: three standard deviations
-UNKNOWN_ABSENT_COST = 1.0
-"""The same where nobody says where the performer is; somebody who is there longer is preferred."""
-PREFERENCE = 0.25  # where nothing is expected in the whole clip: of being small, and of scores near 0
-TIE = 0.01  # the same where it is expected in other frames
 JUMP_COST = 12.0  # of a step to anywhere: five standard deviations
-NOISE, ACCELERATION_PER_S2 = 0.02, 3.0
-"""Of a person's place, as shares of its size: a detector's error, and half of what gravity does to a body."""
-UNKNOWN_SPEED_PER_S = 2.0  # of somebody seen for the first time, in sizes a second: a run
-SHAPE_NOISE, SHAPE_PER_S, MOST_SHAPE = 0.05, 1.2, 0.4
-"""Of the points about their middle: a detector's error, limbs at 2 m/s, any two postures."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +43,7 @@ def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> 
     frames = len(seen.pixel)
     costs, absent = _costs(seen, expected)
     before = np.concatenate([[0.0], np.cumsum(absent)])  # of all frames before each
-    window = max(1, round(STEP_BACK_S * fps))
+    window = max(1, round(1.0 * fps))  # seconds; after them a person may be anywhere
     kept: list[_Reached] = []
     best_far = (
         np.inf
@@ -138,9 +127,9 @@ def _step_cost(pixel: Array, velocity: Array, time_s: Array, now: Array) -> tupl
     size = np.maximum(person_size(now)[:, None], person_size(pixel)[None])
     known = np.isfinite(velocity).all(axis=-1)
     ahead = np.where(known[:, None], np.nan_to_num(velocity), 0.0) * time_s[:, None]
-    spread = NOISE + ACCELERATION_PER_S2 * time_s**2 + np.where(known, 0.0, UNKNOWN_SPEED_PER_S * time_s)
+    spread = 0.02 + 3.0 * time_s**2 + np.where(known, 0.0, 2.0 * time_s)
     shift2 = ((moved - ahead) ** 2).sum(axis=-1) / (size * spread) ** 2
-    shape = np.minimum(SHAPE_NOISE + SHAPE_PER_S * time_s, MOST_SHAPE)
+    shape = np.minimum(0.05 + 1.2 * time_s, 0.4)
     cost = 0.5 * (shift2 + shape2 / (size * shape) ** 2)
     return np.where(shared.any(axis=-1), np.minimum(cost, JUMP_COST), JUMP_COST), moved
 
@@ -158,11 +147,11 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
     """Cost of each person of each frame, infinite for those not looked at, and of taking nobody (F,)."""
     sizes = [person_size(pixel) for pixel in seen.pixel]
     largest = max((float(size.max()) for size in sizes if len(size)), default=1.0)
-    preference = PREFERENCE if expected is None else TIE
+    preference = 0.25 if expected is None else 0.01
     costs, absent = [], np.zeros(len(seen.pixel))
     for frame, (pixel, score) in enumerate(zip(seen.pixel, seen.score, strict=True)):
         cost = preference * (2.0 - sizes[frame] / largest - _mean_score(pixel, score))
-        absent[frame] = UNKNOWN_ABSENT_COST if len(pixel) else 0.0
+        absent[frame] = 1.0 if len(pixel) else 0.0  # nobody says where the performer is
         if expected is not None and len(pixel):
             known = np.isfinite(expected.pixel[frame]).all(axis=-1)
             if known.any():
@@ -185,7 +174,7 @@ def _distance_cost(pixel: Array, score: Array, expected: Expected, frame: int, k
     """(H,) mean over the points of half the squared distance, each limited, weighted by the scores."""
     weight = np.where(np.isfinite(pixel).all(axis=-1) & known, score, 0.0)
     distance2 = ((pixel - expected.pixel[frame]) ** 2).sum(axis=-1) / expected.std_px[frame] ** 2
-    cost = np.minimum(0.5 * np.where(weight > 0.0, distance2, 0.0), FARTHEST_COST)
+    cost = np.minimum(0.5 * np.where(weight > 0.0, distance2, 0.0), 8.0)  # four deviations
     total = weight.sum(axis=1)
     # Somebody of whom no expected point is seen is as good as nobody.
     return np.where(total > 0.0, (weight * cost).sum(axis=1) / np.where(total > 0.0, total, 1.0), ABSENT_COST)
@@ -204,10 +193,6 @@ def _path(kept: list[_Reached], last: tuple[int, int], frames: int) -> IndexArra
 
 
 HEAD, EARS, NOSE = "head", ("ear.L", "ear.R"), "nose"
-NOSE_SHARE = 0.3  # confidence in the head's center where only the nose shows it, a decimeter in front of it
-ALIKE_SHARE = 0.1
-"""Distance of two sources' points, relative to the performer's size in the picture, within which both are
-believed."""
 
 
 def principal_keypoints(keypoints: Keypoints) -> Keypoints:
@@ -219,7 +204,8 @@ def principal_keypoints(keypoints: Keypoints) -> Keypoints:
     found = [_agreed(keypoints, name, size) for name in HUMAN.point_names]
     head = HUMAN.point_names.index(HEAD)
     found[head] = found[head].or_else(_middle(*(_agreed(keypoints, name, size) for name in EARS)))
-    found[head] = found[head].or_else(_agreed(keypoints, NOSE, size).doubted(NOSE_SHARE))
+    # A decimeter in front of it.
+    found[head] = found[head].or_else(_agreed(keypoints, NOSE, size).doubted(0.3))
     return Keypoints(
         HUMAN.point_names,
         ("",) * len(found),
@@ -281,7 +267,7 @@ def _agreed(keypoints: Keypoints, name: str, size_px: Array) -> _Point:
     score = np.where(keypoints.seen[:, own], keypoints.score[:, own], -1.0)
     best = (np.arange(len(score)), score.argmax(axis=1))
     apart = np.linalg.norm(pixel - pixel[best][:, None], axis=-1)  # NaN where not seen
-    weight = np.where(apart <= ALIKE_SHARE * size_px[:, None], np.maximum(score, 1e-6), 0.0)
+    weight = np.where(apart <= 0.1 * size_px[:, None], np.maximum(score, 1e-6), 0.0)
     hinted = weight * np.isfinite(hint).all(axis=-1)
     return _Point(_mean(pixel, weight), np.maximum(score[best], 0.0), _mean(hint, hinted))
 

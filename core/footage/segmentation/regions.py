@@ -15,8 +15,6 @@ from .moments import MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
 from .search_windows import MARGIN, Atlas, Box, Window, boxes_to_measure, colored_boxes, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
-MOST_REGIONS = 8  # most regions kept of each color in a frame, the largest ones; bounds the memory of a clip
-SURE = 230  # probability (in 1/255) that some pixels of a region must reach; blends of other colors do not
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
@@ -131,7 +129,7 @@ def _components(atlas: Atlas, model: ColorModel) -> _Components:
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
     region, sureness = number.take(pixel), probability.take(pixel)
-    sure = np.bincount(region[sureness >= SURE], minlength=count)
+    sure = np.bincount(region[sureness >= 230], minlength=count)  # blends of other colors have less
     good = (stats[:, cv2.CC_STAT_AREA] >= FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
     kept = np.flatnonzero(good)
@@ -179,7 +177,7 @@ def _measure(
     image, color = atlas.image[first], atlas.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= FEWEST_PIXELS]
-    order = order[_rank(256 * image[order] + color[order]) < MOST_REGIONS]
+    order = order[_rank(256 * image[order] + color[order]) < 8]  # bounds the memory of a clip
     every = Regions(color[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
     return [every.part(a, b) for a, b in itertools.pairwise(start)]

@@ -17,11 +17,9 @@ from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
 from ..colors.color_model import BLUE_SCALE, LUMA_BGR, RED_SCALE
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 
-LUMA_WEIGHT = 1.0 / 3.0
-"""Luma varies within a surface and in shadows by its light, three times as much as chroma."""
 CONTRAST = np.array(
     [
-        LUMA_WEIGHT * LUMA_BGR,
+        (1.0 / 3.0) * LUMA_BGR,
         BLUE_SCALE * (np.array([1.0, 0.0, 0.0]) - LUMA_BGR),
         RED_SCALE * (np.array([0.0, 0.0, 1.0]) - LUMA_BGR),
     ]
@@ -29,21 +27,11 @@ CONTRAST = np.array(
 """Turns blue, green, red into luma and chroma of like noise."""
 DARKEST, BRIGHTEST = 0.5, 1.15
 """Range of the light on the background, relative to its usual light: shadows are no surface."""
-UNCHANGED = 5.0  # difference of levels up to which no pixel can be odd: a fast bound
 ODD = 6.0
 """Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
-BESIDE = 3.0
-NEIGHBORS = np.ones((7, 7), dtype=np.uint8)
-"""Where another surface is seen beside a pixel: within blurred edges and halved chroma."""
-RIM = np.ones((9, 9), dtype=np.uint8)
-"""How far a region's rim reaches, where its color fits no worse than others: near it that is its blur."""
 SMALLEST_DEVIATION = 3.0  # of a color, in levels: compression and the smoothing of what lies beside it
 MOST_GAIN = 12.0  # largest gain of a pixel: models of color are wrong once in so many (e^12)
 LEAST_GAIN = 2.0
-LEAST_SHARE = 0.05
-ALIKE_PIXELS = 9.0  # pixels that err together: those of halved chroma, smoothed over one pixel to each side
-SMOOTHING_VARIANCE = 0.5
-"""Of a region's coordinates by that smoothing, a binomial one over three pixels [px²]."""
 
 
 class Surface(NamedTuple):
@@ -111,7 +99,7 @@ class Palette:
         It may lie before the background, and before another surface where that one is seen beside it.
         Background colors are NaN where unknown, which tells nothing.
         """
-        differs = np.abs(picture - background) > UNCHANGED
+        differs = np.abs(picture - background) > 5.0  # levels: a fast bound
         odd = differs[..., 0] | differs[..., 1] | differs[..., 2]
         seen, usual = contrast(picture[odd]), contrast(background[odd])
         spread = np.maximum(deviation[odd].astype(np.float64), SMALLEST_DEVIATION)
@@ -133,7 +121,7 @@ class Palette:
         if self.others:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))
             own, cost = np.where(cost_over < cost, over, own), np.minimum(cost_over, cost)
-        left = np.flatnonzero((own > LEAST_SHARE) & (without - cost > -2.0 * LEAST_GAIN))
+        left = np.flatnonzero((own > 0.05) & (without - cost > -2.0 * LEAST_GAIN))
         without = np.minimum(without[left], self._without(seen[left], behind[left], noise[left]))
         share, gain = np.zeros(odd.shape), np.zeros(odd.shape)
         share.ravel()[where[left]] = own[left]
@@ -147,12 +135,13 @@ class Palette:
 
     def _beside(self, away: Array, odd: BoolArray, where: IndexArray) -> BoolArray:
         """(N, K) whether other surfaces are seen beside pixels `where` (N,) of a window."""
-        near = away < (BESIDE * self._deviations) ** 2
+        near = away < (3.0 * self._deviations) ** 2
         beside = np.zeros((len(where), len(self.others)), dtype=np.bool_)
         mask = np.zeros(odd.shape, dtype=np.uint8)
         for other in np.flatnonzero(near.any(axis=0)).tolist():
             mask[odd] = near[:, other]
-            beside[:, other] = cv2.dilate(mask, NEIGHBORS).ravel()[where]
+            # Blurred edges and halved chroma.
+            beside[:, other] = cv2.dilate(mask, np.ones((7, 7), dtype=np.uint8)).ravel()[where]
         return beside
 
     def _before_others(self, seen: Array, beside: BoolArray) -> tuple[Array, Array]:
@@ -227,7 +216,12 @@ def _dot(one: Array, other: Array) -> Array:
 def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     """Connected regions in which a surface shows, of a window with its left and top at `origin`."""
     core = (seen.gain > LEAST_GAIN).astype(np.uint8)
-    shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & (cv2.dilate(core, RIM) > 0)
+    # Near it that is its blur.
+    shown = (
+        (seen.gain > -LEAST_GAIN)
+        & (seen.share > 0.0)
+        & (cv2.dilate(core, np.ones((9, 9), dtype=np.uint8)) > 0)
+    )
     count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
@@ -236,8 +230,9 @@ def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     terms = (weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y, gain)
     sums = np.array([np.bincount(owner, term, minlength=count - 1) for term in terms], dtype=np.float64)
     moments = sums[:6].T.copy()
-    moments[:, [3, 5]] += (PIXEL_VARIANCE - SMOOTHING_VARIANCE) * moments[:, :1]
+    moments[:, [3, 5]] += (PIXEL_VARIANCE - 0.5) * moments[:, :1]  # a binomial one over three pixels [px²]
     peak = np.zeros(count - 1)
     np.maximum.at(peak, owner, weight)
     sure = np.bincount(owner, weight * np.maximum(gain, 0.0), minlength=count - 1)
-    return Traces(moments, sums[6] / ALIKE_PIXELS, peak, sure / (MOST_GAIN * sums[0]))
+    # Pixels of halved chroma, smoothed, err together.
+    return Traces(moments, sums[6] / 9.0, peak, sure / (MOST_GAIN * sums[0]))
