@@ -128,12 +128,10 @@ def histogram_cells(pixels: Image, bits: int) -> IndexArray:
 
 
 def _cells(pixels: Image) -> IndexArray:
-    """Histogram cell of pixels (..., 3), coarser than the cells of the markers' color model."""
     return histogram_cells(pixels, BITS)
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:
-    """Whether all neighbors of a pixel have its label."""
     kernel = np.ones((3, 3), dtype=np.uint8)
     shifted = (label + 1).astype(np.uint8)
     return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))

@@ -205,9 +205,6 @@ def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker
     return relative
 
 
-# --- Joining the fragments of a marker's region, and the quality of the result
-
-
 class MarkerRegion(NamedTuple):
     """A marker's joined region in each of F frames."""
 

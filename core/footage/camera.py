@@ -33,7 +33,6 @@ class Camera:
     distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y²."""
 
     def __post_init__(self) -> None:
-        """Keep a read-only copy of the pose."""
         matrix = np.array(self.matrix_world, dtype=np.float64)
         if matrix.ndim not in (2, 3) or matrix.shape[-2:] != (4, 4):
             raise ValueError(f"matrix_world must have shape (4, 4) or (F, 4, 4), not {matrix.shape}")
@@ -208,9 +207,6 @@ class Camera:
             found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
             scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)
         return np.asarray(distorted * np.where(found, scale, np.nan)[..., None])
-
-
-# --- The default camera of new footage
 
 
 FULL_FRAME_MM = 36.0  # long side of the full-frame sensor that focal lengths are compared on [mm]

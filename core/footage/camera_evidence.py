@@ -92,7 +92,6 @@ class Uprights:
         )
 
     def __len__(self) -> int:
-        """How many there are."""
         return len(self.lower_px)
 
     def __add__(self, other: "Uprights") -> "Uprights":
@@ -127,9 +126,6 @@ class CameraEvidence:
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
     across: Array = field(default_factory=no_lines)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
-
-
-# --- The floor as a grid of meters in the picture, by which people judge a camera
 
 
 REACH_M = 8  # lines lie so far to each side of the floor's part that is looked at

@@ -81,9 +81,6 @@ def heading_rad(matrix_world: ArrayLike) -> float:
     return atan2(-float(ahead[0]), float(ahead[1]))
 
 
-# --- Validation of a camera's fields in a take
-
-
 MOST_SHIFT = 100.0  # largest shift [image widths]
 LARGEST_SIDE_PX = 2**16
 MOST_DISTORTION = 100.0  # largest coefficient; those of real lenses are below 1

@@ -162,7 +162,6 @@ class _Problem:
         return replace(self.camera, lens_mm=lens, matrix_world=self.placement_of(x).matrix())
 
     def residuals(self, x: Array) -> _Residuals:
-        """All residuals at x."""
         camera = self.camera_of(x)
         parts = [_line_residuals(camera, self.evidence.vertical, np.array([0.0, 0.0, 1.0]))]
         if self.has_level_lines:
@@ -234,7 +233,6 @@ class _Problem:
         return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, 4.0, 1)))
 
     def _rows(self, x: Array) -> Array:
-        """Residuals of picture and beliefs."""
         return np.concatenate([self._robust(self.residuals(x).scaled), x / self.believed_std])
 
     def _upright_residuals(self, camera: Camera, longer: float, lean_rad: float) -> tuple[Array, Array]:

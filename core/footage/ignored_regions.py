@@ -108,9 +108,6 @@ def _draw_between(mask: Image, one: Array, other: Array, radius: float) -> None:
         cv2.fillConvexPoly(mask, corners, (float(IGNORED),), shift=SUBPIXEL_BITS)
 
 
-# --- Ignored regions as the field `ignored_regions` of `take.json`
-
-
 IGNORED_REGIONS = "ignored_regions"
 MOST_REGIONS = 200
 MOST_POINTS = 1000  # points of one stroke

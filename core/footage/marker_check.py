@@ -71,9 +71,6 @@ def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
     return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
 
 
-# --- Marker check
-
-
 @dataclass(frozen=True)
 class MarkerReadout:
     """Result of the check for one marker, from N sampled frames."""

@@ -163,7 +163,6 @@ def _tracks(
 
 
 def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], placed: bool) -> tuple[str, ...]:
-    """Sentences on markers that look alike."""
     how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
     return tuple(
         (
@@ -173,9 +172,6 @@ def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], place
         for group in groups
         if len(group) > 1
     )
-
-
-# --- The markers' regions in a single frame, without a pass over the clip
 
 
 def regions_of_frame(

@@ -66,7 +66,6 @@ class PoseNetwork:
     """The network with its weights."""
 
     def __init__(self, model: Path = MODEL) -> None:
-        """Load the weights; missing or damaged ones are refused."""
         again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
         try:
             weights = model.read_bytes()
@@ -80,7 +79,6 @@ class PoseNetwork:
         self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
-        """Look at a crop of a picture (height, width, 3), blue first."""
         return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:

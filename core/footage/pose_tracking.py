@@ -187,7 +187,6 @@ def _grid(picture: Image, side: float) -> Iterator[Crop]:
 
 
 def _is_inside(pose: Pose, picture: Image) -> bool:
-    """Whether the middle of a person is in the picture."""
     return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
 
 

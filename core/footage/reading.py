@@ -34,9 +34,6 @@ class Reading:
     frame_findings: FrameFindings = NO_FINDINGS  # blank frames, cuts and interlacing
 
 
-# --- A reading as named arrays of numbers and text, and back
-
-
 Arrays = dict[str, NDArray[Any]]
 
 TRACKED = ("centroid", "second_moment", "area", "quality", "clipped", "time_s")
@@ -118,9 +115,6 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
     return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
 
 
-# --- Cache key of a reading
-
-
 FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
 PREFIX = "reading"
 
@@ -164,9 +158,6 @@ def _footage(path: Path, fps: float) -> tuple[object, ...]:
     names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
     step = max(1, len(images) // 24)  # evenly spread
     return fps, names, tuple(file_fingerprint(file) for file in images[::step])
-
-
-# --- One pass over a clip for all later steps, or none where a cached reading is still valid
 
 
 def read_clip(
@@ -216,15 +207,11 @@ def read_clip(
 
 
 def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
-    """Decode a clip in which no marker is followed, for its checks, pictures and times."""
     time_s: list[float] = []
     for _, stamp, _ in clip.frames():
         time_s.append(stamp)
         yield min(len(time_s) / clip.frame_count, 1.0)
     return RegionTracks.unmarked(np.array(time_s), clip.size)
-
-
-# --- Times of a clip's frames
 
 
 MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand

@@ -43,9 +43,6 @@ def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> floa
     return squared + light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)
 
 
-# --- Tracks of the markers' image regions, and the regions expected beforehand
-
-
 @dataclass(frozen=True, eq=False)
 class RegionTracks:
     """The markers' image regions over a clip of F frames and M markers; NaN where a marker is hidden."""
@@ -62,7 +59,6 @@ class RegionTracks:
     notes: tuple[str, ...] = ()  # sentences on possible faults of the tracks
 
     def __post_init__(self) -> None:
-        """Check the shapes and keep own, read-only copies."""
         frames, markers = len(self.time_s), len(self.names)
         tails: dict[str, tuple[int, ...]] = {
             "centroid": (frames, markers, 2),
@@ -130,7 +126,6 @@ class ExpectedRegions:
     radius: Array  # (F, M) px, a generous bound of the centroid's distance from the center
 
     def __post_init__(self) -> None:
-        """Check the shapes and keep own, read-only copies."""
         center = np.array(self.center, dtype=np.float64)
         radius = np.array(self.radius, dtype=np.float64)
         if center.ndim != 3 or center.shape[-1] != 2 or radius.shape != center.shape[:2]:
@@ -140,9 +135,6 @@ class ExpectedRegions:
         for name, array in (("center", center), ("radius", radius)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-
-
-# --- Detections
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,6 @@ def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:
 
 
 def _apart(usable: BoolArray, fps: float) -> IndexArray:
-    """Indices of usable frames, as many as differ from each other."""
     step = max(1, round(0.3 * fps))  # seconds, half a step
     chosen: list[int] = []
     for index in np.flatnonzero(usable):

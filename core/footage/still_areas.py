@@ -80,9 +80,6 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     ]
 
 
-# --- Still areas
-
-
 NEARLY_ALWAYS = 0.9
 """Share of the sampled frames in which a still pixel has the color; in others a passing limb may hide it."""
 MARGIN = 2  # pixels of the measuring grid around a still area that lens and encoding blend its color into

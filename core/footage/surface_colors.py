@@ -118,9 +118,6 @@ def usual_background(appearance: Appearance) -> SingleArray:
     return np.where(known, appearance.color, np.nan).astype(np.float32)
 
 
-# --- Colors along limbs
-
-
 BANDS = 6  # bands of a part's length
 BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
 LEVELS_BAND_COLORS = 1 << BITS

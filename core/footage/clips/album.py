@@ -63,7 +63,6 @@ class Album:
         return cls(int(arrays["factor"]), kept)
 
     def __contains__(self, index: int) -> bool:
-        """Whether there is a picture of a frame."""
         return index in self._pictures
 
     def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
@@ -97,9 +96,6 @@ class Album:
         return image
 
 
-# --- A clip whose frames are checked and kept in an album while they are read, to decode it only once
-
-
 @dataclass(eq=False)
 class _WatchedSource:
     """A source of frames that passes every frame to checks and album before yielding it."""
@@ -112,22 +108,18 @@ class _WatchedSource:
     album: Album | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Yield every frame after checking it; blank ones are not kept in the album."""
         for index, time_s, image in self.source.frames():
             if self.checks.add(index, image) and self.album is not None:
                 self.album.add(index, image)
             yield index, time_s, image
 
     def time_stamps(self) -> Iterator[float]:
-        """Yield the time of every frame."""
         return self.source.time_stamps()
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        """Yield the frames of ascending indices."""
         return self.source.at(indices)
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield the frames from about `first` on."""
         return self.source.onward(first)
 
 
@@ -135,9 +127,6 @@ def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
     """The clip with checks, and an album to fill, that run while its frames are read in order."""
     source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
     return Clip(clip.path, source)
-
-
-# --- How much a clip's pictures change from frame to frame
 
 
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's

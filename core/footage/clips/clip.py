@@ -122,9 +122,6 @@ class Clip:
         return self.source.at(sorted({int(index) for index in middles}))
 
 
-# --- Frame reader for playback
-
-
 Stamped = tuple[float, Image]
 
 EARLY = 0.1  # share of a frame's interval by which its time stamp may be rounded up
@@ -137,7 +134,6 @@ class FrameReader:
     """
 
     def __init__(self, clip: Clip) -> None:
-        """Take a clip; nothing is decoded yet."""
         self._clip = clip
         self._onward: Iterator[Stamped] = iter(())
         self._shown: Stamped | None = None
@@ -166,12 +162,8 @@ class FrameReader:
         return self._shown[1]
 
     def _begin(self, first: int) -> None:
-        """Restart the decoder at about frame `first`."""
         self._onward = self._clip.source.onward(first)
         self._shown, self._coming = next(self._onward, None), next(self._onward, None)
-
-
-# --- Clip samples
 
 
 SAMPLED_FRAMES = 24
@@ -206,9 +198,6 @@ def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, Non
     if not images:
         raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
     return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))
-
-
-# --- Sampling spread frames on a budget
 
 
 MOST_DECODED_PX = 90_000_000  # budget of decoded pixels: about half a second of a processor, at any size

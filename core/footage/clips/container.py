@@ -46,9 +46,6 @@ def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
         coded[-ROWS:] = coded[-ROWS - 1]
 
 
-# --- Magic numbers of video containers
-
-
 VALID = "a video that OpenCV can read"
 
 BOXES = (
@@ -127,9 +124,6 @@ def _is_text(data: bytes) -> bool:
         if error.start < len(data) - 4:  # not merely cut within a character
             return False
     return all(letter.isprintable() or letter.isspace() for letter in text)
-
-
-# --- Packets of a video file, undecoded
 
 
 MOST_PACKETS = 20_000  # packets read of a longer file: ten minutes tell whether the frame rate varies

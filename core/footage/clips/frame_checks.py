@@ -36,9 +36,6 @@ def _teeth(levels: NDArray[np.int16]) -> float:
     return float(np.mean(rising | falling))
 
 
-# --- Notes on a video file's header
-
-
 HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
@@ -107,9 +104,6 @@ def _movie_box(path: Path) -> bytes:
     return b""
 
 
-# --- Frame checks while a clip is read
-
-
 COMBED, COMBED_MORE = 5e-4, 10.0
 """Combed share of an interlaced picture by rows, and its ratio to that by columns. Sixteen progressive clips
 stay below 1.2e-4 and a ratio of three; three interlaced ones have 1e-2 and more."""
@@ -154,7 +148,6 @@ class FrameChecks:
     """Checks every frame once, in order."""
 
     def __init__(self) -> None:
-        """Begin without frames."""
         self._frames = 0
         self._blank: list[int] = []
         self._color = 0

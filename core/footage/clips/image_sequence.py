@@ -81,9 +81,6 @@ def _is_whole(data: bytes) -> bool:
     return False
 
 
-# --- Frames of a numbered image sequence
-
-
 MOST_IMAGES = 10**6  # images of one folder at most; eleven hours of film
 EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 PATTERN = re.compile(r"(#+|%0?\d*d)")
@@ -103,11 +100,6 @@ class ImageSequence:
     notes: tuple[str, ...]  # sentences on missing images
 
     def __init__(self, paths: Sequence[Path], fps: float) -> None:
-        """Take the files in order and read the first.
-
-        Raises:
-            InputError: The first image cannot be read, or the rate is not above 0.
-        """
         if not (np.isfinite(fps) and fps > 0.0):
             raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
         self.paths, self.notes = _placed(paths)

@@ -33,11 +33,6 @@ class VideoFile:
     notes: tuple[str, ...]  # sentences on faults of the file
 
     def __init__(self, path: Path) -> None:
-        """Open the file and decode its first frame.
-
-        Raises:
-            InputError: It is empty, not a video, too large, or broken before the first frame.
-        """
         self.path = path
         check_container(path)
         with self._capture() as capture:
@@ -206,7 +201,6 @@ def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
 
 
 def _codec(capture: cv2.VideoCapture) -> str:
-    """Name of the codec, such as h264."""
     code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
     return name if name.isalnum() and name.isascii() else "unknown"

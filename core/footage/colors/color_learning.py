@@ -127,7 +127,6 @@ def _near_sample(chroma: Array, luma: Array, start: ColorDistribution) -> BoolAr
 
 
 def _allowed(masks: Sequence[CroppedMask], limits: Image | None) -> list[CroppedMask]:
-    """Masks, one a marker, limited to the pixels where the marker may be."""
     if limits is None:
         return list(masks)
     return [mask.within(limit) for mask, limit in zip(masks, limits, strict=True)]

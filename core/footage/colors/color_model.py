@@ -85,9 +85,6 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
     return chroma, offset_luma
 
 
-# --- The color model
-
-
 ColorArray = Array | SingleArray
 
 NOISE_LEVELS = 5.0
@@ -220,9 +217,6 @@ def weigh(
     with np.errstate(over="ignore", invalid="ignore"):
         unknown = best * np.exp(0.5 * (distance - OUTLIER_DISTANCE))
         return label, np.nan_to_num(best / (total + unknown))
-
-
-# --- The colors of a clip nearest to a sample, as suggestions where the sample matches nothing
 
 
 APART = 0.08  # least difference in chromaticity of two suggested colors

@@ -111,7 +111,6 @@ class StreamingColorLearner:
         return np.flatnonzero(self._most_found < 12)  # pixels
 
     def _learn(self) -> None:
-        """Learn from the present samples."""
         samples = [_mean_color([self._styles[marker] for marker in group]) for group in self.groups]
         allowed = None
         if self._expected is not None:

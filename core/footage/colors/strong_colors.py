@@ -86,11 +86,7 @@ def _densest(chroma: Array, weight: Array) -> Array:
 
 
 def _median(colors: Array, weight: Array) -> list[int]:
-    """The weighted median of each channel, three whole numbers."""
     return [round(weighted_median(channel, weight)) for channel in colors.T]
-
-
-# --- Confusion matrix of the learned colors
 
 
 def color_confusion(model: ColorModel) -> Array:

@@ -121,7 +121,6 @@ def _aligned(
 
 
 def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, float] | None:
-    """The file's frame rate and the clip's, where they differ."""
     if fps is None or detected.fps is None or abs(detected.fps - fps) <= 0.01 * fps:  # 29.97 and 30 are one
         return None
     return detected.fps, fps

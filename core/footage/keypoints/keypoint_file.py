@@ -210,9 +210,6 @@ def _written_hints(hint: Array) -> Sequence[Any] | None:
     return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
 
 
-# --- Files of keypoints
-
-
 __all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
 
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth

@@ -39,9 +39,6 @@ def mirror_images(names: Sequence[str], sources: Sequence[str]) -> list[int]:
     ]
 
 
-# --- Detectors' scores as confidences from 0 to 1, whatever they are
-
-
 def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     """Scores (S,) of all placed points as confidences, and a sentence where they had to be changed.
 
@@ -65,9 +62,6 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     return np.minimum(scores / certain, 1.0), (note,)
 
 
-# --- Keypoints of the performer
-
-
 @dataclass(frozen=True, eq=False)
 class Keypoints:
     """N keypoints of one person in F frames; NaN where one is not seen."""
@@ -83,7 +77,6 @@ class Keypoints:
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
 
     def __post_init__(self) -> None:
-        """Check names and shapes and keep own, read-only copies."""
         unknown = set(self.names) - set(BODY_POINTS)
         if unknown:
             raise ValueError(f"unknown body points {sorted(unknown)}")
@@ -141,9 +134,6 @@ class Keypoints:
     def without_hints(self) -> "Keypoints":
         """The same keypoints without the guess of the points in space."""
         return replace(self, hint_m=np.full(self.hint_m.shape, np.nan))
-
-
-# --- People
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,7 +40,6 @@ class Layout:
 
 
 def _both(*parts: str) -> list[str]:
-    """Left and right of each part, one after the other."""
     return [f"{part}.{side}" for part in parts for side in SIDES]
 
 
@@ -125,9 +124,6 @@ def with_hands(layout: Layout) -> Layout:
 def layout_words() -> str:
     """The layouts with their numbers of points, for sentences."""
     return ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())
-
-
-# --- Which body point a track is meant to follow, by the name that a person gave it
 
 
 SIDE_WORDS = {"l": "L", "left": "L", "r": "R", "right": "R"}

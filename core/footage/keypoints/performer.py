@@ -165,7 +165,6 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
 
 
 def _mean_score(pixel: Array, score: Array) -> Array:
-    """(H,) mean score of everyone's seen points."""
     seen = np.isfinite(pixel).all(axis=-1)
     return np.asarray((score * seen).sum(axis=1) / np.maximum(seen.sum(axis=1), 1))
 
@@ -187,9 +186,6 @@ def _path(kept: list[_Reached], last: tuple[int, int], frames: int) -> IndexArra
         chosen[frame] = kept[frame].rows[row]
         frame, row = (int(value) for value in kept[frame].previous[row])
     return chosen
-
-
-# --- The principal points of the performer as keypoints of any layout and of several sources show them
 
 
 HEAD, EARS, NOSE = "head", ("ear.L", "ear.R"), "nose"
@@ -235,7 +231,6 @@ class _Point:
     hint_m: Array  # (F, 3) NaN where there is none
 
     def doubted(self, share: float) -> "_Point":
-        """The same point with less confidence."""
         return _Point(self.pixel, share * self.score, self.hint_m)
 
     def or_else(self, other: "_Point") -> "_Point":

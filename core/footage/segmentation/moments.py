@@ -95,9 +95,6 @@ def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> Array:
     return np.asarray((difference + np.pi / 2.0) % np.pi - np.pi / 2.0)
 
 
-# --- Alpha matting
-
-
 WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
 SUM = np.ones((1, 3), dtype=np.float32)

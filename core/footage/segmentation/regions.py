@@ -198,9 +198,6 @@ def _rank(ascending: IntArray) -> IntArray:
     return np.arange(len(ascending)) - np.searchsorted(ascending, ascending)
 
 
-# --- Outlines of image regions, for drawing
-
-
 CORNERS = 32
 SUBSAMPLES = 2  # sample points a pixel along either axis, on which the edge of half coverage is found
 

@@ -53,12 +53,8 @@ def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
 
 
 def _overlap(first: Box, second: Box, gap: int) -> bool:
-    """Whether two boxes lie less than a gap apart."""
     across = first[0] - gap < second[2] and second[0] < first[2] + gap
     return across and first[1] - gap < second[3] and second[1] < first[3] + gap
-
-
-# --- Window atlas
 
 
 NO_COLOR = 254  # color index of the columns between panels; no pixel has it

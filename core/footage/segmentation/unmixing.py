@@ -85,12 +85,10 @@ class Palette:
 
     @cached_property
     def _colors(self) -> Array:
-        """(K, 3)."""
         return np.array([other.color for other in self.others]).reshape(-1, 3)
 
     @cached_property
     def _deviations(self) -> Array:
-        """(K,)."""
         return np.array([other.deviation for other in self.others])
 
     def unmix(self, picture: Image, background: SingleArray, deviation: SingleArray) -> Unmixed:
