@@ -13,9 +13,8 @@ import numpy as np
 from scipy.ndimage import percentile_filter
 
 from ..arrays import Array, BoolArray, IntArray
-from .region_tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions, Regions
 from .segmentation.moments import MOMENT_POWERS
-from .segmentation.regions import Regions
 
 HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
 RESTART_COST = 10.0

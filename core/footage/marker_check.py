@@ -17,8 +17,8 @@ from .association import (
     typical_area,
 )
 from .clips.clip import ClipSamples
+from .colors.color_learning import ColorLearner
 from .colors.color_model import ColorModel
-from .colors.streaming_color_learning import StreamingColorLearner
 from .colors.strong_colors import color_confusion
 from .ignored_regions import IgnoredPixels, IgnoredRegion, PixelBox
 from .region_tracks import ExpectedRegions, MarkerStyle
@@ -115,7 +115,7 @@ def check_markers(
     frames = len(samples.images)
     at_samples = None if expected is None else _at(expected, samples.indices)
     pixels = IgnoredPixels(tuple(ignored), samples.size, samples.indices)
-    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples, pixels)
+    colors = ColorLearner(samples.path, samples.size, styles, at_samples, pixels)
     colors.learn(samples.images)
     yield 0.5
     regions = []
@@ -159,7 +159,7 @@ def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
 
 
 def _likenesses(
-    names: Sequence[str], colors: StreamingColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
+    names: Sequence[str], colors: ColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
 ) -> dict[int, Likeness]:
     """Likeness of each marker to other things, by its index, from its area in every frame."""
     claims = color_confusion(colors.model)

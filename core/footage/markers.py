@@ -10,12 +10,19 @@ from ..arrays import Array, Image
 from ..errors import InputError
 from .association import gather_candidates, region_quality, viterbi_path
 from .clips.clip import Clip, FrameReader
-from .colors.streaming_color_learning import StreamingColorLearner
+from .colors.color_learning import ColorLearner, color_groups
 from .ignored_regions import IgnoredPixels, IgnoredRegion
 from .marker_check import assign_regions
-from .region_tracks import Detections, ExpectedRegions, MarkerStyle, RegionTracks, color_groups
+from .region_tracks import (
+    NO_REGIONS,
+    Detections,
+    ExpectedRegions,
+    MarkerStyle,
+    Regions,
+    RegionTracks,
+)
 from .segmentation.moments import centroid_and_second_moment
-from .segmentation.regions import NO_REGIONS, Regions, find_regions
+from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
 
 STRETCH_BYTES = 100_000_000
@@ -51,7 +58,7 @@ def detect_markers(
 ) -> Generator[float, None, Detections]:
     """Detect all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
     pixels = IgnoredPixels(tuple(ignored), clip.size)
-    colors = StreamingColorLearner(clip.path, clip.size, styles, expected, pixels)
+    colors = ColorLearner(clip.path, clip.size, styles, expected, pixels)
     regions, time_s = yield from _detect_regions(clip, colors, pixels)
     colors.check_found()
     return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
@@ -65,7 +72,7 @@ def still_valid(
 ) -> bool:
     """Whether other expected regions would give exactly the same detections."""
     pixels = IgnoredPixels(tuple(ignored), seen.size)
-    colors = StreamingColorLearner(Path(), seen.size, styles, expected, pixels)
+    colors = ColorLearner(Path(), seen.size, styles, expected, pixels)
     return colors.learn_again(seen)
 
 
@@ -77,7 +84,7 @@ def assign_detections(
 
 
 def _detect_regions(
-    clip: Clip, colors: StreamingColorLearner, ignored: IgnoredPixels
+    clip: Clip, colors: ColorLearner, ignored: IgnoredPixels
 ) -> Generator[float, None, tuple[list[Regions], Array]]:
     """Detect the regions of every frame; return them and the frames' times.
 
@@ -113,7 +120,7 @@ def _detect_regions(
 
 def _regions_of_stretch(
     waiting: list[Image],
-    colors: StreamingColorLearner,
+    colors: ColorLearner,
     ignored: IgnoredPixels,
     regions: list[Regions],
     frame_count: int,
@@ -197,7 +204,7 @@ def regions_of_frame(
     samples = [(number, measuring_image(sample, times)) for number, sample in clip.sample(12)]
     pixels = IgnoredPixels(tuple(ignored), clip.size)
     of_samples = replace(pixels, sampled=tuple(number for number, _ in samples))
-    colors = StreamingColorLearner(clip.path, clip.size, styles, ignored=of_samples)
+    colors = ColorLearner(clip.path, clip.size, styles, ignored=of_samples)
     colors.learn([sample for _, sample in samples])
     colors.check_found()
     regions = find_regions([image], times, colors.model, ignored=[pixels.mask(index)])

@@ -79,6 +79,7 @@ class PoseNetwork:
         self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
+        """The person in a crop of a picture (height, width, 3), blue first."""
         return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:

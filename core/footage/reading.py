@@ -18,8 +18,7 @@ from .clips.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from .clips.image_sequence import find_images
 from .ignored_regions import IgnoredRegion
 from .markers import assign_detections, detect_markers, still_valid
-from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, RegionTracks
-from .segmentation.regions import Regions
+from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, Regions, RegionTracks
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,14 +1,13 @@
-"""Marker styles: a marker's name, segment and color sample, and groups of markers that look alike."""
+"""Markers as they are worn, their image regions as detected, expected and tracked, and the frames' times."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..arrays import Array, BoolArray, Image
-from .clips.clip_timing import is_variable_frame_rate
-from .colors.color_learning import sample_distribution
-from .segmentation.regions import Regions
+from ..arrays import Array, BoolArray, Image, IntArray
 
 
 @dataclass(frozen=True)
@@ -18,29 +17,6 @@ class MarkerStyle:
     name: str  # the marker's name
     segment: str  # the body segment it is bound to
     color_srgb: tuple[int, int, int]  # one eyedropper sample of the footage, (red, green, blue) in 0..255
-
-
-def color_groups(styles: Sequence[MarkerStyle]) -> list[list[int]]:
-    """Group the indices of the markers by color; markers of indistinguishable colors are together."""
-    groups: list[list[int]] = []
-    for index, style in enumerate(styles):
-        for group in groups:
-            # Light may make them equal.
-            if any(_distance(style.color_srgb, styles[other].color_srgb) < 2.5 for other in group):
-                group.append(index)
-                break
-        else:
-            groups.append([index])
-    return groups
-
-
-def _distance(first: tuple[int, int, int], second: tuple[int, int, int]) -> float:
-    """Squared Mahalanobis distance of two samples, by the covariance of their difference."""
-    one, other = sample_distribution(first), sample_distribution(second)
-    offset = one.mean - other.mean
-    squared = float(offset @ np.linalg.solve(one.covariance + other.covariance, offset))
-    light = (one.log_luma - other.log_luma) ** 2
-    return squared + light / (one.log_luma_deviation**2 + other.log_luma_deviation**2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,47 +36,26 @@ class RegionTracks:
 
     def __post_init__(self) -> None:
         frames, markers = len(self.time_s), len(self.names)
-        tails: dict[str, tuple[int, ...]] = {
-            "centroid": (frames, markers, 2),
-            "second_moment": (frames, markers, 2, 2),
-            "area": (frames, markers),
-            "quality": (frames, markers),
-            "clipped": (frames, markers),
-            "time_s": (frames,),
-        }
-        for field in fields(self):
-            if field.name not in tails:
-                continue
-            dtype = np.bool_ if field.name == "clipped" else np.float64
-            array = np.array(getattr(self, field.name), dtype=dtype)
-            if array.shape != tails[field.name]:
-                raise ValueError(f"{field.name} has the shape {array.shape}, not {tails[field.name]}")
+        tails = {"centroid": (2,), "second_moment": (2, 2), "area": (), "quality": (), "clipped": ()}
+        shapes = {name: (frames, markers, *tail) for name, tail in tails.items()} | {"time_s": (frames,)}
+        for name, shape in shapes.items():
+            array = np.array(getattr(self, name), dtype=np.bool_ if name == "clipped" else np.float64)
+            if array.shape != shape:
+                raise ValueError(f"{name} has the shape {array.shape}, not {shape}")
             array.setflags(write=False)
-            object.__setattr__(self, field.name, array)
+            object.__setattr__(self, name, array)
 
     @classmethod
     def unmarked(cls, time_s: Array, size: tuple[int, int]) -> "RegionTracks":
         """Tracks of a performer who wears no marker, M = 0, at the times (F,) [s]."""
-        empty = np.zeros((len(time_s), 0))
-        return cls(
-            names=(),
-            centroid=np.zeros((*empty.shape, 2)),
-            second_moment=np.zeros((*empty.shape, 2, 2)),
-            area=empty,
-            quality=empty,
-            clipped=empty.astype(bool),
-            time_s=time_s,
-            size=size,
-        )
+        frames, none = len(time_s), np.zeros((len(time_s), 0))
+        pairs, matrices = np.zeros((frames, 0, 2)), np.zeros((frames, 0, 2, 2))
+        return cls((), pairs, matrices, none, none, none.astype(np.bool_), time_s, size)
 
     def frame(self, index: int) -> "RegionTracks":
         """The tracks of one frame, its time included."""
-        rows = {
-            field.name: getattr(self, field.name)[index : index + 1]
-            for field in fields(self)
-            if isinstance(getattr(self, field.name), np.ndarray)
-        }
-        return replace(self, **rows)
+        arrays = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, **{name: array[index : index + 1] for name, array in arrays.items()})
 
     @property
     def visible(self) -> BoolArray:
@@ -116,6 +71,19 @@ class RegionTracks:
     def variable_frame_rate(self) -> bool:
         """Whether the frames are unevenly spaced in time, as phones record them."""
         return is_variable_frame_rate(self.time_s)
+
+
+def is_variable_frame_rate(time_s: ArrayLike) -> bool:
+    """Whether frames with these time stamps (F,) [s] are unevenly spaced in time.
+
+    That is, whether an interval differs from the median by more than a tenth and more than the millisecond by
+    which containers round. A dropped frame counts: Blender shows such clips by time, not by index.
+    """
+    intervals = np.diff(np.asarray(time_s, dtype=np.float64))
+    if intervals.size < 2:
+        return False
+    median = float(np.median(intervals))
+    return bool(np.abs(intervals - median).max() > max(0.1 * median, 1.1e-3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +103,29 @@ class ExpectedRegions:
         for name, array in (("center", center), ("radius", radius)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+
+
+class Regions(NamedTuple):
+    """R connected regions of the markers' colors in one image, by color and from large to small."""
+
+    color: IntArray  # (R,) index of the color of each
+    moments: Array  # (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid
+    box: IntArray  # (R, 4) left, top, right, bottom in its pixels
+    certainty: Array  # (R,) mean probability of the pixels' color in 0..1
+    clipped: BoolArray  # (R,) whether it touches the image's border
+
+    def part(self, first: int, end: int) -> "Regions":
+        """The regions from `first` to before `end`."""
+        return Regions(*(array[first:end] for array in self))
+
+
+NO_REGIONS = Regions(
+    np.zeros(0, dtype=np.int64),
+    np.zeros((0, 6)),
+    np.zeros((0, 4), dtype=np.int64),
+    np.zeros(0),
+    np.zeros(0, dtype=np.bool_),
+)
 
 
 @dataclass(frozen=True)

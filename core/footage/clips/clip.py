@@ -7,10 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from ...arrays import Array, Image
+from ...arrays import Image
 from ...errors import InputError
 from ..segmentation.working_image import halvings, measuring_image
-from .clip_timing import is_variable_frame_rate
 from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
@@ -99,15 +98,6 @@ class Clip:
             InputError: An image of a sequence cannot be read or has another size than the first.
         """
         return self.source.frames()
-
-    def time_stamps(self) -> Array:
-        """The time of every frame in seconds, (F,), by a pass that converts no picture."""
-        return np.fromiter(self.source.time_stamps(), dtype=np.float64)
-
-    @property
-    def variable_frame_rate(self) -> bool:
-        """Whether the frames are unevenly spaced in time; takes a pass over the clip."""
-        return is_variable_frame_rate(self.time_stamps())
 
     def sample(self, count: int) -> Iterator[tuple[int, Image]]:
         """Yield about `count` frames spread evenly over the clip, each with its index.

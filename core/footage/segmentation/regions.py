@@ -11,38 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from ...arrays import Array, BoolArray, Image, IntArray, SingleArray
 from ..colors.color_model import BACKGROUND, ColorModel
 from ..ignored_regions import without
+from ..region_tracks import NO_REGIONS, Regions
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
 from .search_windows import MARGIN, Atlas, Box, Window, boxes_to_measure, colored_boxes, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-
-
-class Regions(NamedTuple):
-    """R connected regions of the markers' colors in one image, by color and from large to small."""
-
-    color: IntArray  # (R,) index of the color of each
-    moments: Array  # (R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid
-    box: IntArray  # (R, 4) left, top, right, bottom in its pixels
-    certainty: Array  # (R,) mean probability of the pixels' color in 0..1
-    clipped: BoolArray  # (R,) whether it touches the image's border
-
-    def part(self, first: int, end: int) -> "Regions":
-        """The regions from `first` to before `end`."""
-        some = slice(first, end)
-        return Regions(
-            self.color[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
-        )
-
-
-NO_REGIONS = Regions(
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, 6)),
-    np.zeros((0, 4), dtype=np.int64),
-    np.zeros(0),
-    np.zeros(0, dtype=np.bool_),
-)
 
 
 def find_regions(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
+from keymark.core.footage.region_tracks import is_variable_frame_rate
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
@@ -39,8 +39,8 @@ def test_a_video_yields_its_frames_in_order_with_their_times(tmp_path: Path) -> 
     means = [image.mean() for _, _, image in frames]
     np.testing.assert_allclose(means, [level(index) for index in range(30)], atol=8)
     assert clip.size == (64, 48) and clip.fps == pytest.approx(25.0) and clip.frame_count == 30
-    assert not clip.variable_frame_rate
-    np.testing.assert_allclose(clip.time_stamps(), np.arange(30) / 25.0, atol=1e-6)
+    assert not is_variable_frame_rate(list(clip.source.time_stamps()))
+    np.testing.assert_allclose(list(clip.source.time_stamps()), np.arange(30) / 25.0, atol=1e-6)
 
 
 @pytest.mark.parametrize(("count", "frames"), [(5, 50), (2, 400), (80, 30)])

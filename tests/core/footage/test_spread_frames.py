@@ -9,8 +9,8 @@ from _footage import encode, write_numbered_take
 from keymark.core.errors import InputError
 from keymark.core.footage.clips import clip as glancing
 from keymark.core.footage.clips.clip import Clip, sample_spread_frames
-from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
 from keymark.core.footage.clips.container import quickly_found, read_packets
+from keymark.core.footage.region_tracks import is_variable_frame_rate
 from keymark.core.progress import run
 
 SIZE = (64, 48)
