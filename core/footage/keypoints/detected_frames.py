@@ -70,18 +70,12 @@ def check_points(count: int, where: str) -> None:
         raise InputError(f"{where}: has {count} points in all frames; at most {MOST_POINTS} are read")
 
 
-def known_layout(count: int, where: str) -> Layout:
-    """The layout with so many points; it is refused where there is none."""
-    layout = layout_of(count)
-    if layout is None:
-        raise InputError(f"{where} has {count} points; layouts that are read have {layout_words()}")
-    return layout
-
-
 def same_layout(layout: Layout | None, count: int, where: str) -> Layout:
     """The layout of all people so far, or the first one's; another number of points is refused."""
     if layout is None:
-        return known_layout(count, where)
+        layout = layout_of(count)
+        if layout is None:
+            raise InputError(f"{where} has {count} points; layouts that are read have {layout_words()}")
     if layout.count != count:
         raise InputError(
             f"{where} has {count} points; those before have {layout.count}, and all must be alike"

@@ -65,12 +65,8 @@ def align_numbered(
     fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
     notes: tuple[str, ...] = ()
     if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
-        notes = (
-            (
-                f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are "
-                "left out"
-            ),
-        )
+        beyond = f"beyond the clip's {frame_count} frames; they are left out"
+        notes = (f"{where}: goes on to frame {highest}, {beyond}",)
         fitting = [lowest]
     if not fitting:
         raise InputError(
@@ -87,12 +83,8 @@ def align_numbered(
             f"frame must be there, also where nobody was seen{_rate_words(length, frame_count)}"
         )
     if len(touching or fitting) > 1 and missing:
-        notes += (
-            (
-                f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
-                "check that they lie on the performer"
-            ),
-        )
+        check = "no frame tells for certain, so check that they lie on the performer"
+        notes += (f"{where}: its frames were taken to count from {first}; {check}",)
     return Alignment(first, frame_count, notes + _hole_notes(numbers, first, frame_count, where, complete))
 
 
@@ -158,9 +150,7 @@ def read_frame_folder(folder: Path) -> DetectedFrames:
         raise InputError(f"{folder}: nobody is seen in any of its {len(files)} files; one must show a person")
     if longest > layout.count:
         layout = with_hands(layout)
-        people = {
-            number: tuple(_as_long(person, longest) for person in there) for number, there in people.items()
-        }
+        people = {at: tuple(_as_long(person, longest) for person in there) for at, there in people.items()}
     return DetectedFrames(str(folder), folder.name or str(folder), layout, people, numbered=True)
 
 
@@ -180,9 +170,8 @@ def _people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
 
 def _as_long(person: DetectedPerson, points: int) -> DetectedPerson:
     """A person with so many points, of which those that are added are not seen."""
-    added = points - len(person.place)
-    place = np.concatenate([person.place, np.zeros((added, 2))])
-    return DetectedPerson(place, np.concatenate([person.score, np.zeros(added)]))
+    added = (0, points - len(person.place))
+    return DetectedPerson(np.pad(person.place, (added, (0, 0))), np.pad(person.score, added))
 
 
 def _numbered_files(folder: Path) -> dict[int, Path]:

@@ -23,23 +23,13 @@ from .detected_frames import (
     check_people,
     person_array,
 )
-from .detector_formats import (
-    is_coco,
-    is_instances,
-    is_mediapipe,
-    is_mmpose,
-    is_openpose_frame,
-    read_coco,
-    read_mediapipe,
-    read_mmpose,
-)
+from .detector_formats import FORMATS, is_instances, is_openpose_frame
 from .frame_folder import MOST_FRAMES, read_frame_folder
 from .keypoints import BODY_POINTS, People, SeenPeople
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
 LONGEST_DETECTOR = 200  # characters
-SCORE_DIGITS = 4
 """Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
 
 
@@ -111,10 +101,9 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
     field = "people" if several else "frames"
     people = {}
     for index, (row, hints) in enumerate(zip(rows, world, strict=True)):
-        where = f"{fields.where}: {field}[{index}]"
-        hint_where = f"{fields.where}: world[{index}]"
+        where, hint_where = f"{fields.where}: {field}[{index}]", f"{fields.where}: world[{index}]"
         if not several:
-            row, hints = _alone(row), _alone(hints)
+            row, hints = (None if entry is None else [entry] for entry in (row, hints))
         people[index] = _frame(row, hints, layout, where, hint_where)
     return DetectedFrames(
         where=fields.where,
@@ -147,10 +136,6 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     if any(hint is not None for _, hint in rows):
         fields["world"] = [hint for _, hint in rows]
     write_json(path, fields)
-
-
-def _alone(entry: Any) -> Any:
-    return None if entry is None else [entry]
 
 
 def _layout(said: OwnFile, fields: Fields) -> Layout:
@@ -194,7 +179,7 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
         return None, None
     seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
     # A score that is rounded to 0 would say that the point is not seen.
-    score = np.where(seen, np.maximum(np.round(frame.score, SCORE_DIGITS), 10.0**-SCORE_DIGITS), 0.0)
+    score = np.where(seen, np.maximum(np.round(frame.score, 4), 1e-4), 0.0)
     pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
     rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
     hints = [_written_hints(hint) for hint in frame.hint_m]
@@ -210,13 +195,7 @@ def _written_hints(hint: Array) -> Sequence[Any] | None:
     return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
 
 
-__all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
-
 LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth
-FORMATS = (
-    "Keymark's own file (with layout and frames), a folder of OpenPose's files, or a result file of MMPose, "
-    "COCO or MediaPipe"
-)
 
 
 def read_keypoints(
@@ -249,13 +228,13 @@ def _read(path: Path) -> DetectedFrames:
     where = str(path)
     if isinstance(value, dict) and "layout" in value:
         return read_own(Fields(value, where), source)
-    if is_mmpose(value):
-        return read_mmpose(value, where, source)
-    if is_coco(value):
-        return read_coco(value, where, source)
-    if is_mediapipe(value):
-        return read_mediapipe(value, where, source)
-    raise InputError(f"{path}: {_seen(value)}; it must be {FORMATS}")
+    for recognizes, read in FORMATS:
+        if recognizes(value):
+            return read(value, where, source)
+    raise InputError(
+        f"{path}: {_seen(value)}; it must be Keymark's own file (with layout and frames), a folder of "
+        "OpenPose's files, or a result file of MMPose, COCO or MediaPipe"
+    )
 
 
 def _seen(value: Any) -> str:
