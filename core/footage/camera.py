@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..files.fields import Fields
-from .camera_fields import CameraFields
+from .camera_fields import CameraFields, CameraPlacement
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,16 +47,9 @@ class Camera:
             InputError: A field is missing or invalid; the sentence names it.
         """
         read = CameraFields.of(Fields(fields, where))
-        width, height = read.resolution
-        return cls(
-            lens_mm=read.lens_mm,
-            sensor_width_mm=read.sensor_width_mm,
-            resolution=(width, height),
-            matrix_world=read.pose,
-            shift_x=read.shift_x,
-            shift_y=read.shift_y,
-            distortion=read.distortion,
-        )
+        lens = (read.lens_mm, read.sensor_width_mm)
+        size = (read.resolution[0], read.resolution[1])
+        return cls(*lens, size, read.pose, read.shift_x, read.shift_y, read.distortion)
 
     def to_dict(self) -> dict[str, Any]:
         """The fields as in `take.json`; `from_dict` reads them back unchanged."""
@@ -253,15 +246,7 @@ def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int,
     At eye height, looking level along +Y at the world's origin, from a distance at which the floor there and
     a performer with outstretched arms are within a picture of `size` (width, height).
     """
-    # Share of the picture that a performer at the origin fills.
-    across = 0.5 * 0.9 * sensor_width_mm / lens_mm
+    across = 0.45 * sensor_width_mm / lens_mm  # a performer at the origin fills nine tenths of the picture
     down = across * size[1] / size[0]
     distance = max(EYE_HEIGHT_M / down, 1.0 / across)  # half the arm span of an adult [m]
-    return np.array(
-        [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, -1.0, -distance],
-            [0.0, 1.0, 0.0, EYE_HEIGHT_M],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    return CameraPlacement(EYE_HEIGHT_M, 0.0, 0.0).matrix((0.0, -distance))

@@ -10,19 +10,13 @@ from .camera import Camera
 from .camera_fields import heading_rad
 
 CLICK_STD_PX = 1.5  # standard deviation of a click, or of a line's end drawn by hand [px]
-PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.02, float(np.radians(3.0))
-"""Someone who stands or walks upright: share by which they are shorter than their stature or taller, as heads
-rise and fall by 3 % in every step, and lean to any side."""
 COMMON_LEAN_RAD = float(np.radians(2.5))
 """Lean that one person has at all moments alike: heads lie in front of ankles, and walkers lean forward."""
 STATURE_STD = 0.015
 """Share by which a stated stature is off throughout: shoes, hair, and what people say of themselves."""
-THING_LENGTH_STD, THING_LEAN_STD_RAD = 0.005, float(np.radians(0.5))
-"""The same of things that were built upright and measured."""
 
 
-def no_lines() -> Array:
-    """No line at all, (0, 2, 2)."""
+def _no_lines() -> Array:
     return np.zeros((0, 2, 2))
 
 
@@ -50,20 +44,16 @@ class Uprights:
     @classmethod
     def persons(cls, ground_px: ArrayLike, crown_px: ArrayLike, stature_m: float) -> "Uprights":
         """Someone of a stature [m] at N places, clicked on the floor between the feet and on the crown."""
-        return cls._standing(
-            ground_px,
-            crown_px,
-            stature_m,
-            PERSON_LENGTH_STD,
-            PERSON_LEAN_STD_RAD,
-            STATURE_STD,
-            COMMON_LEAN_RAD,
-        )
+        # In every step heads rise and fall by 3 %, and walkers lean to any side.
+        single = (0.02, float(np.radians(3.0)))
+        return cls._standing(ground_px, crown_px, stature_m, single, (STATURE_STD, COMMON_LEAN_RAD))
 
     @classmethod
     def things(cls, lower_px: ArrayLike, upper_px: ArrayLike, length_m: ArrayLike) -> "Uprights":
         """Things of known lengths (N,) [m] that stand on the floor, as doors, by their ends (N, 2) [px]."""
-        return cls._standing(lower_px, upper_px, length_m, THING_LENGTH_STD, THING_LEAN_STD_RAD, 0.0, 0.0)
+        # They were built upright, and measured.
+        single = (0.005, float(np.radians(0.5)))
+        return cls._standing(lower_px, upper_px, length_m, single, (0.0, 0.0))
 
     @classmethod
     def _standing(
@@ -71,25 +61,16 @@ class Uprights:
         lower_px: ArrayLike,
         upper_px: ArrayLike,
         length_m: ArrayLike,
-        length_std: float,
-        lean_std_rad: float,
-        common_std: float,
-        common_lean_rad: float,
+        single: tuple[float, float],
+        common: tuple[float, float],
     ) -> "Uprights":
+        """With deviations of length [share] and lean [rad] of each, and of all together."""
         lower = np.array(lower_px, dtype=np.float64).reshape(-1, 2)
         upper = np.array(upper_px, dtype=np.float64).reshape(-1, 2)
         ones = np.ones(len(lower))
-        return cls(
-            lower,
-            upper,
-            0.0 * ones,
-            np.broadcast_to(np.asarray(length_m, dtype=np.float64), ones.shape),
-            CLICK_STD_PX * ones,
-            length_std * ones,
-            lean_std_rad * ones,
-            common_std,
-            common_lean_rad,
-        )
+        length = np.broadcast_to(np.asarray(length_m, dtype=np.float64), ones.shape)
+        stds = (CLICK_STD_PX * ones, single[0] * ones, single[1] * ones)
+        return cls(lower, upper, 0.0 * ones, length, *stds, *common)
 
     def __len__(self) -> int:
         return len(self.lower_px)
@@ -98,18 +79,9 @@ class Uprights:
         """Both together; what may be off in common is taken to be the same of both."""
         if not len(self) or not len(other):
             return self if len(self) else other
-
-        def joined(name: str) -> Array:
-            return np.concatenate([getattr(self, name), getattr(other, name)])
-
+        arrays = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
         return Uprights(
-            joined("lower_px"),
-            joined("upper_px"),
-            joined("lower_m"),
-            joined("length_m"),
-            joined("pixel_std"),
-            joined("length_std"),
-            joined("lean_std_rad"),
+            *(np.concatenate([getattr(self, name), getattr(other, name)]) for name in arrays),
             common_std=max(self.common_std, other.common_std),
             common_lean_rad=max(self.common_lean_rad, other.common_lean_rad),
             doubtful=self.doubtful or other.doubtful,
@@ -120,11 +92,11 @@ class Uprights:
 class CameraEvidence:
     """Lines in the picture, each given by its two ends [px], and upright things of known length."""
 
-    vertical: Array = field(default_factory=no_lines)
+    vertical: Array = field(default_factory=_no_lines)
     """(V, 2, 2) plumb in the world: door frames, corners of walls."""
-    along: Array = field(default_factory=no_lines)
+    along: Array = field(default_factory=_no_lines)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
-    across: Array = field(default_factory=no_lines)  # (C, 2, 2) level and at right angles to those
+    across: Array = field(default_factory=_no_lines)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
 
 

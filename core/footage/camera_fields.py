@@ -46,18 +46,10 @@ class CameraPlacement:
     def rotation(self, heading_rad: float = 0.0) -> Array:
         """The camera's orientation (3, 3), its axes as columns: turned about Z, tilted, rolled."""
         tilted, rolled = self.tilt_rad, self.roll_rad
-        turn = np.array(
-            [
-                [cos(heading_rad), -sin(heading_rad), 0.0],
-                [sin(heading_rad), cos(heading_rad), 0.0],
-                [0.0, 0.0, 1.0],
-            ]
-        )
         lift = np.array(
             [[1.0, 0.0, 0.0], [0.0, -sin(tilted), -cos(tilted)], [0.0, cos(tilted), -sin(tilted)]]
         )
-        roll = np.array([[cos(rolled), -sin(rolled), 0.0], [sin(rolled), cos(rolled), 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(turn @ lift @ roll)
+        return np.asarray(_about_z(heading_rad) @ lift @ _about_z(rolled))
 
     def matrix(self, place: tuple[float, float] = (0.0, 0.0), heading_rad: float = 0.0) -> Array:
         """The pose (4, 4), camera to world, above a place on the floor [m], turned from looking along +Y."""
@@ -70,6 +62,10 @@ class CameraPlacement:
         """A pose (4, 4) with this placement that keeps the heading and the place on the floor of another."""
         before = np.asarray(matrix_world, dtype=np.float64)
         return self.matrix((float(before[0, 3]), float(before[1, 3])), heading_rad(before))
+
+
+def _about_z(angle: float) -> Array:
+    return np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
 
 
 def heading_rad(matrix_world: ArrayLike) -> float:
@@ -104,9 +100,8 @@ class Pose(Kind):
     def read(self, value: Any, where: str, name: str) -> Array:
         """See `Kind`."""
         matrices = number_array(value)
-        if matrices is None or matrices.ndim != 2 + self.several:
-            raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
-        if matrices.shape[-2:] != (4, 4) or not matrices.size:
+        formed = matrices is not None and matrices.ndim == 2 + self.several and matrices.size > 0
+        if matrices is None or not formed or matrices.shape[-2:] != (4, 4):
             raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
         stacked = matrices.reshape(-1, 4, 4).copy()
         fault = _first_fault(stacked)
@@ -137,8 +132,7 @@ class Distortion(Kind):
         return k1, k2, k3
 
 
-# A focal length or a sensor's width lies between these [mm].
-LensNumber = Annotated[float, Number(*(0.1, 100_000.0), "mm")]
+LensNumber = Annotated[float, Number(0.1, 100_000.0, "mm")]
 Shift = Annotated[float, Number(-MOST_SHIFT, MOST_SHIFT)]
 
 

@@ -14,7 +14,6 @@ was kept may be wrong.
 """
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -35,14 +34,12 @@ KNOWN_LENS_STD = 0.01
 """Of the logarithm of a focal length that somebody knows: zooms state theirs to a hundredth."""
 DETERMINED = 0.5
 """Largest ratio of the standard deviation found to that believed before, of what the picture determines."""
-STARTS = 8  # headings of the level lines from which the descent starts, over half a turn
 START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])  # tilts from which it starts
 HEADING = len(PARAMETERS)
 DIFFERENCE = 1e-5
 EXPECTED_WEIGHT = 4.0
 """Degrees of freedom with which the image noise is believed beforehand, as few lines tell little of it."""
-LEAST_RISE_M = 0.01
-"""Least height of the camera above a point [m], and least slope of the line of sight down to it."""
+LEAST_RISE_M = 0.01  # least height of the camera above a point [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +79,12 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
     found = problem.camera_of(best)
     placement = CameraPlacement.of(found.matrix_world)
     unit = np.array([placement.height_m, 1.0, 1.0, found.lens_mm])
-    residuals = problem.residuals(best)
+    off_px, _ = problem.residuals(best)
     return CameraFit(
         replace(found, matrix_world=placement.applied_to(camera.matrix_world)),
         dict(zip(PARAMETERS, map(float, shares * unit), strict=True)),
         tuple(PARAMETERS[index] for index in kept),
-        float(np.sqrt(np.mean(residuals.px**2))) if residuals.px.size else 0.0,
+        float(np.sqrt(np.mean(off_px**2))) if off_px.size else 0.0,
         problem.excess(best),
     )
 
@@ -105,23 +102,11 @@ def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
         # Given those kept, the others have the inverse of what is left of the information.
         information = np.linalg.inv(covariance)[np.ix_(free, free)]
         variance = np.diag(np.linalg.inv(information))
-        shares = {
-            int(at): float(np.sqrt(v)) / believed_std[at]
-            for at, v in zip(free, variance, strict=True)
-            if at < count
-        }
-        worst = max(shares, key=lambda at: shares[at])
-        if shares[worst] <= DETERMINED:
+        shares = (np.sqrt(variance) / believed_std[free])[free < count]
+        if shares.max() <= DETERMINED:
             break
-        kept.append(worst)
+        kept.append(int(free[shares.argmax()]))
     return np.array(sorted(kept), dtype=np.intp)
-
-
-class _Residuals(NamedTuple):
-    """Residuals of all lines and uprights."""
-
-    px: Array  # (R,) [px]
-    scaled: Array  # (R,) in standard deviations
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +146,8 @@ class _Problem:
         lens = self.camera.lens_mm * float(np.exp(x[3]))
         return replace(self.camera, lens_mm=lens, matrix_world=self.placement_of(x).matrix())
 
-    def residuals(self, x: Array) -> _Residuals:
+    def residuals(self, x: Array) -> tuple[Array, Array]:
+        """Of all lines and uprights (R,), in px and in standard deviations."""
         camera = self.camera_of(x)
         parts = [_line_residuals(camera, self.evidence.vertical, np.array([0.0, 0.0, 1.0]))]
         if self.has_level_lines:
@@ -170,11 +156,11 @@ class _Problem:
             parts.append(_line_residuals(camera, self.evidence.across, np.array([-along, across, 0.0])))
         lines = np.concatenate(parts)
         px, scaled = self._upright_residuals(camera, float(np.exp(x[-2])), float(x[-1]))
-        return _Residuals(np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled]))
+        return np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled])
 
     def descend(self) -> Array:
         """The most probable x (X,), from the likeliest starts."""
-        headings = np.arange(STARTS) * np.pi / STARTS if self.has_level_lines else np.zeros(1)
+        headings = np.arange(8) * np.pi / 8 if self.has_level_lines else np.zeros(1)
         starts = np.zeros((len(headings) * len(START_TILTS_RAD), len(self.believed_std)))
         starts[:, PARAMETERS.index(TILT)] = np.tile(START_TILTS_RAD, len(headings))
         if self.has_level_lines:
@@ -209,7 +195,7 @@ class _Problem:
         """Ratio of the residuals' variance at x to the expected one."""
         normal = self._normal(x)
         determined = float(np.trace(np.linalg.solve(normal + self._believed, normal)))
-        squared = self._robust(self.residuals(x).scaled) ** 2
+        squared = self._scaled(x) ** 2
         free = max(len(squared) - determined, 0.0)
         return (float(squared.sum()) + EXPECTED_WEIGHT) / (free + EXPECTED_WEIGHT)
 
@@ -220,20 +206,19 @@ class _Problem:
     def _normal(self, x: Array) -> Array:
         """Normal matrix (X, X) of what the picture shows."""
         steps = DIFFERENCE * np.eye(len(x))
-        rows = [
-            self._robust(self.residuals(x + sign * step).scaled) for step in steps for sign in (1.0, -1.0)
-        ]
+        rows = [self._scaled(x + sign * step) for step in steps for sign in (1.0, -1.0)]
         jacobian = ((np.array(rows[::2]) - np.array(rows[1::2])) / (2.0 * DIFFERENCE)).T
         return np.asarray(jacobian.T @ jacobian)
 
-    def _robust(self, scaled: Array) -> Array:
-        """Residuals whose squares are twice the negative logarithm of Student's t, where any are doubtful."""
+    def _scaled(self, x: Array) -> Array:
+        """Residuals; where any are doubtful, their squares are twice the cost of Student's t."""
+        _, scaled = self.residuals(x)
         if not self.evidence.uprights.doubtful:
             return scaled
         return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, 4.0, 1)))
 
     def _rows(self, x: Array) -> Array:
-        return np.concatenate([self._robust(self.residuals(x).scaled), x / self.believed_std])
+        return np.concatenate([self._scaled(x), x / self.believed_std])
 
     def _upright_residuals(self, camera: Camera, longer: float, lean_rad: float) -> tuple[Array, Array]:
         """Residuals (2 N,) of the upper ends, along and aside [px], and in standard deviations."""

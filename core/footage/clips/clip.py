@@ -24,19 +24,15 @@ class FrameSource(Protocol):
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield index, time in seconds and image of every frame."""
-        ...
 
     def time_stamps(self) -> Iterator[float]:
         """Yield the time in seconds of every frame without converting its picture."""
-        ...
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices, as far as they exist."""
-        ...
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
         """Yield time in seconds and image of the frames from about `first` on."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -60,8 +56,7 @@ class Clip:
         path = Path(path)
         images = find_images(path)
         if images is not None:
-            # Default frame rate of an image sequence, that of a new Blender scene.
-            sequence = ImageSequence(images, fps or 24.0)
+            sequence = ImageSequence(images, fps or 24.0)  # that of a new Blender scene
             return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
@@ -177,34 +172,22 @@ def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, Non
     Raises:
         InputError: None of them can be read.
     """
-    times = halvings(clip.size)
-    indices: list[int] = []
-    images: list[Image] = []
-    yield 0.0
-    for index, image in clip.sample(count):
-        indices.append(index)
-        images.append(measuring_image(image, times))
-        yield min(len(indices) / min(count, clip.frame_count), 1.0)
-    if not images:
-        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
-    return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))
+    return _kept(clip, clip.sample(count), min(count, clip.frame_count))
 
 
 MOST_DECODED_PX = 90_000_000  # budget of decoded pixels: about half a second of a processor, at any size
 FRAMES_PER_SEARCH = 18  # frames decoded for each seek
-FEWEST = 3
 
 
 def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
     """Sample frames like `sample_clip`, within a budget of decoded pixels."""
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
-        # An image costs as much as four video frames.
-        affordable = max(MOST_DECODED_PX // (4 * pixels), FEWEST)
+        affordable = max(MOST_DECODED_PX // (4 * pixels), 3)  # an image costs as much as four video frames
         return (yield from sample_clip(clip, min(count, affordable)))
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
-    most = min(count, 12, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
+    most = min(count, 12, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), 3))
     middles = (np.arange(most) + 0.5) * clip.frame_count / most
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:

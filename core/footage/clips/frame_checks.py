@@ -1,4 +1,4 @@
-"""Interlacing: detection of combed pictures, whose even and odd rows are two fields from two moments."""
+"""Checks of a video's header and of its frames while they are read: blank ones, cuts, and interlacing."""
 
 import re
 from collections.abc import Sequence
@@ -13,14 +13,12 @@ from ...arrays import Image
 
 STEP = 8  # difference of neighboring rows where a moving edge is combed, in levels
 TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
-COLUMNS = 320  # fewest sampled columns
 
 
 def combed_shares(image: Image) -> tuple[float, float]:
     """Combed shares of a picture as decoded: by rows, as of interlacing, and by columns, to compare."""
     green = image[..., 1].astype(np.int16)
-    across = max(image.shape[1] // COLUMNS, 1)
-    down = max(image.shape[0] // COLUMNS, 1)
+    down, across = (max(length // 320, 1) for length in image.shape[:2])
     return _teeth(green[:, ::across]), _teeth(green[::down].T)
 
 
@@ -40,38 +38,26 @@ HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
-MATROSKA_BEGINS = b"\x1a\x45\xdf\xa3"
 
 
 def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
     """Sentences on faults of an open video."""
-    return (*_shape_notes(path, capture), *_range_notes(path))
-
-
-def _shape_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
+    notes = []
     across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < 0.01:
-        return ()
-    return (
-        (
+    if across > 0.0 and down > 0.0 and abs(across / down - 1.0) >= 0.01:
+        notes.append(
             f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
             "Blender take them for square: the motion is out of shape; convert the clip first, as with "
             "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
-        ),
-    )
-
-
-def _range_notes(path: Path) -> tuple[str, ...]:
+        )
     transfer = dynamic_range(path)
-    if transfer is None:
-        return ()
-    return (
-        (
+    if transfer is not None:
+        notes.append(
             f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
             "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
             "colors anew"
-        ),
-    )
+        )
+    return tuple(notes)
 
 
 def dynamic_range(path: Path) -> str | None:
@@ -79,10 +65,8 @@ def dynamic_range(path: Path) -> str | None:
     try:
         with path.open("rb") as file:
             head = file.read(2**16)  # it describes its tracks within these
-            if head.startswith(MATROSKA_BEGINS):
-                found = MATROSKA.search(head)
-            else:
-                found = MP4.search(_movie_box(path))
+        is_matroska = head.startswith(b"\x1a\x45\xdf\xa3")
+        found = MATROSKA.search(head) if is_matroska else MP4.search(_movie_box(path))
     except OSError:
         return None
     return None if found is None else HDR_TRANSFERS.get(found[1][0])
@@ -97,17 +81,11 @@ def _movie_box(path: Path) -> bytes:
             if size == 1:
                 size = int.from_bytes(file.read(8), "big") - 8
             if head[4:] == b"moov":
-                return file.read(min(max(size - 8, 0), (2**26)))
+                return file.read(min(max(size - 8, 0), 2**26))
             if not 8 <= size <= whole:
                 break
             file.seek(size - 8, 1)
     return b""
-
-
-COMBED, COMBED_MORE = 5e-4, 10.0
-"""Combed share of an interlaced picture by rows, and its ratio to that by columns. Sixteen progressive clips
-stay below 1.2e-4 and a ratio of three; three interlaced ones have 1e-2 and more."""
-NAMED = 3  # ranges of frames that a note lists
 
 
 @dataclass(frozen=True)
@@ -187,7 +165,8 @@ class FrameChecks:
         if not self._combed:
             return False
         rows, columns = np.mean(self._combed, axis=0)
-        return bool(rows > COMBED and rows > COMBED_MORE * columns)
+        # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
+        return bool(rows > 5e-4 and rows > 10.0 * columns)
 
     def _cuts(self) -> tuple[int, ...]:
         usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
@@ -212,8 +191,8 @@ def _ranges(frames: Sequence[int], first: int) -> str:
             runs[-1][1] = frame
         else:
             runs.append([frame, frame])
-    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:NAMED]]
-    return ", ".join(named) + (f" and {len(runs) - NAMED} more times" if len(runs) > NAMED else "")
+    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:3]]
+    return ", ".join(named) + (f" and {len(runs) - 3} more times" if len(runs) > 3 else "")
 
 
 def is_blank(image: Image) -> bool:
