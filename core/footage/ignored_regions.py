@@ -168,19 +168,14 @@ def ignored_regions(
 
 
 def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:
-    """Regions as the field that `read_ignored_regions` reads."""
-    return [_fields(region, frame_start) for region in regions]
-
-
-def _fields(region: IgnoredRegion, frame_start: int) -> dict[str, Any]:
-    said: dict[str, Any] = {}
-    if region.box is not None:
-        said["box"] = list(region.box)
-    else:
-        said |= {"stroke": [list(point) for point in region.stroke], "radius_px": region.radius_px}
-    if region.frames is not None:
-        said["frames"] = [index + frame_start for index in region.frames]
-    return said
+    """Regions as the field `ignored_regions` of `take.json`."""
+    listed: list[dict[str, Any]] = []
+    for one in regions:
+        stroke = {"stroke": [list(point) for point in one.stroke], "radius_px": one.radius_px}
+        listed.append(stroke if one.box is None else {"box": list(one.box)})
+        if one.frames is not None:
+            listed[-1]["frames"] = [index + frame_start for index in one.frames]
+    return listed
 
 
 def _region(region: RegionFields, size: tuple[int, int], frame_start: int, where: str) -> IgnoredRegion:

@@ -113,7 +113,10 @@ def check_markers(
     """
     yield 0.0
     frames = len(samples.images)
-    at_samples = None if expected is None else _at(expected, samples.indices)
+    at_samples = None
+    if expected is not None:  # frames beyond the last known one get what is expected in that
+        rows = np.minimum(samples.indices, len(expected.center) - 1)
+        at_samples = ExpectedRegions(expected.center[rows], expected.radius[rows])
     pixels = IgnoredPixels(tuple(ignored), samples.size, samples.indices)
     colors = ColorLearner(samples.path, samples.size, styles, at_samples, pixels)
     colors.learn(samples.images)
@@ -122,30 +125,20 @@ def check_markers(
     for done, image in enumerate(samples.images):
         regions += find_regions([image], 0, colors.model, ignored=[pixels.mask(done)])
         yield 0.5 + 0.5 * done / frames
-    found = [
-        gather_candidates(regions, color, 2.0 ** halvings(samples.size))
-        for color in range(len(colors.groups))
-    ]
+    scale = 2.0 ** halvings(samples.size)
+    found = [gather_candidates(regions, color, scale) for color in range(len(colors.groups))]
     own = assign_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
     likenesses = _likenesses([style.name for style in styles], colors, found, areas)
     complaints = colors.complaints()
     still = still_areas(samples, colors.model, colors.groups, found, pixels)
     readouts = [
-        _readout(
-            style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker), still[marker]
-        )
-        for marker, style in enumerate(styles)
+        _readout(style.name, area, samples.size, likenesses[marker], complaints.get(marker), still[marker])
+        for marker, (style, area) in enumerate(zip(styles, areas, strict=True))
     ]
     yield 1.0
     groups = tuple(tuple(group) for group in colors.groups)
     return MarkerCheck(tuple(readouts), colors.model, groups, complaints)
-
-
-def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
-    """Expected regions in some frames; frames beyond the last known one get those of the last."""
-    rows = np.minimum(indices, len(expected.center) - 1)
-    return ExpectedRegions(expected.center[rows], expected.radius[rows])
 
 
 def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
@@ -196,11 +189,11 @@ def _readout(
             f"{name} is in none of the {sampled} sampled frames, or something larger has its color; "
             "pick the color anew, or wear another"
         )
-        return MarkerReadout(
-            name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)
-        )
+        warnings = (*alike_warnings(name, likeness.alike), sentence)
+        return MarkerReadout(name, 0, sampled, 0.0, 0.0, 0.0, warnings)
     typical = float(np.median(area[area > 0.0]))
     own = 1.0 - likeness.background - sum(share for _, share in likeness.claimed)
+    grid_area = typical / 4.0 ** halvings(size)
     return MarkerReadout(
         name=name,
         found=found,
@@ -208,8 +201,6 @@ def _readout(
         area_px=typical,
         area_share=typical / (size[0] * size[1]),
         distinctness=max(own, 0.0) * (1.0 - likeness.clutter) * (1.0 - likeness.rivals),
-        warnings=marker_warnings(
-            name, found, sampled, typical / 4.0 ** halvings(size), likeness, places(still, size)
-        ),
+        warnings=marker_warnings(name, found, sampled, grid_area, likeness, places(still, size)),
         still_boxes=still,
     )

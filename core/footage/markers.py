@@ -13,14 +13,7 @@ from .clips.clip import Clip, FrameReader
 from .colors.color_learning import ColorLearner, color_groups
 from .ignored_regions import IgnoredPixels, IgnoredRegion
 from .marker_check import assign_regions
-from .region_tracks import (
-    NO_REGIONS,
-    Detections,
-    ExpectedRegions,
-    MarkerStyle,
-    Regions,
-    RegionTracks,
-)
+from .region_tracks import NO_REGIONS, Detections, ExpectedRegions, MarkerStyle, Regions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
@@ -72,15 +65,32 @@ def still_valid(
 ) -> bool:
     """Whether other expected regions would give exactly the same detections."""
     pixels = IgnoredPixels(tuple(ignored), seen.size)
-    colors = ColorLearner(Path(), seen.size, styles, expected, pixels)
-    return colors.learn_again(seen)
+    return ColorLearner(Path(), seen.size, styles, expected, pixels).learn_again(seen)
 
 
 def assign_detections(
     seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Assign the detected regions to the markers; see `track_markers`."""
-    return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
+    """Assign the detected regions to the markers over the whole clip at once."""
+    groups, scale = color_groups(styles), 2.0 ** halvings(seen.size)
+    found = [gather_candidates(seen.regions, color, scale) for color in range(len(groups))]
+    joined = assign_regions(found, groups, expected, viterbi_path)
+    rows = [joined[marker] for marker in range(len(styles))]
+    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
+    centroid, second = centroid_and_second_moment(moments)
+    how = "only their paths tell which is which" if expected is None else "the keyframes tell which is which"
+    alike = [" and ".join(styles[marker].name for marker in group) for group in groups if len(group) > 1]
+    return RegionTracks(
+        names=tuple(style.name for style in styles),
+        centroid=centroid,
+        second_moment=second,
+        area=np.where(moments[..., 0] > 0.0, moments[..., 0], np.nan),
+        quality=np.stack([region_quality(row) for row in rows], axis=1),
+        clipped=np.stack([row.clipped for row in rows], axis=1),
+        time_s=seen.time_s,
+        size=seen.size,
+        notes=tuple(f"markers {names} have almost the same color; {how}" for names in alike),
+    )
 
 
 def _detect_regions(
@@ -139,46 +149,6 @@ def _regions_of_stretch(
 def _masks(ignored: IgnoredPixels, first: int, count: int) -> list[Image | None]:
     """Masks of the ignored pixels of some successive frames; empty where none are ignored anywhere."""
     return [ignored.mask(first + number) for number in range(count)] if ignored.regions else []
-
-
-def _tracks(
-    regions: Sequence[Regions],
-    styles: Sequence[MarkerStyle],
-    groups: Sequence[Sequence[int]],
-    expected: ExpectedRegions | None,
-    time_s: Array,
-    size: tuple[int, int],
-) -> RegionTracks:
-    """Assign regions to the markers over the whole clip at once."""
-    found = [gather_candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
-    joined = assign_regions(found, groups, expected, viterbi_path)
-    rows = [joined[marker] for marker in range(len(styles))]
-    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
-    centroid, second = centroid_and_second_moment(moments)
-    area = moments[..., 0]
-    return RegionTracks(
-        names=tuple(style.name for style in styles),
-        centroid=centroid,
-        second_moment=second,
-        area=np.where(area > 0.0, area, np.nan),
-        quality=np.stack([region_quality(row) for row in rows], axis=1),
-        clipped=np.stack([row.clipped for row in rows], axis=1),
-        time_s=time_s,
-        size=size,
-        notes=_notes(styles, groups, expected is not None),
-    )
-
-
-def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], placed: bool) -> tuple[str, ...]:
-    how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
-    return tuple(
-        (
-            f"markers {' and '.join((styles[marker].name for marker in group))} have almost the same "
-            f"color; {how}"
-        )
-        for group in groups
-        if len(group) > 1
-    )
 
 
 def regions_of_frame(

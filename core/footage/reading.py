@@ -26,7 +26,7 @@ class Reading:
     """Result of one pass over a clip."""
 
     tracks: RegionTracks  # the markers' regions in every frame
-    album: Album | None = None  # A small picture of every frame; None where only markers are used
+    album: Album | None = None  # a small picture of every frame; None where only markers are used
     detections: Detections | None = None  # all regions of the markers' colors; None where they were not kept
     notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
     key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
@@ -77,9 +77,8 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
 
 
 def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
-    return {
-        key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")
-    }
+    start = f"{name}."
+    return {key.removeprefix(start): array for key, array in arrays.items() if key.startswith(start)}
 
 
 def _text(lines: tuple[str, ...]) -> NDArray[Any]:
@@ -115,7 +114,6 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
 
 
 FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
-PREFIX = "reading"
 
 
 def reading_key(
@@ -126,14 +124,10 @@ def reading_key(
     ignored: Sequence[IgnoredRegion] = (),
 ) -> str:
     """Cache key that changes with everything a reading depends on, of a clip as `Clip.open` takes it."""
-    try:
-        footage = _footage(path, fps)
-    except OSError as error:
-        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
     regions = None if expected is None else (expected.center, expected.radius)
     left_out = [(one.box, one.stroke, one.radius_px, one.frames) for one in ignored] if wanted else []
-    return f"{PREFIX}-{digest(FORMAT, footage, wanted, *left_out)}-{digest(regions)}"
+    return f"reading-{digest(FORMAT, _footage(path, fps), wanted, *left_out)}-{digest(regions)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:
@@ -143,20 +137,20 @@ def of_same_footage(key: str, other: str) -> bool:
 
 def footage_digest(path: Path) -> str:
     """Digest of a clip's file, or of the images of a sequence, independent of their folder."""
-    try:
-        return digest(*_footage(path, 0.0))
-    except OSError as error:
-        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    return digest(*_footage(path, 0.0))
 
 
 def _footage(path: Path, fps: float) -> tuple[object, ...]:
-    images = find_images(path)
-    if images is None:
-        return (file_fingerprint(path),)
-    states = [file.stat() for file in images]
-    names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
-    step = max(1, len(images) // 24)  # evenly spread
-    return fps, names, tuple(file_fingerprint(file) for file in images[::step])
+    try:
+        images = find_images(path)
+        if images is None:
+            return (file_fingerprint(path),)
+        states = [(file.name, file.stat()) for file in images]
+        names = tuple((name, state.st_size, state.st_mtime_ns) for name, state in states)
+        some = images[:: max(1, len(images) // 24)]
+        return fps, names, tuple(file_fingerprint(file) for file in some)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
 
 
 def read_clip(
@@ -187,11 +181,16 @@ def read_clip(
         if seen is not None and same and still_valid(seen, styles, expected, ignored):
             return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
     album, checks = Album() if with_album else None, FrameChecks()
+    watched = watch_clip(clip, checks, album)
     if not styles:
-        tracks = yield from _watch(watch_clip(clip, checks, album))
+        time_s: list[float] = []
+        for _, stamp, _ in watched.frames():
+            time_s.append(stamp)
+            yield min(len(time_s) / clip.frame_count, 1.0)
+        tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
         return Reading(tracks, album, key=key, frame_findings=checks.findings())
     try:
-        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected, ignored)
+        seen = yield from detect_markers(watched, styles, expected, ignored)
     except InputError as error:
         why = checks.nothing_seen()
         if why is not None:
@@ -200,17 +199,8 @@ def read_clip(
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
     yield 1.0
-    return Reading(
-        assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
-    )
-
-
-def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
-    time_s: list[float] = []
-    for _, stamp, _ in clip.frames():
-        time_s.append(stamp)
-        yield min(len(time_s) / clip.frame_count, 1.0)
-    return RegionTracks.unmarked(np.array(time_s), clip.size)
+    tracks = assign_detections(seen, styles, expected)
+    return Reading(tracks, album, seen, key=key, frame_findings=checks.findings())
 
 
 MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand

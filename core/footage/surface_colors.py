@@ -120,8 +120,8 @@ def usual_background(appearance: Appearance) -> SingleArray:
 
 BANDS = 6  # bands of a part's length
 BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
-LEVELS_BAND_COLORS = 1 << BITS
-CELLS = LEVELS_BAND_COLORS**3
+BAND_LEVELS = 1 << BITS
+CELLS = BAND_LEVELS**3
 SHARED = 0.25  # share of a band's colors that are the whole part's: folds and shadows wander
 
 
@@ -165,7 +165,7 @@ def band_cells(pixels: Image) -> IndexArray:
 
 def _densities(counts: Array) -> Array:
     """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
-    grid = counts.reshape(*counts.shape[:-1], LEVELS_BAND_COLORS, LEVELS_BAND_COLORS, LEVELS_BAND_COLORS)
+    grid = counts.reshape(*counts.shape[:-1], BAND_LEVELS, BAND_LEVELS, BAND_LEVELS)
     for axis in (-3, -2, -1):
         # Noise of a few levels.
         grid = correlate1d(grid, np.array([0.16, 0.68, 0.16]), axis=axis, mode="nearest")

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
-from .clip import Clip, FrameSource
+from .clip import Clip
 from .frame_checks import FrameChecks
 
 
@@ -96,37 +96,24 @@ class Album:
         return image
 
 
-@dataclass(eq=False)
-class _WatchedSource:
-    """A source of frames that passes every frame to checks and album before yielding it."""
+@dataclass(frozen=True, kw_only=True)
+class _WatchedClip(Clip):
+    """A clip that passes every frame to checks and album before yielding it."""
 
-    size: tuple[int, int]
-    fps: float
-    frame_count: int
-    source: FrameSource
     checks: FrameChecks
     album: Album | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
+        """See `Clip.frames`; blank ones are not kept in the album."""
         for index, time_s, image in self.source.frames():
             if self.checks.add(index, image) and self.album is not None:
                 self.album.add(index, image)
             yield index, time_s, image
 
-    def time_stamps(self) -> Iterator[float]:
-        return self.source.time_stamps()
-
-    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        return self.source.at(indices)
-
-    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        return self.source.onward(first)
-
 
 def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
     """The clip with checks, and an album to fill, that run while its frames are read in order."""
-    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
-    return Clip(clip.path, source)
+    return _WatchedClip(clip.path, clip.source, checks=checks, album=album)
 
 
 TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's

@@ -33,7 +33,9 @@ def held_against_clip(
         )
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
-    frames, first = [_nobody(len(detected.layout.numbers))] * aligned.frame_count, 0
+    points, first = len(detected.layout.numbers), 0
+    nobody = SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+    frames = [nobody] * aligned.frame_count
     for number, people in detected.people.items():
         rows = np.arange(first, first + len(people))
         first += len(people)
@@ -43,19 +45,11 @@ def held_against_clip(
             frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
-    return People(
-        detected.layout.names,
-        detected.source,
-        size,
-        tuple(frames),
-        file=detected.where,
-        by_hand=detected.by_hand,
-        # The file's name alone: notes go into results, which are the same in any folder.
-        notes=tuple(
-            note.replace(detected.where, Path(detected.where).name or detected.where)
-            for note in aligned.notes + notes
-        ),
-    )
+    # The file's name alone: notes go into results, which are the same in any folder.
+    name = Path(detected.where).name or detected.where
+    notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
+    seen = (detected.layout.names, detected.source, size, tuple(frames))
+    return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
 
 
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
@@ -78,10 +72,6 @@ def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeop
     return SeenPeople(place, score, _hints(persons, numbers, seen)), notes + score_notes
 
 
-def _nobody(points: int) -> SeenPeople:
-    return SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
-
-
 def _aligned(
     detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
 ) -> Alignment:
@@ -89,8 +79,10 @@ def _aligned(
     if detected.numbered:
         aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete)
     else:
-        rates = _other_rate(detected, fps)
-        why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}" if rates else ""
+        rates, why = None, ""
+        if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
+            rates = (detected.fps, fps)  # 29.97 and 30 are one
+            why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}"
         count = len(detected.people)
         aligned = align_listed(count, frame_count, where, why)
         notes = aligned.notes
@@ -101,29 +93,15 @@ def _aligned(
                     f"{where}: frame_start is {start} and its {count} entries are not the clip's "
                     f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
                 )
-            notes += (
-                (
-                    f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
-                    "entry was taken for the clip's first frame"
-                ),
-            )
+            taken = "the first entry was taken for the clip's first frame"
+            notes += (f"{where}: frame_start is {start}, that of the clip is {frame_start}; {taken}",)
         if rates and aligned.frame_count == count:
-            notes += (
-                (
-                    f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
-                    "taken frame by frame"
-                ),
-            )
+            said = f"says {rates[0]:g} frames per second, the clip has {rates[1]:g}"
+            notes += (f"{where}: {said}; it was taken frame by frame",)
         aligned = Alignment(aligned.first, aligned.frame_count, notes)
     if aligned.frame_count > MOST_FRAMES:
         raise InputError(f"{where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read")
     return aligned
-
-
-def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, float] | None:
-    if fps is None or detected.fps is None or abs(detected.fps - fps) <= 0.01 * fps:  # 29.97 and 30 are one
-        return None
-    return detected.fps, fps
 
 
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
@@ -144,12 +122,9 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
-    scale = np.array([clip_width / width, clip_height / height])
-    note = (
-        f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
-        f"{clip_width} x {clip_height}"
-    )
-    return scale, (note,)
+    scaled = f"scaled to the clip's {clip_width} x {clip_height}"
+    note = f"{detected.where}: was found in pictures of {width} x {height}; {scaled}"
+    return np.array([clip_width / width, clip_height / height]), (note,)
 
 
 def _check_places(

@@ -118,7 +118,7 @@ def _rate_words(count: int, frame_count: int) -> str:
     return ""
 
 
-LARGEST_FILE_BYTES = 4 * 2**20  # A hundred people with hands and face
+LARGEST_FILE_BYTES = 4 * 2**20  # a hundred people with hands and face
 _NUMBER = re.compile(r"(\d{1,15})(?:_keypoints)?\.json$", re.IGNORECASE)
 
 

@@ -7,7 +7,7 @@ heading and the change of its shape, both of which may grow with the time betwee
 deviations, each limited, so that one wrong point or frame decides nothing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,10 +45,8 @@ def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> 
     before = np.concatenate([[0.0], np.cumsum(absent)])  # of all frames before each
     window = max(1, round(1.0 * fps))  # seconds; after them a person may be anywhere
     kept: list[_Reached] = []
-    best_far = (
-        np.inf
-    )  # least cost of a path that ended before the window, without the frames passed over since
-    far = (0, 0)
+    # Least cost of a path that ended before the window, without the frames passed over since, and its end.
+    best_far, far = np.inf, (0, 0)
     end, last = before[-1], (NOBODY, 0)
     for frame in range(frames):
         if frame > window and len(kept[frame - window - 1].cost):
@@ -68,7 +66,12 @@ def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> 
             if value.min() < end:
                 end, last = float(value.min()), (frame, int(value.argmin()))
         kept.append(reached)
-    return _path(kept, last, frames)
+    chosen = np.full(frames, NOBODY, dtype=np.intp)
+    frame, row = last
+    while frame != NOBODY:
+        chosen[frame] = kept[frame].rows[row]
+        frame, row = (int(value) for value in kept[frame].previous[row])
+    return chosen
 
 
 @dataclass(eq=False)
@@ -127,6 +130,8 @@ def _step_cost(pixel: Array, velocity: Array, time_s: Array, now: Array) -> tupl
     size = np.maximum(person_size(now)[:, None], person_size(pixel)[None])
     known = np.isfinite(velocity).all(axis=-1)
     ahead = np.where(known[:, None], np.nan_to_num(velocity), 0.0) * time_s[:, None]
+    # Shares of a person's size: a detector's error, half of what gravity does to a body, and a run of whom no
+    # speed is known of. The points about their middle: a detector's error, limbs at 2 m/s, any two postures.
     spread = 0.02 + 3.0 * time_s**2 + np.where(known, 0.0, 2.0 * time_s)
     shift2 = ((moved - ahead) ** 2).sum(axis=-1) / (size * spread) ** 2
     shape = np.minimum(0.05 + 1.2 * time_s, 0.4)
@@ -147,11 +152,13 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
     """Cost of each person of each frame, infinite for those not looked at, and of taking nobody (F,)."""
     sizes = [person_size(pixel) for pixel in seen.pixel]
     largest = max((float(size.max()) for size in sizes if len(size)), default=1.0)
-    preference = 0.25 if expected is None else 0.01
+    preference = 0.25 if expected is None else 0.01  # of being large and sure; elsewhere it breaks ties alone
     costs, absent = [], np.zeros(len(seen.pixel))
     for frame, (pixel, score) in enumerate(zip(seen.pixel, seen.score, strict=True)):
-        cost = preference * (2.0 - sizes[frame] / largest - _mean_score(pixel, score))
-        absent[frame] = 1.0 if len(pixel) else 0.0  # nobody says where the performer is
+        there = np.isfinite(pixel).all(axis=-1)
+        mean_score = (score * there).sum(axis=1) / np.maximum(there.sum(axis=1), 1)
+        cost = preference * (2.0 - sizes[frame] / largest - mean_score)
+        absent[frame] = 1.0 if len(pixel) else 0.0  # somebody who is there longer is preferred
         if expected is not None and len(pixel):
             known = np.isfinite(expected.pixel[frame]).all(axis=-1)
             if known.any():
@@ -164,11 +171,6 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
     return costs, absent
 
 
-def _mean_score(pixel: Array, score: Array) -> Array:
-    seen = np.isfinite(pixel).all(axis=-1)
-    return np.asarray((score * seen).sum(axis=1) / np.maximum(seen.sum(axis=1), 1))
-
-
 def _distance_cost(pixel: Array, score: Array, expected: Expected, frame: int, known: BoolArray) -> Array:
     """(H,) mean over the points of half the squared distance, each limited, weighted by the scores."""
     weight = np.where(np.isfinite(pixel).all(axis=-1) & known, score, 0.0)
@@ -179,18 +181,6 @@ def _distance_cost(pixel: Array, score: Array, expected: Expected, frame: int, k
     return np.where(total > 0.0, (weight * cost).sum(axis=1) / np.where(total > 0.0, total, 1.0), ABSENT_COST)
 
 
-def _path(kept: list[_Reached], last: tuple[int, int], frames: int) -> IndexArray:
-    chosen = np.full(frames, NOBODY, dtype=np.intp)
-    frame, row = last
-    while frame != NOBODY:
-        chosen[frame] = kept[frame].rows[row]
-        frame, row = (int(value) for value in kept[frame].previous[row])
-    return chosen
-
-
-HEAD, EARS, NOSE = "head", ("ear.L", "ear.R"), "nose"
-
-
 def principal_keypoints(keypoints: Keypoints) -> Keypoints:
     """The principal points (F, P), in the skeleton's order; NaN where none shows one.
 
@@ -198,10 +188,10 @@ def principal_keypoints(keypoints: Keypoints) -> Keypoints:
     """
     size = performer_size_px(keypoints)
     found = [_agreed(keypoints, name, size) for name in HUMAN.point_names]
-    head = HUMAN.point_names.index(HEAD)
-    found[head] = found[head].or_else(_middle(*(_agreed(keypoints, name, size) for name in EARS)))
-    # A decimeter in front of it.
-    found[head] = found[head].or_else(_agreed(keypoints, NOSE, size).doubted(0.3))
+    head = HUMAN.point_names.index("head")
+    left, right, nose = (_agreed(keypoints, name, size) for name in ("ear.L", "ear.R", "nose"))
+    doubted = replace(nose, score=0.3 * nose.score)  # it lies a decimeter before the head's middle
+    found[head] = found[head].or_else(_middle(left, right)).or_else(doubted)
     return Keypoints(
         HUMAN.point_names,
         ("",) * len(found),
@@ -229,9 +219,6 @@ class _Point:
     pixel: Array  # (F, 2) [px], NaN where not seen
     score: Array  # (F,) 0 where not seen
     hint_m: Array  # (F, 3) NaN where there is none
-
-    def doubted(self, share: float) -> "_Point":
-        return _Point(self.pixel, share * self.score, self.hint_m)
 
     def or_else(self, other: "_Point") -> "_Point":
         """This point where it is seen, the other elsewhere."""

@@ -144,9 +144,9 @@ class Palette:
 
     def _before_others(self, seen: Array, beside: BoolArray) -> tuple[Array, Array]:
         """Share and cost (N,) of the surface before the likeliest other one that is seen beside a pixel."""
-        colors, deviations = self._colors, self._deviations
-        ends = np.broadcast_to(self.surface.color, colors.shape)
-        share, cost = _lines(seen, colors, deviations, ends, np.full(len(colors), self.surface.deviation))
+        ends = np.broadcast_to(self.surface.color, self._colors.shape)
+        deviation = np.full(len(ends), self.surface.deviation)
+        share, cost = _lines(seen, self._colors, self._deviations, ends, deviation)
         cost = np.where(beside, cost, np.inf)
         best = cost.argmin(axis=1)[:, None]
         return np.take_along_axis(share, best, 1)[:, 0], np.take_along_axis(cost, best, 1)[:, 0]
@@ -162,12 +162,11 @@ class Palette:
         return np.minimum(among.min(axis=1), before.min(axis=1))
 
 
+Deviation = Array | float
+
+
 def mixed(
-    pixels: Array,
-    first: Array,
-    first_deviation: Array | float,
-    second: Array,
-    second_deviation: Array | float,
+    pixels: Array, first: Array, first_deviation: Deviation, second: Array, second_deviation: Deviation
 ) -> tuple[Array, Array]:
     """Share of the second color in pixels (..., 3), and -2 log density of all mixtures, (...).
 
@@ -180,11 +179,7 @@ def mixed(
 
 
 def _weighed(
-    squared: Array,
-    along: Array,
-    length: Array,
-    first_deviation: Array | float,
-    second_deviation: Array | float,
+    squared: Array, along: Array, length: Array, first_deviation: Deviation, second_deviation: Deviation
 ) -> tuple[Array, Array]:
     """Share and cost by the products of a line's axis and a pixel's offset from its first end."""
     share = np.clip(along / np.maximum(squared, 1e-6), 0.0, 1.0)
@@ -214,12 +209,8 @@ def _dot(one: Array, other: Array) -> Array:
 def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     """Connected regions in which a surface shows, of a window with its left and top at `origin`."""
     core = (seen.gain > LEAST_GAIN).astype(np.uint8)
-    # Near it that is its blur.
-    shown = (
-        (seen.gain > -LEAST_GAIN)
-        & (seen.share > 0.0)
-        & (cv2.dilate(core, np.ones((9, 9), dtype=np.uint8)) > 0)
-    )
+    rim = cv2.dilate(core, np.ones((9, 9), dtype=np.uint8)) > 0  # a color that fits no worse is the blur here
+    shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & rim
     count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
