@@ -21,21 +21,17 @@ class Drawn:
     frame_count = FRAMES
 
     def image(self, index: int) -> np.ndarray:
-        """A frame."""
         across = np.linspace(0.0, 100.0, self.size[0])[None, :, None]
         return np.broadcast_to(across + 30.0 * index, (480, 640, 3)).astype(np.uint8)
 
     def frames(self) -> Iterator[tuple[int, float, np.ndarray]]:
-        """All frames."""
         for index in range(FRAMES):
             yield index, index / self.fps, self.image(index)
 
     def time_stamps(self) -> Iterator[float]:
-        """All times."""
         return (index / self.fps for index in range(FRAMES))
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, np.ndarray]]:
-        """Some frames."""
         return ((index, self.image(index)) for index in indices)
 
 
@@ -54,7 +50,6 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
 
 
 def test_sampling_puts_nothing_into_the_album() -> None:
-    """Only the pass over all frames fills it; a frame never read has no picture."""
     album = Album()
     clip = watch_clip(Clip(Path("drawn"), Drawn()), FrameChecks(), album)
     assert len(list(clip.sample(2))) == 2

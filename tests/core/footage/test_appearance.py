@@ -33,7 +33,6 @@ def test_the_background_is_what_shows_when_nobody_is_before_it() -> None:
 
 
 def test_what_a_performer_who_stays_hides_is_not_known() -> None:
-    """Behind him nothing is claimed; elsewhere the background is known."""
     learned = walk_by(stays=True)
     assert not learned.known[25:40, 32:40].any()
     assert learned.known[:, :20].all()
@@ -41,7 +40,6 @@ def test_what_a_performer_who_stays_hides_is_not_known() -> None:
 
 @pytest.mark.parametrize("shake", [2, 6])
 def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
-    """Two pixels of shake make a camera that is not static."""
     assert not walk_by(shake).steady
 
 
@@ -58,7 +56,6 @@ def test_colors_are_likelier_as_what_they_are() -> None:
 
 @pytest.mark.parametrize("frames", [1, 2, 5, 12, 31, 32])
 def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> None:
-    """Of any number of pictures, as plain sorting finds it, pixel by pixel."""
     rng = np.random.default_rng(frames)
     images = rng.integers(0, 255, size=(frames, 8, 64, 3), dtype=np.uint8)
     labels = np.full((frames, 8, 64), NO_PART, dtype=np.int8)
@@ -71,6 +68,5 @@ def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> Non
 
 
 def test_only_pixels_that_move_are_left_out() -> None:
-    """A shaken camera leaves the inside of plain blocks; what stands still stays."""
     assert walk_by().where_steady().known.mean() > 0.95
     assert walk_by(6).where_steady().known.mean() < 0.5

@@ -7,7 +7,6 @@ SLEEVE, SKIN = np.array([180, 60, 40], dtype=np.uint8), np.array([120, 150, 210]
 
 
 def learn() -> BandColors:
-    """Two forearms, bare from two thirds on."""
     image = np.full((40, 60, 3), 90, dtype=np.uint8)
     label = np.full((40, 60), -1, dtype=np.int8)
     share = np.full((40, 60), np.nan)
@@ -19,7 +18,6 @@ def learn() -> BandColors:
 
 
 def test_each_band_has_the_colors_worn_there() -> None:
-    """The sleeve's is likelier on its part of the arm, the skin's behind it."""
     bands = learn().bands[0]
     sleeve, skin = bands[:, band_cells(SLEEVE)], bands[:, band_cells(SKIN)]
     assert (sleeve[: 2 * BANDS // 3] > skin[: 2 * BANDS // 3] + 0.5).all()
@@ -27,7 +25,6 @@ def test_each_band_has_the_colors_worn_there() -> None:
 
 
 def test_densities_sum_to_one() -> None:
-    """Of bands, parts and everything together."""
     learned = learn()
     for logs in (learned.bands, learned.parts, learned.anything):
         np.testing.assert_allclose(np.exp(logs).sum(axis=-1), 1.0, rtol=1e-6)

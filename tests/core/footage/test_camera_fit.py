@@ -16,18 +16,15 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def camera(lens_mm: float, height_m: float, tilt: float, roll: float) -> Camera:
-    """A camera that looks along +Y; tilt and roll in degrees."""
     placement = CameraPlacement(height_m, float(np.radians(tilt)), float(np.radians(roll)))
     return Camera(lens_mm, 36.0, SIZE, placement.matrix())
 
 
 def usual(lens_mm: float = 35.0) -> Camera:
-    """The camera before anything is known of it."""
     return Camera(lens_mm, 36.0, SIZE, default_camera_pose(lens_mm, 36.0, SIZE))
 
 
 def lines(true: Camera, ends: Array) -> Array:
-    """Lines (L, 2, 2) in the picture between points (L, 2, 3)."""
     return true.project(ends)[0]
 
 
@@ -46,13 +43,11 @@ def room(true: Camera, level: bool = True) -> CameraEvidence:
 
 
 def people(true: Camera, places: Array) -> Uprights:
-    """Someone who stands at places (N, 2) on the floor."""
     ground = np.column_stack([places, np.zeros(len(places))])
     return Uprights.persons(true.project(ground)[0], true.project(ground + STATURE_M * UP)[0], STATURE_M)
 
 
 def errors(fit: CameraFit, true: Camera) -> dict[str, float]:
-    """Of each parameter, in the units of its deviation."""
     known, found = CameraPlacement.of(true.matrix_world), fit.placement
     return {
         HEIGHT: found.height_m - known.height_m,
@@ -120,7 +115,6 @@ def test_people_at_several_places_give_height_tilt_and_roll(true: Camera) -> Non
 
 
 def test_one_place_determines_the_height_only_with_the_tilt() -> None:
-    """The other is kept as it was, and said to be."""
     true = camera(35.0, 1.4, 0.0, 0.0)
     fit = fit_camera(usual(), CameraEvidence(uprights=people(true, np.array([[0.0, 5.0]]))))
     assert LENS in fit.kept and {HEIGHT, TILT} & set(fit.kept)
@@ -130,7 +124,6 @@ def test_one_place_determines_the_height_only_with_the_tilt() -> None:
 
 
 def test_nothing_determines_nothing() -> None:
-    """The camera stays as it was."""
     before = usual()
     fit = fit_camera(before, CameraEvidence())
     assert fit.kept == PARAMETERS and np.allclose(fit.camera.matrix_world, before.matrix_world)
@@ -150,7 +143,6 @@ def test_lines_too_near_each_other_leave_the_tilt_and_a_level_camera_the_lens() 
 
 
 def test_lines_that_contradict_each_other_widen_the_deviations_and_say_so() -> None:
-    """One line that is not plumb at all, among many that are."""
     true = camera(35.0, 1.5, -10.0, 0.0)
     plumb = np.array([[[x, 5.0, 0.0], [x, 5.0, 2.0]] for x in (-1.5, -0.7, 0.2, 0.9, 1.5)])
     good = fit_camera(usual(), CameraEvidence(vertical=lines(true, plumb)))
@@ -161,7 +153,6 @@ def test_lines_that_contradict_each_other_widen_the_deviations_and_say_so() -> N
 
 
 def test_place_and_heading_stay_and_distortion_is_heeded() -> None:
-    """Lines are bent by the lens; the camera stands elsewhere and looks another way."""
     placement = CameraPlacement(1.6, float(np.radians(-12.0)), 0.0)
     true = Camera(30.0, 36.0, SIZE, placement.matrix(), distortion=(-0.08, 0.01, 0.0))
     before = replace(true, lens_mm=33.0, matrix_world=CameraPlacement(1.3, 0.0, 0.0).matrix((3.0, -2.0), 1.1))
@@ -172,7 +163,6 @@ def test_place_and_heading_stay_and_distortion_is_heeded() -> None:
 
 
 def test_a_moving_camera_has_no_single_pose() -> None:
-    """It is refused."""
     moving = replace(usual(), matrix_world=np.stack([usual().matrix_world] * 2))
     with pytest.raises(ValueError, match="moving camera"):
         fit_camera(moving, CameraEvidence())

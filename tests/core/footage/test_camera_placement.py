@@ -8,7 +8,6 @@ from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
 
 @pytest.mark.parametrize("seed", range(8))
 def test_numbers_and_pose_say_the_same(seed: int) -> None:
-    """What a pose is made from is read from it, the heading too."""
     rng = np.random.default_rng(seed)
     height, tilt, roll = rng.uniform(0.2, 4.0), rng.uniform(-1.4, 1.4), rng.uniform(-3.0, 3.0)
     heading, place = rng.uniform(-3.0, 3.0), tuple(rng.normal(0.0, 3.0, 2))
@@ -35,7 +34,6 @@ def test_a_level_camera_looks_ahead_and_a_negative_tilt_down() -> None:
 
 @pytest.mark.parametrize("tilt", [-np.pi / 2, np.pi / 2])
 def test_a_camera_that_looks_straight_down_or_up_has_a_heading_and_no_roll(tilt: float) -> None:
-    """Its heading is where the picture's upper edge lies."""
     pose = CameraPlacement(2.0, tilt, 0.0).matrix((0.0, 0.0), 0.7)
     assert CameraPlacement.of(pose).tilt_rad == pytest.approx(tilt)
     assert CameraPlacement.of(pose).roll_rad == 0.0

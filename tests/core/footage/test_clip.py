@@ -11,7 +11,6 @@ from keymark.core.footage.region_tracks import is_variable_frame_rate
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
-    """An even image of one gray level."""
     return np.full((size[1], size[0], 3), level, dtype=np.uint8)
 
 
@@ -31,7 +30,6 @@ def write_video(path: Path, count: int, fps: float = 25.0, size: tuple[int, int]
 
 
 def test_a_video_yields_its_frames_in_order_with_their_times(tmp_path: Path) -> None:
-    """One pass gives every frame once, at index / fps."""
     clip = Clip.open(write_video(tmp_path / "clip.mp4", 30))
     frames = list(clip.frames())
     assert [index for index, _, _ in frames] == list(range(30))
@@ -72,7 +70,6 @@ def test_images_follow_their_numbers(tmp_path: Path) -> None:
 
 
 def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) -> None:
-    """Naming a file takes its own sequence only."""
     for number in (1, 2):
         cv2.imwrite(str(tmp_path / f"left{number}.png"), picture(10 + number))
         cv2.imwrite(str(tmp_path / f"right{number}.png"), picture(20 + number))
@@ -91,7 +88,6 @@ def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) ->
     ids=["gray", "16 bit", "alpha", "16 bit gray"],
 )
 def test_every_depth_and_channel_count_becomes_eight_bit_color(tmp_path: Path, image: np.ndarray) -> None:
-    """A level of 200 stays 200 in three channels."""
     cv2.imwrite(str(tmp_path / "a1.png"), image)
     _, _, frame = next(Clip.open(tmp_path).frames())
     assert frame.dtype == np.uint8 and frame.shape == (8, 9, 3)
@@ -129,7 +125,6 @@ def test_unusable_files_are_named_in_one_sentence(tmp_path: Path) -> None:
 def test_the_decoder_does_not_complain_beside_our_sentence(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Standard error belongs to the one sentence that is raised."""
     text = tmp_path / "text.mp4"
     text.write_text("this is no video")
     with pytest.raises(InputError):
@@ -138,7 +133,6 @@ def test_the_decoder_does_not_complain_beside_our_sentence(
 
 
 def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None:
-    """The frames before it are still yielded."""
     cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
     cv2.imwrite(str(tmp_path / "a2.png"), picture(5, (32, 48)))
     frames = Clip.open(tmp_path).frames()
@@ -148,7 +142,6 @@ def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None
 
 
 def test_rates_that_are_no_rates_are_refused(tmp_path: Path) -> None:
-    """An image sequence needs a positive rate."""
     cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
     with pytest.raises(InputError, match="fps"):
         Clip.open(tmp_path, fps=-3.0)
@@ -168,5 +161,4 @@ def test_rates_that_are_no_rates_are_refused(tmp_path: Path) -> None:
     ids=["even", "milliseconds", "fast milliseconds", "dropped frame", "phone", "two frames", "none"],
 )
 def test_uneven_stamps_are_told_from_rounded_ones(time_s: np.ndarray, variable: bool) -> None:
-    """A dropped frame makes a clip uneven; rounding to milliseconds does not."""
     assert is_variable_frame_rate(time_s) is variable

@@ -34,12 +34,10 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
 
 @pytest.fixture
 def clip(tmp_path: Path) -> Path:
-    """A copy of the demonstration's."""
     return Path(shutil.copy(DEMO / "clip.mp4", tmp_path))
 
 
 def test_a_clip_is_decoded_once_for_its_times(clip: Path, passes: list[Path]) -> None:
-    """Those of the clip itself, at first and afterwards."""
     first, second = (run(clip_times(Clip.open(clip))) for _ in range(2))
     assert passes == [clip]
     np.testing.assert_array_equal(first, list(Clip.open(clip).source.time_stamps()))
@@ -48,7 +46,6 @@ def test_a_clip_is_decoded_once_for_its_times(clip: Path, passes: list[Path]) ->
 
 
 def test_a_clip_that_has_changed_is_decoded_again(clip: Path, passes: list[Path]) -> None:
-    """A file of the same name with other frames has its own times."""
     first = run(clip_times(Clip.open(clip)))
     video = cv2.VideoWriter(str(clip), cv2.VideoWriter.fourcc(*"mp4v"), 30.0, (64, 48))
     for level in range(0, 100, 10):
@@ -74,7 +71,6 @@ def test_a_reading_of_the_clip_knows_its_times(clip: Path, passes: list[Path]) -
 
 
 def test_a_pass_that_was_broken_off_leaves_nothing(clip: Path, passes: list[Path]) -> None:
-    """After Esc all times are read, not those that were read until then."""
     broken = clip_times(Clip.open(clip))
     next(broken)
     broken.close()
@@ -83,7 +79,6 @@ def test_a_pass_that_was_broken_off_leaves_nothing(clip: Path, passes: list[Path
 
 
 def test_only_the_last_clips_are_remembered(clip: Path, tmp_path: Path, passes: list[Path]) -> None:
-    """Each of very many clips is decoded once, and the first one again in the end."""
     others = [tmp_path / f"{number}.mp4" for number in range(MOST_CLIPS)]
     for number, other in enumerate(others):
         other.write_bytes(clip.read_bytes())

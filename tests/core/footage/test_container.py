@@ -15,7 +15,6 @@ SIZE = (64, 48)
 
 
 def write_video(path: Path, code: str = "mp4v") -> Path:
-    """A short video."""
     video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), 25.0, SIZE)
     for level in range(6):
         video.write(np.full((SIZE[1], SIZE[0], 3), 40 * level, dtype=np.uint8))
@@ -25,12 +24,10 @@ def write_video(path: Path, code: str = "mp4v") -> Path:
 
 @pytest.fixture(scope="module")
 def outside(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Somebody else's video."""
     return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", "MJPG")
 
 
 def playlists(target: Path) -> dict[str, str]:
-    """Texts that lead a decoder to a file."""
     hls = f"#EXTM3U\n#EXT-X-TARGETDURATION:9\n#EXTINF:1.0,\n{target}\n#EXT-X-ENDLIST\n"
     return {
         "HLS": hls,
@@ -50,7 +47,6 @@ def playlists(target: Path) -> dict[str, str]:
 def test_a_playlist_is_no_clip_whatever_it_is_called(
     kind: str, ending: str, outside: Path, tmp_path: Path
 ) -> None:
-    """The decoder would follow it by its content."""
     (tmp_path / "inside.avi").symlink_to(outside)
     clip = tmp_path / f"clip.{ending}"
     clip.write_text(playlists(outside)[kind], encoding="utf-8")
@@ -59,7 +55,6 @@ def test_a_playlist_is_no_clip_whatever_it_is_called(
 
 
 def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> None:
-    """Else all this would guard against nothing."""
     (tmp_path / "inside.avi").symlink_to(outside)
     clip = tmp_path / "clip.mp4"
     clip.write_text(playlists(outside)["list to be joined"], encoding="utf-8")
@@ -70,7 +65,6 @@ def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> N
     "name", ["a:b.avi", "file:clip.avi", "concat:x.avi", "http:clip.avi", "clip %03d.avi"]
 )
 def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A relative name that begins like an address is still a file's."""
     if os.name == "nt" and ":" in name:
         pytest.skip("no file is called so here")
     write_video(tmp_path / "plain.avi", "MJPG").rename(tmp_path / name)
@@ -82,7 +76,6 @@ def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.Mo
     ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
 )
 def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
-    """Containers that OpenCV itself writes pass, and open."""
     path = write_video(tmp_path / name, code)
     check_container(path)
     assert Clip.open(path).size == SIZE
@@ -114,14 +107,12 @@ def test_containers_that_opencv_cannot_write_are_known(beginning: bytes, tmp_pat
     "content", [b"RIFF\x00\x00\x00\x00WAVEfmt ", b"PK\x03\x04zip", b"\x7fELF", bytes(400), b"GG"]
 )
 def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
-    """Sound, archives, programs, nothing at all."""
     (tmp_path / "clip.mp4").write_bytes(content)
     with pytest.raises(InputError, match=r"clip\.mp4: cannot be decoded; it holds"):
         Clip.open(tmp_path / "clip.mp4")
 
 
 def test_pictures_have_a_largest_size(tmp_path: Path) -> None:
-    """8K is read, a claim of gigabytes is not."""
     check_pixels(tmp_path, 7680, 4320)
     with pytest.raises(InputError, match=f"at most {MOST_PIXELS} pixels"):
         check_pixels(tmp_path, 20000, 20000)

@@ -12,7 +12,6 @@ SIZES = [(1080, 1920), (2160, 3840), (640, 480), (320, 240), (1920, 1080), (1440
 
 
 def test_a_phone_held_upright_sees_as_much_as_its_photographs_less_what_steadies() -> None:
-    """26 mm on the diagonal of a photograph, of whose view a tenth goes."""
     guess = guess_lens((1080, 1920))
     assert "phone" in guess.reason
     long_side_view = np.degrees(2.0 * np.arctan(18.0 / guess.lens_mm))
@@ -32,7 +31,6 @@ def test_a_webcams_height_is_that_of_its_wide_picture() -> None:
 
 @pytest.mark.parametrize("size", [(1920, 1080), (3840, 2160), (1280, 720), (1440, 1080), (720, 720)])
 def test_anything_else_is_a_usual_zoom(size: tuple[int, int]) -> None:
-    """35 mm on full frame."""
     guess = guess_lens(size)
     assert (guess.lens_mm, guess.sensor_width_mm) == (35.0, 36.0)
 

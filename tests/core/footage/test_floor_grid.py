@@ -10,7 +10,6 @@ SIZE = (640, 480)
 
 
 def camera(tilt: float, height_m: float = 1.5) -> Camera:
-    """A camera with a tilt in degrees."""
     return Camera(
         35.0, 36.0, SIZE, CameraPlacement(height_m, float(np.radians(tilt)), 0.0).matrix((0.3, 0.4))
     )
@@ -18,7 +17,6 @@ def camera(tilt: float, height_m: float = 1.5) -> Camera:
 
 @pytest.mark.parametrize("tilt", [-60.0, -10.0, 0.0, 10.0])
 def test_every_piece_lies_on_a_whole_meter_of_the_floor(tilt: float) -> None:
-    """Its ends, followed back to the floor, have x or y in common, and that is whole."""
     seen = camera(tilt)
     grid = floor_grid(seen)
     assert len(grid.lines) > 20
@@ -39,7 +37,6 @@ def test_the_horizon_is_where_the_view_is_level() -> None:
 
 
 def test_a_camera_that_moves_sees_the_floor_from_each_pose() -> None:
-    """The frame chooses the pose."""
     poses = np.stack([camera(0.0).matrix_world, camera(-20.0).matrix_world])
     moving = Camera(35.0, 36.0, SIZE, poses)
     assert np.allclose(floor_grid(moving, 1).lines, floor_grid(camera(-20.0)).lines)

@@ -50,7 +50,6 @@ def test_a_marker_that_enters_late_is_found_from_its_first_frame_on() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_a_lost_marker_is_found_where_it_comes_back() -> None:
-    """It comes back on the other side of the picture, in the very frame."""
     rng = np.random.default_rng(3)
     places = [(60.0 + 2.0 * index, 60.0) if index < 20 else (260.0 - index, 200.0) for index in range(50)]
     images = []
@@ -65,7 +64,6 @@ def test_a_lost_marker_is_found_where_it_comes_back() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_a_marker_that_leaps_out_of_its_window_is_followed() -> None:
-    """More than its own length from frame to frame, there and back."""
     rng = np.random.default_rng(4)
     places = [(160.0 + 100.0 * np.sin(index * 0.5), 90.0 + 20.0 * np.cos(index * 0.4)) for index in range(48)]
     images = [draw([(RED, place, (17.0, 7.0), 0.0)], rng) for place in places]
@@ -77,7 +75,6 @@ def test_a_marker_that_leaps_out_of_its_window_is_followed() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_two_pieces_about_an_arm_are_one_marker_after_the_stretch_too() -> None:
-    """The arm comes before the marker's middle in the last frames."""
     rng = np.random.default_rng(5)
     images = []
     for index in range(30):
@@ -115,7 +112,6 @@ def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
 
 
 def test_markers_of_different_colors_need_no_note() -> None:
-    """Red and blue are told apart by what they are."""
     rng = np.random.default_rng(7)
     assert finish(track_markers(clip_of([draw(moving(i), rng) for i in range(12)]), STYLES)).notes == ()
 
@@ -130,7 +126,6 @@ def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
 
 
 def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> None:
-    """Of two images, one of them halved; columns between panels serve no color."""
     rng = np.random.default_rng(9)
     images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
     sheet = pack_windows(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
@@ -146,7 +141,6 @@ def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> No
 
 
 def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
-    """A followed box counts only where nothing is seen."""
     assert boxes_to_measure([(0, 0, 10, 10), (18, 4, 30, 12)], []) == [(0, 0, 30, 12)]
     assert sorted(boxes_to_measure([(0, 0, 10, 10)], [(5, 5, 20, 20), (90, 0, 99, 9)])) == [
         (0, 0, 10, 10),

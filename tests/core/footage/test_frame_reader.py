@@ -12,7 +12,6 @@ FPS = 30.0
 
 
 def gray(index: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
-    """A picture whose level tells its index."""
     return np.full((size[1], size[0], 3), 20 + 8 * (index % 25), dtype=np.uint8)
 
 
@@ -29,7 +28,6 @@ def test_stepping_forward_decodes_each_frame_once() -> None:
 
 
 def test_outside_the_clip_there_is_no_frame() -> None:
-    """The last frame lasts as long as the others."""
     reader = FrameReader(Clip(Path("drawn"), Drawn([gray(index) for index in range(5)], fps=FPS)))
     assert reader.image_at(-0.5 / FPS) is None
     assert reader.image_at(5.2 / FPS) is None
@@ -38,13 +36,9 @@ def test_outside_the_clip_there_is_no_frame() -> None:
 
 
 def test_times_between_and_rounded_stamps_show_the_frame_that_has_begun() -> None:
-    """Containers round stamps to milliseconds, up as well as down."""
 
     class Rounded(Drawn):
-        """Stamps in whole milliseconds."""
-
         def onward(self, first: int):  # noqa: ANN202
-            """Round."""
             return ((round(time, 3), image) for time, image in super().onward(first))
 
     reader = FrameReader(Clip(Path("drawn"), Rounded([gray(index) for index in range(40)], fps=FPS)))
@@ -54,14 +48,10 @@ def test_times_between_and_rounded_stamps_show_the_frame_that_has_begun() -> Non
 
 
 def test_uneven_frames_are_found_by_their_times() -> None:
-    """Every other frame of a stretch was dropped; the one before is shown then."""
     kept = [index for index in range(60) if index < 20 or index % 2 == 0]
 
     class Uneven(Drawn):
-        """Frames at their own times."""
-
         def onward(self, first: int):  # noqa: ANN202
-            """Those that were kept."""
             return ((kept[index] / FPS, gray(kept[index])) for index in range(first, len(kept)))
 
     reader = FrameReader(Clip(Path("uneven"), Uneven([gray(index) for index in kept], fps=FPS)))
@@ -72,7 +62,6 @@ def test_uneven_frames_are_found_by_their_times() -> None:
 
 @pytest.mark.parametrize("order", [(0, 1, 2, 290, 291, 150, 140), (299, 0, 131)])
 def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> None:
-    """Far places of a file and the way back."""
     path = tmp_path / "long.mp4"
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), FPS, (64, 48))
     for index in range(300):
@@ -84,7 +73,6 @@ def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> N
 
 
 def test_numbered_images_are_read_one_by_one(tmp_path: Path) -> None:
-    """Their rate is what the scene says."""
     for index in range(6):
         cv2.imwrite(str(tmp_path / f"img_{index}.png"), gray(index))
     reader = FrameReader(Clip.open(tmp_path, fps=10.0))

@@ -21,18 +21,15 @@ OVER = (14.0, 144.0, 96.0, 226.0)
 
 
 def images(count: int = 40) -> list[np.ndarray]:
-    """The usual clip with the panel."""
     rng = np.random.default_rng(3)
     return [with_panel(draw(moving(index), rng)) for index in range(count)]
 
 
 def hidden_red(index: int) -> list[Ellipse]:
-    """Red is behind something in the middle of the clip."""
     return [*(moving(index)[:1] if not 12 <= index < 28 else []), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
 
 
 def track(frames: list[np.ndarray], *ignored: IgnoredRegion) -> RegionTracks:
-    """The markers of a clip."""
     return finish(track_markers(clip_of(frames), STYLES, ignored=ignored))
 
 
@@ -43,7 +40,6 @@ def away(tracks: RegionTracks) -> np.ndarray:
 
 
 def mask(*regions: IgnoredRegion, frame: int = 0, size: tuple[int, int] = SIZE) -> np.ndarray | None:
-    """The mask of a frame."""
     return IgnoredPixels(regions, size).mask(frame)
 
 
@@ -59,7 +55,6 @@ def test_a_box_covers_its_pixels_on_the_measuring_grid() -> None:
 
 
 def test_a_stroke_covers_all_that_its_disc_sweeps() -> None:
-    """A capsule of known area, in its very place."""
     stroke = IgnoredRegion(stroke=((100.0, 60.0), (160.0, 100.0)), radius_px=12.0)
     covered = mask(stroke)
     assert covered is not None
@@ -72,7 +67,6 @@ def test_a_stroke_covers_all_that_its_disc_sweeps() -> None:
 
 
 def test_a_region_counts_in_its_frames_alone() -> None:
-    """First and last included; frames may be those of samples."""
     region = IgnoredRegion(box=(0.0, 0.0, 10.0, 10.0), frames=(5, 7))
     assert [mask(region, frame=frame) is not None for frame in (4, 5, 7, 8)] == [False, True, True, False]
     sampled = IgnoredPixels((region,), SIZE, sampled=(0, 6, 12))
@@ -101,7 +95,6 @@ def test_a_hidden_marker_is_not_taken_for_an_ignored_panel(over: IgnoredRegion) 
 
 
 def test_a_panel_beside_a_resting_marker_is_told_from_it() -> None:
-    """A resting red marker beside a larger panel: only the person knows which is which."""
     rng = np.random.default_rng(7)
     at_rest = [(RED, (200.3, 60.7), (16.0, 6.0), 30.0), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
     frames = [with_panel(draw(at_rest, rng)) for _ in range(30)]
@@ -151,7 +144,6 @@ def test_a_region_ignored_in_some_frames_is_searched_in_the_others() -> None:
 
 
 def test_a_reading_without_ignored_regions_is_the_same_bit_for_bit() -> None:
-    """Its key as well, so that stored ones stay valid; ignored regions change the key."""
     frames = images(12)
     clip = clip_of(frames)
     one, other = track(frames), finish(track_markers(clip, STYLES, None, ()))
@@ -160,7 +152,6 @@ def test_a_reading_without_ignored_regions_is_the_same_bit_for_bit() -> None:
 
 
 def test_the_key_of_a_reading_changes_with_what_is_ignored(tmp_path: Path) -> None:
-    """With every number of it; but not where no marker is followed."""
     folder = tmp_path / "clip"
     folder.mkdir()
     for index in range(3):
@@ -178,7 +169,6 @@ def test_the_key_of_a_reading_changes_with_what_is_ignored(tmp_path: Path) -> No
 
 
 def test_a_kept_reading_is_not_used_for_other_ignored_regions(tmp_path: Path) -> None:
-    """The panel is gone from the next reading, although the clip is the same."""
     folder = tmp_path / "clip"
     folder.mkdir()
     rng = np.random.default_rng(5)
@@ -192,12 +182,10 @@ def test_a_kept_reading_is_not_used_for_other_ignored_regions(tmp_path: Path) ->
 
 
 def _read(clip: Clip, kept: Reading | None = None, ignored: Sequence[IgnoredRegion] = ()) -> Reading:
-    """A reading without pictures."""
     return run(read_clip(clip, STYLES, None, False, kept, ignored))
 
 
 def test_one_frame_alone_leaves_the_same_pixels_out() -> None:
-    """As the whole clip does, and only in the frames of a region."""
     rng = np.random.default_rng(5)
     frames = [with_panel(draw(hidden_red(index), rng)) for index in range(40)]
     over = IgnoredRegion(box=OVER, frames=(0, 25))
@@ -207,7 +195,6 @@ def test_one_frame_alone_leaves_the_same_pixels_out() -> None:
 
 
 def test_a_mask_that_is_shown_has_nothing_of_an_ignored_panel() -> None:
-    """Red outside stays as it was."""
     frames = images()
     samples = run(sample_clip(clip_of(frames)))
     over = (IgnoredRegion(box=OVER),)

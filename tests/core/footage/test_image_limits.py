@@ -12,7 +12,6 @@ from keymark.core.footage.clips.image_sequence import read_image
 
 
 def png(width: int, height: int) -> bytes:
-    """A PNG that claims a size, with next to nothing in it."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -26,14 +25,12 @@ def png(width: int, height: int) -> bytes:
     "size", [(60_000, 60_000), (20_000, 20_000), (2**31 - 1, 1), (2**31 - 1, 2**31 - 1), (0, 9)]
 )
 def test_an_image_that_claims_gigabytes_is_refused(size: tuple[int, int], tmp_path: Path) -> None:
-    """Before room is made for it."""
     (tmp_path / "bomb.png").write_bytes(png(*size))
     with pytest.raises(InputError, match=r"bomb\.png: cannot be decoded.*at most 134217728 pixels"):
         read_image(tmp_path / "bomb.png")
 
 
 def test_a_folder_of_too_many_images_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By their number, and none of them is opened."""
     monkeypatch.setattr(image_sequence, "MOST_IMAGES", 5)
     for number in range(6):
         (tmp_path / f"{number}.png").touch()
@@ -44,7 +41,6 @@ def test_a_folder_of_too_many_images_is_refused(tmp_path: Path, monkeypatch: pyt
 
 
 def test_digits_that_are_no_number_are_letters(tmp_path: Path) -> None:
-    """A superscript in a name once was an error without a sentence."""
     for name in ("m\u00b2.png", "2.png", "\u0663.png"):
         (tmp_path / name).write_bytes(b"")
     with pytest.raises(InputError, match="cannot be decoded|sequence"):

@@ -33,17 +33,14 @@ def result_of(job: Generator[float, None, Result]) -> Result:
 def check(
     images: list[np.ndarray], styles: Sequence[MarkerStyle] = STYLES, expected: ExpectedRegions | None = None
 ) -> MarkerCheck:
-    """The check of a clip of images."""
     return result_of(check_markers(result_of(sample_clip(clip_of(images))), styles, expected))
 
 
 def words(result: MarkerCheck) -> str:
-    """All its warnings."""
     return "\n".join(sentence for readout in result.readouts for sentence in readout.warnings)
 
 
 def test_clear_colors_are_found_everywhere_with_their_areas() -> None:
-    """Two ellipses of 302 and 452 px on a wall that has neither color."""
     rng = np.random.default_rng(1)
     red, blue = check([draw(moving(index), rng) for index in range(40)]).readouts
     assert (red.name, red.found, red.sampled) == ("red", 24, 24) and blue.found == 24
@@ -64,7 +61,6 @@ def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
 
 
 def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
-    """It alone has nothing, and its sentence names colors that are there."""
     rng = np.random.default_rng(3)
     images = [draw(moving(index), rng) for index in range(20)]
     result = check(images, (*STYLES, MarkerStyle("shin", "shin.L", GREEN)))
@@ -76,7 +72,6 @@ def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
 
 
 def test_a_wall_of_a_markers_color_is_named() -> None:
-    """One marker is indistinguishable from the wall; the other marker passes."""
     rng = np.random.default_rng(4)
     styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
     wall, blue = check([draw(moving(index), rng) for index in range(20)], styles).readouts
@@ -86,7 +81,6 @@ def test_a_wall_of_a_markers_color_is_named() -> None:
 
 
 def test_a_background_that_comes_near_a_markers_color_makes_it_less_distinct() -> None:
-    """Below it all hangs a curtain ever nearer to red."""
     distinctness = []
     for share in (0.0, 0.8, 0.85):
         rng = np.random.default_rng(5)
@@ -102,7 +96,6 @@ def test_a_background_that_comes_near_a_markers_color_makes_it_less_distinct() -
 
 
 def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
-    """A bucket of 1106 px stands beside a marker of 302 px that moves."""
     rng = np.random.default_rng(6)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
     result = check([draw([*moving(index), bucket], rng) for index in range(40)])
@@ -114,7 +107,6 @@ def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
 
 
 def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
-    """Their expected regions tell them apart."""
     rng = np.random.default_rng(7)
     other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
     styles = (*STYLES, MarkerStyle("twin", "shin.L", (RED[0] - 4, RED[1], RED[2] + 3)))
@@ -145,7 +137,6 @@ def test_colors_that_light_may_make_equal_are_named() -> None:
 
 
 def test_sentences_say_with_what_a_color_is_confused() -> None:
-    """Each names the marker, and a marker that nothing is wrong with has none."""
     clear = Likeness((), (("blue", 0.02),), 0.05, 0.01, 0.0)
     assert marker_warnings("red", 24, 24, 300.0, clear) == ()
     (other,) = marker_warnings("red", 24, 24, 300.0, clear._replace(claimed=(("blue", 0.3),)))
@@ -155,7 +146,6 @@ def test_sentences_say_with_what_a_color_is_confused() -> None:
 
 
 def test_a_tiny_marker_is_called_small() -> None:
-    """A wristband of two pixels' half axis."""
     rng = np.random.default_rng(9)
     images = [draw([(RED, (60.0 + 3 * i, 90.0), (4.0, 2.5), 0.0), moving(i)[1]], rng, 1.0) for i in range(24)]
     red, blue = check(images).readouts
@@ -175,7 +165,6 @@ def test_previews_show_what_the_extraction_measures() -> None:
 
 
 def test_large_images_are_previewed_on_the_measuring_grid() -> None:
-    """At four times the size the mask covers as much of the picture as at once."""
     rng = np.random.default_rng(11)
     small = [draw(moving(index), rng) for index in range(6)]
     large = [cv2.resize(image, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC) for image in small]
@@ -187,7 +176,6 @@ def test_large_images_are_previewed_on_the_measuring_grid() -> None:
 
 
 def test_outlines_run_along_the_edge_of_what_is_covered() -> None:
-    """An ellipse of 24 by 10 px and one of 6 by 6, on a grid half as fine as the image."""
     mask = draw([((255, 255, 255), (60.0, 50.0), (12.0, 5.0), 0.0)], np.random.default_rng(0), 0.0)
     bright = (mask.min(axis=2) > 220).astype(np.float32)
     bright[100:106, 200:206] = 1.0

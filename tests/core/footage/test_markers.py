@@ -17,7 +17,6 @@ from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, Reg
 
 
 def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:
-    """Centroid within 0.2 px, area within 6 %, second moments within 10 %."""
     rng = np.random.default_rng(1)
     tracks = finish(track_markers(clip_of([draw(moving(index), rng) for index in range(40)]), STYLES))
     truth = np.array([path(index) for index in range(40)])
@@ -32,7 +31,6 @@ def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of
 
 
 def test_the_clip_is_decoded_once_for_the_extraction() -> None:
-    """Learning looks at samples only."""
     rng = np.random.default_rng(1)
     drawn = Drawn([draw(moving(index), rng) for index in range(15)])
     finish(track_markers(Clip(Path("drawn.mp4"), drawn), STYLES))
@@ -40,7 +38,6 @@ def test_the_clip_is_decoded_once_for_the_extraction() -> None:
 
 
 def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
-    """Ten frames without red give no observation and no quality; blue goes on."""
     rng = np.random.default_rng(2)
     images = [draw(moving(index)[1 if 15 <= index < 25 else 0 :], rng) for index in range(40)]
     tracks = finish(track_markers(clip_of(images), STYLES))
@@ -52,7 +49,6 @@ def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
 
 
 def test_changing_light_and_noise_do_not_lose_a_marker() -> None:
-    """The light falls to six tenths over the clip, under noise of five levels."""
     rng = np.random.default_rng(3)
     images = [draw(moving(index), rng, 5.0, 1.0 - 0.01 * index) for index in range(40)]
     tracks = finish(track_markers(clip_of(images), STYLES))
@@ -61,7 +57,6 @@ def test_changing_light_and_noise_do_not_lose_a_marker() -> None:
 
 
 def test_a_still_thing_of_the_markers_color_is_clutter_even_while_the_marker_is_hidden() -> None:
-    """It is larger than the marker, and the marker is away for a while."""
     rng = np.random.default_rng(4)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
     images = [draw([*moving(index)[15 <= index < 25 :], bucket], rng) for index in range(40)]
@@ -73,7 +68,6 @@ def test_a_still_thing_of_the_markers_color_is_clutter_even_while_the_marker_is_
 
 
 def test_a_marker_that_rests_is_no_clutter() -> None:
-    """Nothing else of its color moves, so a still region is the marker."""
     rng = np.random.default_rng(5)
     tracks = finish(track_markers(clip_of([draw(moving(8), rng) for _ in range(30)]), STYLES))
     assert tracks.visible.all()
@@ -108,7 +102,6 @@ def test_a_region_that_an_arm_splits_stays_one() -> None:
 
 
 def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
-    """The marker walks out of the picture."""
     rng = np.random.default_rng(8)
     images = [
         draw(
@@ -123,7 +116,6 @@ def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
 
 
 def test_a_color_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
-    """The sentence names the marker, its color and colors that are in the clip."""
     rng = np.random.default_rng(9)
     clip = clip_of([draw(moving(index), rng) for index in range(20)])
     with pytest.raises(InputError, match=r"marker shin.*\[40, 220, 60\].*nearest.*\[\d+, \d+, \d+\]"):
@@ -131,7 +123,6 @@ def test_a_color_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
 
 
 def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_one() -> None:
-    """At four times the size the centroids are four times as far and as exact."""
     rng = np.random.default_rng(11)
     large = [
         cv2.resize(draw(moving(index), rng, 0.0), None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
@@ -168,7 +159,6 @@ def test_a_marker_without_a_hue_is_told_from_a_colored_wall(gray: tuple[int, int
 
 
 def test_a_gray_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
-    """Seven hundredths of a color's range tell the two apart."""
     rng = np.random.default_rng(3)
     gray = (128, 128, 128)
     images = [draw([(gray, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
@@ -178,7 +168,6 @@ def test_a_gray_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
 
 
 def test_tracks_refuse_shapes_that_disagree() -> None:
-    """Every array has one row a frame and one column a marker."""
     good: dict[str, Any] = {
         "names": ("a",),
         "centroid": np.zeros((3, 1, 2)),

@@ -26,7 +26,6 @@ needs_model = pytest.mark.skipif(not MODEL.is_file(), reason="tools/fetch_model.
 
 
 def bare() -> PoseNetwork:
-    """A network without weights."""
     return PoseNetwork.__new__(PoseNetwork)
 
 
@@ -41,7 +40,6 @@ def answer(place: tuple[float, float]) -> list[Any]:
 
 
 def test_points_and_hints_are_turned_with_the_crop() -> None:
-    """A quarter turn clockwise: what is right in the crop is below in the picture."""
     crop = Crop(np.array([200.0, 100.0]), 2.0 * SIDE, np.pi / 2)
     points, presence, heat, world = answer((SIDE / 2 + 10.0, SIDE / 2))
     pose = bare().postprocess((points, presence, heat, world), crop)
@@ -53,7 +51,6 @@ def test_points_and_hints_are_turned_with_the_crop() -> None:
 
 
 def test_a_heat_map_moves_its_point_where_it_has_a_peak() -> None:
-    """A weak one moves nothing."""
     points, presence, heat, world = answer((100.0, 100.0))
     number = LAYOUT.numbers[3]
     heat[number, 24, 27], heat[LAYOUT.numbers[4], 24, 27] = 20.0, -1.0
@@ -63,7 +60,6 @@ def test_a_heat_map_moves_its_point_where_it_has_a_peak() -> None:
 
 
 def test_the_input_shows_the_crop_red_first() -> None:
-    """A pixel of the picture lies where the crop's matrix says."""
     picture = np.zeros((400, 400, 3), dtype=np.uint8)
     picture[150:160, 250:260, 0] = 255  # blue
     crop = Crop(np.array([220.0, 170.0]), 300.0, 0.4)
@@ -75,7 +71,6 @@ def test_the_input_shows_the_crop_red_first() -> None:
 
 
 def test_a_missing_or_damaged_file_is_one_sentence(tmp_path: Path) -> None:
-    """It says how to get it."""
     with pytest.raises(InputError, match=r"cannot be read .*fetch_model.py"):
         PoseNetwork(tmp_path / "none.tflite")
     broken = tmp_path / "broken.tflite"
@@ -86,7 +81,6 @@ def test_a_missing_or_damaged_file_is_one_sentence(tmp_path: Path) -> None:
 
 @needs_model
 def test_the_performer_of_the_demonstration_is_found(repository: Path) -> None:
-    """In every frame, near what MediaPipe's own run sees, and with depths."""
     take = repository / "presets" / "demo" / "aerobic"
     clip = Clip.open(take / "clip.mp4")
     images = list(clip.source.at(range(6)))
@@ -109,7 +103,6 @@ def test_the_performer_of_the_demonstration_is_found(repository: Path) -> None:
 
 @needs_model
 def test_an_empty_room_shows_nobody() -> None:
-    """Noise does not either."""
     network = PoseNetwork()
     noise = np.random.default_rng(0).integers(0, 255, (240, 320, 3), dtype=np.uint8)
     for picture in (noise, np.full((240, 320, 3), 120, dtype=np.uint8)):

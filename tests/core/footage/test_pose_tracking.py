@@ -21,36 +21,29 @@ People3 = list[tuple[float, float, float]]
 
 @dataclass
 class Drawn:
-    """A source of drawn frames."""
-
     people: Sequence[People3]
     size: tuple[int, int] = SIZE
     fps: float = 30.0
 
     @property
     def frame_count(self) -> int:
-        """Number of frames."""
         return len(self.people)
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Draw them."""
         for index, people in enumerate(self.people):
             yield index, index / self.fps, draw_people(self.size, people)
 
 
 def seen(people: Sequence[People3], size: tuple[int, int] = SIZE) -> People:
-    """Who is found in a clip of these."""
     clip = Clip(Path("drawn.mp4"), cast(Any, Drawn(people, size)))
     return run(find_people(clip, cast(Any, FakeNetwork()), 10_000))
 
 
 def counts(people: People) -> list[int]:
-    """Number of people of each frame."""
     return [len(frame.pixel) for frame in people.frames]
 
 
 def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
-    """In place, with every frame counted once, and progress that never goes back."""
     frames = STRETCH * 2 + 5
     clip = Clip(Path("x"), cast(Any, Drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])))
     progress: list[Progress] = []
@@ -63,7 +56,6 @@ def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
 
 @pytest.mark.parametrize("frames", [1, 3])
 def test_a_clip_of_few_frames(frames: int) -> None:
-    """One is enough."""
     assert counts(seen([[(160.0, 120.0, 50.0)]] * frames)) == [1] * frames
 
 
@@ -75,7 +67,6 @@ def test_somebody_who_comes_and_goes_is_seen_meanwhile_alone() -> None:
 
 
 def test_two_people_are_told_apart_and_a_tiny_one_is_left_out() -> None:
-    """Both in every frame, each once; spectators far away are nobody's take."""
     people: list[People3] = [
         [(100.0 + 0.3 * index, 120.0, 45.0), (220.0, 120.0, 40.0), (300.0, 30.0, 6.0)] for index in range(60)
     ]
@@ -83,27 +74,23 @@ def test_two_people_are_told_apart_and_a_tiny_one_is_left_out() -> None:
 
 
 def test_a_passer_by_of_another_size_who_meets_nobody_is_left_out() -> None:
-    """Somebody near the camera crosses after the performer has left."""
     people: list[People3] = [[(160.0, 120.0, 40.0)]] * 60 + [[]] * 10
     people += [[(120.0 + 4 * index, 120.0, 80.0)] for index in range(26)]
     assert counts(seen(people)) == [1] * 60 + [0] * 36
 
 
 def test_points_beyond_the_picture_are_not_seen() -> None:
-    """They were guessed, as those of somebody half out of it."""
     found = seen([[(20.0, 120.0, 50.0)]] * 5).frames[2]
     outside = np.isnan(found.pixel[0]).any(axis=1)
     assert outside.any() and not outside.all() and (found.score[0][outside] == 0.0).all()
 
 
 def test_a_large_picture_is_found_in_its_own_pixels() -> None:
-    """The network sees it smaller."""
     found = seen([[(1300.0, 900.0, 350.0)]] * 2, (2600, 1800)).frames[0]
     np.testing.assert_allclose(np.nanmean(found.pixel[0] - 350.0 * SHAPE, axis=0), (1300.0, 900.0), atol=6.0)
 
 
 def test_a_clip_without_anybody_is_one_sentence() -> None:
-    """And so is one without frames, or with too many."""
     with pytest.raises(InputError, match=r"drawn.mp4: nobody is seen in any of its 60 frames"):
         seen([[]] * 60)
     with pytest.raises(InputError, match="holds no frame"):

@@ -22,13 +22,11 @@ FRAMES = 24
 
 @pytest.fixture
 def take(tmp_path: Path) -> Take:
-    """A small synthetic take."""
     return read_take(write_synthetic_take(tmp_path / "take", frames=FRAMES, keyframe_every=8))
 
 
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Grows by one whenever a clip's frames are gone through."""
     counted: list[int] = []
     original = clip_module.ImageSequence.frames
 
@@ -41,7 +39,6 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def assert_alike(one: RegionTracks, other: RegionTracks) -> None:
-    """Every number is the same."""
     for field in fields(RegionTracks):
         a, b = getattr(one, field.name), getattr(other, field.name)
         assert np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else a == b
@@ -56,7 +53,6 @@ def moved(take: Take, by: float) -> Take:
 
 
 def test_a_reading_survives_as_arrays(take: Take) -> None:
-    """Tracks, pictures, detections, notes and key."""
     reading = replace(run(read_footage(take)), notes=("it may be cut off",))
     back = reading_from_arrays(reading_arrays(reading))
     assert_alike(back.tracks, reading.tracks)
@@ -72,7 +68,6 @@ def test_a_reading_survives_as_arrays(take: Take) -> None:
 
 
 def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> None:
-    """The very reading comes back."""
     reading = run(read_footage(take))
     again = run(read_footage(take, reading))
     assert again.detections is reading.detections and again.tracks is reading.tracks
@@ -80,7 +75,6 @@ def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> N
 
 
 def test_a_moved_keyframe_needs_no_pass_where_colors_stay(take: Take, passes: list[int]) -> None:
-    """From what was kept comes exactly what reading anew gives."""
     kept = reading_from_arrays(reading_arrays(run(read_footage(take))))
     changed = moved(take, 0.03)
     again = run(read_footage(changed, kept))
@@ -93,7 +87,6 @@ def test_a_moved_keyframe_needs_no_pass_where_colors_stay(take: Take, passes: li
 
 
 def test_a_keyframe_that_hides_a_color_has_the_clip_read_anew(take: Take, passes: list[int]) -> None:
-    """Where the markers may be looked for has a say in what is learned."""
     kept = run(read_footage(take))
     far = moved(take, 0.9)
     again = run(read_footage(far, kept))
@@ -103,7 +96,6 @@ def test_a_keyframe_that_hides_a_color_has_the_clip_read_anew(take: Take, passes
 
 @pytest.mark.parametrize("change", ["clip", "touched", "color", "segment"])
 def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[int], change: str) -> None:
-    """Nothing is ever out of date."""
     kept = run(read_footage(take))
     image = sorted((take.folder / "frames").iterdir())[3]
     style = take.markers[0]
@@ -120,7 +112,6 @@ def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[i
 
 
 def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passes: list[int]) -> None:
-    """One that was thought to move needs the clip once more for them."""
     poses = np.repeat(take.camera.matrix_world[None], FRAMES, axis=0)
     poses[1:, 0, 3] += 0.01
     moving = replace(take, camera=replace(take.camera, matrix_world=poses))
@@ -131,7 +122,6 @@ def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passe
 
 
 def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
-    """Kinds and borders count."""
     alike: Callable[..., bool] = lambda a, b: digest(*a) == digest(*b)  # noqa: E731
     assert alike((1, "a", np.arange(3)), (1, "a", np.arange(3)))
     for one, other in (

@@ -8,7 +8,6 @@ from keymark.core.footage.markers import regions_of_frame, track_markers
 
 
 def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:
-    """To a tenth of a pixel, for frames anywhere."""
     rng = np.random.default_rng(1)
     clip = clip_of([draw(moving(index), rng) for index in range(30)])
     whole = finish(track_markers(clip, STYLES))
@@ -21,7 +20,6 @@ def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:
 
 
 def test_a_frame_beyond_the_end_is_refused() -> None:
-    """The sentence says when."""
     rng = np.random.default_rng(2)
     clip = clip_of([draw(moving(index), rng) for index in range(12)])
     with pytest.raises(InputError, match="no frame at 0.50 s"):

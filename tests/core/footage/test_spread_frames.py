@@ -17,7 +17,6 @@ SIZE = (64, 48)
 
 
 def level(index: int) -> int:
-    """The gray level of a frame: far from its neighbors'."""
     return 30 + index * 67 % 200
 
 
@@ -34,13 +33,11 @@ def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def thrifty(monkeypatch: pytest.MonkeyPatch) -> None:
-    """No more than 180 frames of the video may be decoded."""
     monkeypatch.setattr(glancing, "MOST_DECODED_PX", 180 * SIZE[0] * SIZE[1])
 
 
 @pytest.mark.usefixtures("thrifty")
 def test_frames_are_from_all_over_and_what_they_say(video: Path) -> None:
-    """As many as can be afforded, each the frame of its index."""
     samples = run(sample_spread_frames(Clip.open(video)))
     assert len(samples.indices) == 11 and samples.size == SIZE
     assert samples.indices[0] == 0 and samples.indices[-1] > 500 and max(np.diff(samples.indices)) < 90
@@ -49,7 +46,6 @@ def test_frames_are_from_all_over_and_what_they_say(video: Path) -> None:
 
 
 def test_what_can_be_gone_through_is(video: Path) -> None:
-    """Then the frames are evenly spread."""
     samples = run(sample_spread_frames(Clip.open(video), 6))
     assert samples.indices == (50, 150, 250, 350, 450, 550)
 
@@ -58,7 +54,6 @@ def test_what_can_be_gone_through_is(video: Path) -> None:
 def test_of_what_cannot_be_searched_the_beginning_is_looked_at(
     video: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Within what may be decoded."""
     monkeypatch.setattr(glancing, "quickly_found", lambda path, wanted: [])
     samples = run(sample_spread_frames(Clip.open(video)))
     assert len(samples.indices) > 5 and samples.indices[-1] < 181
@@ -66,7 +61,6 @@ def test_of_what_cannot_be_searched_the_beginning_is_looked_at(
 
 @pytest.mark.usefixtures("thrifty")
 def test_a_cut_off_file_is_looked_at_as_far_as_it_goes(video: Path, tmp_path: Path) -> None:
-    """Its header claims all the frames; the index stands before the pictures here."""
     whole = encode_with_index_first(video, tmp_path / "whole.mp4")
     cut = tmp_path / "cut.mp4"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 2 // 3])
@@ -79,7 +73,6 @@ def test_a_cut_off_file_is_looked_at_as_far_as_it_goes(video: Path, tmp_path: Pa
 
 
 def encode_with_index_first(video: Path, path: Path) -> Path:
-    """The same file with the index before the pictures."""
     from _footage import ffmpeg
 
     ffmpeg("-i", video, "-c", "copy", "-movflags", "+faststart", path)
@@ -87,7 +80,6 @@ def encode_with_index_first(video: Path, path: Path) -> Path:
 
 
 def test_packets_tell_frames_and_times(video: Path, tmp_path: Path) -> None:
-    """Their number, whether they are even, and nothing of what is no video."""
     packets = read_packets(video)
     assert packets is not None and packets.complete and len(packets.time_s) == 600
     np.testing.assert_allclose(packets.time_s, np.arange(600) / 30.0, atol=1e-3)
@@ -98,7 +90,6 @@ def test_packets_tell_frames_and_times(video: Path, tmp_path: Path) -> None:
 
 
 def test_packets_tell_an_uneven_rate(tmp_path: Path) -> None:
-    """Of a file whose frames come in another order than they are shown in."""
     take = write_numbered_take(tmp_path / "take", 20)
     uneven = encode(take, tmp_path / "uneven.mkv", "-vf", "select='not(eq(mod(n,7),3))'", "-fps_mode", "vfr")
     even = encode(take, tmp_path / "even.mp4")
@@ -108,7 +99,6 @@ def test_packets_tell_an_uneven_rate(tmp_path: Path) -> None:
 
 
 def test_images_are_looked_at_too(tmp_path: Path) -> None:
-    """And one that cannot be read is named."""
     for index in range(30):
         cv2.imwrite(str(tmp_path / f"{index:04d}.png"), np.full((48, 64, 3), level(index), dtype=np.uint8))
     samples = run(sample_spread_frames(Clip.open(tmp_path), 5))

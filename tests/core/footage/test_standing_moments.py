@@ -28,7 +28,6 @@ def walk(count: int = 120) -> Array:
 
 
 def keypoints(points: Array, noise_px: float = 0.0) -> Keypoints:
-    """What a detector sees of them."""
     pixel = TRUE.project(points)[0]
     pixel = pixel + np.random.default_rng(1).normal(0.0, noise_px, pixel.shape)
     count = len(HUMAN.point_names)
@@ -37,12 +36,10 @@ def keypoints(points: Array, noise_px: float = 0.0) -> Keypoints:
 
 
 def before() -> Camera:
-    """The camera as it is put, with the true lens."""
     return Camera(35.0, 36.0, SIZE, default_camera_pose(35.0, 36.0, SIZE))
 
 
 def test_a_walk_finds_height_and_tilt() -> None:
-    """Within what is stated, with a detector's errors."""
     seen = standing_keypoints(keypoints(walk(), 2.0), BODY, FPS)
     assert 10 <= len(seen) <= 14 and seen.doubtful  # one in nine frames
     fit = fit_camera(before(), CameraEvidence(uprights=seen), lens_is_known=True)
@@ -75,7 +72,6 @@ def test_who_bends_kneels_or_is_cut_off_is_no_measure() -> None:
 
 
 def test_who_is_in_the_air_is_no_measure() -> None:
-    """Upright and as tall as ever, half a meter over the floor every second second."""
     points = walk(480)
     time_s = np.arange(len(points)) / FPS
     points[..., 2] += (4.9 * np.maximum(0.1 - (time_s % 2.0 - 1.0) ** 2, 0.0))[:, None]
@@ -86,7 +82,6 @@ def test_who_is_in_the_air_is_no_measure() -> None:
 
 
 def test_single_moments_far_off_change_little() -> None:
-    """Every fifth moment has a detector's ankles at the knees."""
     points = walk()
     seen = standing_keypoints(keypoints(points, 1.0), BODY, FPS)
     lower = np.array(seen.lower_px)

@@ -14,12 +14,10 @@ FRAMES = 48
 
 
 def check(images: list[np.ndarray], *ignored: IgnoredRegion, styles: object = STYLES) -> MarkerCheck:
-    """The check of a clip."""
     return run(check_markers(run(sample_clip(clip_of(images))), styles, None, ignored))  # type: ignore[arg-type]
 
 
 def panelled(seed: int = 3) -> list[np.ndarray]:
-    """Red wanders, blue rests, and a red panel hangs on the wall."""
     rng = np.random.default_rng(seed)
     return [with_panel(draw(moving(index), rng)) for index in range(FRAMES)]
 
@@ -39,7 +37,6 @@ def test_a_panel_is_named_with_its_box_and_gone_once_it_is_ignored() -> None:
 
 
 def test_a_bent_panel_takes_several_boxes_that_leave_its_inside_free() -> None:
-    """A red frame around a poster: its middle, where the performer may be, stays."""
     rng = np.random.default_rng(4)
     images = [draw(moving(index), rng) for index in range(FRAMES)]
     for image in images:
@@ -54,14 +51,12 @@ def test_a_bent_panel_takes_several_boxes_that_leave_its_inside_free() -> None:
 
 
 def test_a_resting_marker_beside_moving_clutter_of_another_color_stays() -> None:
-    """Nothing else has its color: it is the marker itself."""
     rng = np.random.default_rng(6)
     red, blue = check([draw(moving(index), rng) for index in range(FRAMES)]).readouts
     assert red.still_boxes == blue.still_boxes == ()
 
 
 def test_two_markers_of_one_color_are_never_proposed_to_be_left_out() -> None:
-    """Either may be the one at rest, as a foot that stands."""
     rng = np.random.default_rng(8)
 
     def both(index: int) -> list[Ellipse]:
@@ -73,7 +68,6 @@ def test_two_markers_of_one_color_are_never_proposed_to_be_left_out() -> None:
 
 
 def test_a_panel_is_not_sure_where_the_marker_is_seldom_seen_beside_it() -> None:
-    """Red shows up in a fifth of the clip only: the still one may as well be the marker."""
     rng = np.random.default_rng(10)
     rest: Ellipse = (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)
     images = [
@@ -95,7 +89,6 @@ def test_a_garment_of_somebody_who_sits_is_no_still_area() -> None:
 
 
 def test_a_few_frames_prove_nothing() -> None:
-    """Whatever stays in the same place in six of them."""
     assert check(panelled()[:6]).readouts[0].still_boxes == ()
 
 
@@ -111,5 +104,4 @@ def test_a_few_frames_prove_nothing() -> None:
 def test_a_place_is_named_in_thirds_of_the_picture(
     box: tuple[float, float, float, float], place: str
 ) -> None:
-    """And each place once."""
     assert places([box, box], (320, 240)) == (place,)

@@ -7,7 +7,6 @@ from keymark.core.footage.colors.strong_colors import StrongColor, strong_colors
 
 
 def test_the_markers_are_among_the_strong_colors() -> None:
-    """Every one of them, nearly as it was drawn, and nothing twice."""
     found = strong_colors(drawn_frames(true_postures(6)))
     assert len(COLORS) <= len(found) <= 12
     colors = np.array([color.color_srgb for color in found], dtype=float)
@@ -20,12 +19,10 @@ def test_the_markers_are_among_the_strong_colors() -> None:
 
 
 def test_of_gray_pictures_there_is_nothing_to_say() -> None:
-    """Nor of none."""
     assert strong_colors([np.full((48, 64, 3), 90, dtype=np.uint8)]) == () == strong_colors([])
 
 
 def test_hues_have_names() -> None:
-    """Red lies at both ends of the circle."""
     names = {(200, 30, 30): "red", (200, 30, 60): "red", (220, 190, 40): "yellow", (40, 150, 70): "green"}
     names |= {(50, 80, 220): "blue", (190, 50, 150): "pink", (120, 50, 160): "purple"}
     names |= {(220, 120, 50): "orange", (46, 98, 114): "cyan"}

@@ -25,7 +25,6 @@ from keymark.core.footage.keypoints.layouts import named_point
     ],
 )
 def test_a_name_tells_the_point(name: str, point: str) -> None:
-    """Whatever separates the words, and on whichever end the side stands."""
     assert named_point(name) == point
 
 
@@ -33,12 +32,10 @@ def test_a_name_tells_the_point(name: str, point: str) -> None:
     "name", ["Track", "Track.001", "", "L", "12", "wrist", "left right wrist", "head.L", "Marker L", "lamp.L"]
 )
 def test_other_names_tell_none(name: str) -> None:
-    """A limb without its side, two sides, and what Blender calls a track by itself."""
     assert named_point(name) is None
 
 
 def test_every_point_is_told_by_its_own_name() -> None:
-    """And by its label in the menus."""
     assert [point for point in BODY_POINTS if named_point(point) != point] == []
     titles = {
         point: point.replace("_", " ").replace(".L", " Left").replace(".R", " Right") for point in BODY_POINTS

@@ -30,7 +30,6 @@ from keymark.core.footage.keypoints.layouts import Layout
 
 
 def read(path: Path, frames: int | None = FRAMES, size: tuple[int, int] = SIZE, **more: Any) -> People:
-    """Read a file of a clip of twelve frames."""
     return read_keypoints(path, frames, size, **more)
 
 
@@ -49,7 +48,6 @@ def assert_shows(people: People, person: Array, layout: Layout, frames: list[int
 @pytest.mark.parametrize("layout", [COCO17, BODY25, HALPE26])
 @pytest.mark.parametrize("first", [0, 1, 1001])
 def test_openpose_folder(tmp_path: Path, layout: Layout, first: int) -> None:
-    """Files are counted from 0, 1 or anything else, where there is one for every frame."""
     person = moving_person(layout)
     people = read(write_openpose(tmp_path / "json", person, first))
     assert_shows(people, person, layout)
@@ -57,7 +55,6 @@ def test_openpose_folder(tmp_path: Path, layout: Layout, first: int) -> None:
 
 
 def test_openpose_folder_with_holes(tmp_path: Path) -> None:
-    """Nobody is seen where a file is missing, and nothing after it is shifted."""
     person = moving_person(BODY25)
     people = read(write_openpose(tmp_path / "json", person, 0, holes=(3, 4, 11)))
     assert_shows(people, person, BODY25, [0, 1, 2, 5, 6, 7, 8, 9, 10])
@@ -66,7 +63,6 @@ def test_openpose_folder_with_holes(tmp_path: Path) -> None:
 
 
 def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
-    """Never shifted in silence."""
     person = moving_person(BODY25)
     folder = write_openpose(tmp_path / "json", person, 7)
     with pytest.raises(InputError, match="numbered 7 to 18; the clip has 13"):
@@ -81,7 +77,6 @@ def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_few_frames_more_or_less_are_noted(tmp_path: Path) -> None:
-    """Decoders disagree at a clip's end."""
     person = moving_person(BODY25)
     folder = write_openpose(tmp_path / "json", person)
     longer, shorter = read(folder, FRAMES - 1), read(folder, FRAMES + 2)
@@ -111,7 +106,6 @@ def test_hands_of_openpose_follow_the_body(tmp_path: Path) -> None:
 
 
 def test_mmpose_of_an_image_sequence(tmp_path: Path) -> None:
-    """One file an image, which holds its people."""
     person = moving_person(COCO17)
     for index, entry in enumerate(mmpose_value(person)["instance_info"]):
         write(tmp_path / f"img_{index + 1:04d}.json", [] if index == 2 else entry["instances"])
@@ -120,7 +114,6 @@ def test_mmpose_of_an_image_sequence(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("as_list", [False, True])
 def test_mmpose(tmp_path: Path, as_list: bool) -> None:
-    """The demonstration's object, and the plain list of the inferencer."""
     person = moving_person(HALPE26)
     value: Any = mmpose_value(person)
     people = read(write(tmp_path / "results.json", value["instance_info"] if as_list else value))
@@ -130,7 +123,6 @@ def test_mmpose(tmp_path: Path, as_list: bool) -> None:
 
 @pytest.mark.parametrize("names", ["{}.jpg", "clip_{}", "{}"])
 def test_coco(tmp_path: Path, names: str) -> None:
-    """Images are numbered by their names; those in which nobody was seen are not listed."""
     person = moving_person(COCO17)
     value = coco_value(person, names)
     if names == "{}":
@@ -143,7 +135,6 @@ def test_coco(tmp_path: Path, names: str) -> None:
 
 @pytest.mark.parametrize("form", ["objects", "lists", "messages", "people", "frames", "pixels"])
 def test_mediapipe(tmp_path: Path, form: str) -> None:
-    """Every way in which its landmarks are dumped."""
     person = moving_person(BLAZEPOSE33)
     value: Any = mediapipe_value(person, (1, 1) if form == "pixels" else SIZE)
     value[2] = None if form in ("lists", "frames") else {"landmarks": []}
@@ -167,7 +158,6 @@ def test_mediapipe(tmp_path: Path, form: str) -> None:
 
 
 def test_own_file_is_read_back(tmp_path: Path) -> None:
-    """Several people, with hints, with points and people that are missing."""
     generator = np.random.default_rng(3)
     frames = []
     for count in (1, 0, 3, 2, 0):
@@ -188,7 +178,6 @@ def test_own_file_is_read_back(tmp_path: Path) -> None:
 
 
 def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
-    """`frames` where nobody else is there, and a faint score is not rounded to none."""
     frame = SeenPeople(np.array([[[5.0, 6.0]]]), np.array([[1e-7]]), np.full((1, 1, 3), np.nan))
     write_keypoints(tmp_path / "k.json", People(("head",), "x", SIZE, (frame,) * 2), 1)
     text = (tmp_path / "k.json").read_text(encoding="utf-8")
@@ -197,7 +186,6 @@ def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
 
 
 def test_pixels_of_a_smaller_picture_are_scaled(tmp_path: Path) -> None:
-    """Only where the proportions are the clip's."""
     person = moving_person(COCO17)
     path = write(tmp_path / "own.json", own_value(person))
     twice = read(path, FRAMES, (640, 480))
@@ -224,7 +212,6 @@ def test_points_not_seen(tmp_path: Path) -> None:
 
 
 def test_nan_of_other_programs_is_not_seen(tmp_path: Path) -> None:
-    """Pose2Sim pads people who are lost with NaN; our own file may not have it."""
     person = moving_person(HALPE26)
     person[2] = np.nan
     person[3, 0, :2] = np.nan
@@ -244,7 +231,6 @@ def test_nan_of_other_programs_is_not_seen(tmp_path: Path) -> None:
     ],
 )
 def test_scores_become_confidences(tmp_path: Path, change: Any, word: str) -> None:
-    """Whatever the range, the order stays, and a note says what was done."""
     person = moving_person(COCO17)
     before = person[:, :, 2].copy()
     person[:, :, 2] = change(before)
@@ -258,7 +244,6 @@ def test_scores_become_confidences(tmp_path: Path, change: Any, word: str) -> No
 
 
 def test_one_high_score_sets_no_scale(tmp_path: Path) -> None:
-    """An outlier is cut off instead."""
     person = moving_person(COCO17)
     person[0, 0, 2] = 500.0
     people = read(write(tmp_path / "own.json", own_value(person)))
@@ -266,7 +251,6 @@ def test_one_high_score_sets_no_scale(tmp_path: Path) -> None:
 
 
 def test_negative_scores_beside_probabilities_are_not_seen(tmp_path: Path) -> None:
-    """Some programs write -1 for what they did not find."""
     person = moving_person(COCO17)
     person[:, 3, 2] = -1.0
     people = read(write(tmp_path / "own.json", own_value(person)))
@@ -290,7 +274,6 @@ def test_frame_rate_and_start_of_the_file(tmp_path: Path) -> None:
 
 
 def broken(tmp_path: Path, kind: str) -> Path:
-    """A file or folder that cannot be used."""
     person, path = moving_person(COCO17), tmp_path / "x.json"
     value = own_value(person)
     if kind == "truncated":
@@ -362,7 +345,6 @@ def broken(tmp_path: Path, kind: str) -> Path:
     ],
 )
 def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, words: str) -> None:
-    """It names the file and what would be valid."""
     path = broken(tmp_path, kind)
     with pytest.raises(InputError, match=words) as caught:
         read(path)
@@ -372,7 +354,6 @@ def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, w
 
 
 def test_the_takes_at_hand(shared_takes: Path) -> None:
-    """What a real detector wrote is read without a word."""
     for take in sorted(shared_takes.iterdir()):
         path = take / "keypoints_mediapipe.json"
         if path.exists():

@@ -38,7 +38,6 @@ SPOTS = {
 
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_points_are_those_of_the_detector(name: str) -> None:
-    """Points on both sides and of all limbs, so that no order is shifted or mirrored."""
     layout = LAYOUTS[name]
     assert {number: layout.points[number] for number in SPOTS[name]} == SPOTS[name]
     assert max(layout.points) < layout.count
@@ -49,19 +48,16 @@ def test_points_are_those_of_the_detector(name: str) -> None:
 
 
 def test_layouts_are_told_apart_by_their_number_of_points() -> None:
-    """Files of other programs name no layout."""
     assert all(layout_of(layout.count) is layout for layout in LAYOUTS.values())
     assert layout_of(21) is None
 
 
 def test_own_layout_keeps_the_order_of_its_names() -> None:
-    """Names in any order."""
     layout = own_layout(["toe.R", "head"])
     assert (layout.count, layout.names, layout.numbers) == (2, ("toe.R", "head"), [0, 1])
 
 
 def test_the_schema_knows_all_names(repository: Path) -> None:
-    """Layouts and body points of the schema are those of the reader."""
     path = repository / "presets" / "schemas" / "keypoints.schema.json"
     schema = json.loads(path.read_text(encoding="utf-8"))
     assert tuple(schema["properties"]["layout"]["enum"]) == (*LAYOUTS, OWN)

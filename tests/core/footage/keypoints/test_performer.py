@@ -57,7 +57,6 @@ def expected_from(person: Array, every: int, std_px: float = 5.0) -> Expected:
 @pytest.mark.parametrize("missing", [0.0, 0.1, 0.3])
 @pytest.mark.parametrize("knows", ["keyframes", "one click"])
 def test_two_people_who_cross(missing: float, knows: str) -> None:
-    """Both walk through each other, in any order, and some sightings are missing."""
     frames = 90
     people = [walker((20, 60), (2.5, 0), frames, 0), walker((240, 62), (-2.5, 0), frames, 1)]
     present = np.random.default_rng(4).random((frames, 2)) >= missing
@@ -72,7 +71,6 @@ def test_two_people_who_cross(missing: float, knows: str) -> None:
 
 
 def test_a_performer_who_is_hidden_is_nobody() -> None:
-    """Somebody else who is seen meanwhile does not take the place."""
     frames = 100
     people = [walker((40, 60), (1.5, 0), frames, 0), walker((200, 50), (0, 0), frames, 1)]
     present = np.ones((frames, 2), dtype=bool)
@@ -82,7 +80,6 @@ def test_a_performer_who_is_hidden_is_nobody() -> None:
 
 
 def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
-    """A smaller person behind, and a large one who is there for a moment, are not."""
     frames = 80
     people = [
         walker((60, 60), (1.0, 0), frames, 0),
@@ -99,13 +96,11 @@ def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
 
 
 def test_nobody_anywhere() -> None:
-    """No frame has anybody."""
     empty = Sightings((np.zeros((0, 7, 2)),) * 5, (np.zeros((0, 7)),) * 5)
     assert (choose_performer(empty, None, FPS) == NOBODY).all()
 
 
 def test_a_jump_to_somebody_else_is_left_out() -> None:
-    """A detector of one person that follows a passer-by for a while shows nobody then."""
     frames = 60
     performer, other = walker((60, 60), (0.5, 0), frames, 0), walker((280, 40), (-1, 0), frames, 1)
     person = performer.copy()
@@ -116,7 +111,6 @@ def test_a_jump_to_somebody_else_is_left_out() -> None:
 
 
 def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
-    """More people than are looked at: those nearest are."""
     frames = 25
     people = [walker((30, 60), (2.0, 0), frames, 0)]
     generator = np.random.default_rng(8)

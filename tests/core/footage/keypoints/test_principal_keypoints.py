@@ -10,7 +10,6 @@ HEAD, WRIST = HUMAN.point_names.index("head"), HUMAN.point_names.index("wrist.L"
 
 
 def seen(points: dict[str, tuple[float, float]], score: float = 0.9) -> Keypoints:
-    """One frame of a detector's points."""
     pixel = np.array([list(points.values())])
     shape = pixel.shape[:2]
     sources = (f"sure to {score}",) * len(points)
@@ -29,7 +28,6 @@ def test_the_heads_center_is_halfway_between_the_ears() -> None:
 
 
 def test_sources_that_agree_are_averaged_and_a_lone_one_that_does_not_is_left_out() -> None:
-    """Within a tenth of the performer's size; the more confident source has the say."""
     first = seen({"wrist.L": (10.0, 0.0), "ankle.L": (0.0, 100.0)}, 0.8)
     near, far = seen({"wrist.L": (14.0, 0.0)}, 0.4), seen({"wrist.L": (40.0, 0.0)}, 0.4)
     with_near = principal_keypoints(Keypoints.side_by_side([first, near], 1))
@@ -40,7 +38,6 @@ def test_sources_that_agree_are_averaged_and_a_lone_one_that_does_not_is_left_ou
 
 
 def test_what_nothing_shows_is_missing() -> None:
-    """And without any keypoint there is no size."""
     found = principal_keypoints(seen({"wrist.L": (10.0, 0.0)}))
     assert found.seen.sum() == 1
     assert not principal_keypoints(Keypoints.none(4)).seen.any()
@@ -48,7 +45,6 @@ def test_what_nothing_shows_is_missing() -> None:
 
 
 def test_every_segment_and_point_belongs_to_a_part_of_the_body() -> None:
-    """Arms and legs hold what hangs on shoulders and hips; all else is the trunk's."""
     names = [*(segment.name for segment in HUMAN.segments), *HUMAN.point_names]
     found = {limb_of(name) for name in names}
     assert found == {TRUNK, *(f"{limb}.{side}" for limb in ("arm", "leg") for side in SIDES)}
