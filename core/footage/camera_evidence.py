@@ -1,6 +1,7 @@
 """What a picture shows of the camera that took it: lines of buildings, and upright things of known length."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -79,9 +80,13 @@ class Uprights:
         """Both together; what may be off in common is taken to be the same of both."""
         if not len(self) or not len(other):
             return self if len(self) else other
-        arrays = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
+        arrays: dict[str, Any] = {
+            name: np.concatenate([own, getattr(other, name)])
+            for name, own in vars(self).items()
+            if isinstance(own, np.ndarray)
+        }
         return Uprights(
-            *(np.concatenate([getattr(self, name), getattr(other, name)]) for name in arrays),
+            **arrays,
             common_std=max(self.common_std, other.common_std),
             common_lean_rad=max(self.common_lean_rad, other.common_lean_rad),
             doubtful=self.doubtful or other.doubtful,

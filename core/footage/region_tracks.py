@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,7 +54,9 @@ class RegionTracks:
 
     def frame(self, index: int) -> "RegionTracks":
         """The tracks of one frame, its time included."""
-        arrays = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        arrays: dict[str, Any] = {
+            name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)
+        }
         return replace(self, **{name: array[index : index + 1] for name, array in arrays.items()})
 
     @property
@@ -116,7 +118,7 @@ class Regions(NamedTuple):
 
     def part(self, first: int, end: int) -> "Regions":
         """The regions from `first` to before `end`."""
-        return Regions(*(array[first:end] for array in self))
+        return Regions._make(array[first:end] for array in self)
 
 
 NO_REGIONS = Regions(

@@ -1,4 +1,4 @@
-"""Following markers through a clip longer than the stretch that their colors are learned from."""
+"""Following markers through a clip longer than what their colors are learned from, and in one frame."""
 
 import cv2
 import numpy as np
@@ -7,7 +7,7 @@ from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, m
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.markers import track_markers
+from keymark.core.footage.markers import regions_of_frame, track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.footage.segmentation.moments import coverage
 from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, boxes_to_measure, pack_windows
@@ -172,3 +172,22 @@ def test_pictures_of_every_size_are_measured_and_searched_on_like_grids(
     assert halvings(size) == times
     grid = (size[1] >> times, size[0] >> times)
     assert searching_factor(grid) == factor
+
+
+def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:
+    rng = np.random.default_rng(1)
+    clip = clip_of([draw(moving(index), rng) for index in range(30)])
+    whole = finish(track_markers(clip, STYLES))
+    for index in (0, 13, 29):
+        one = regions_of_frame(clip, index / 30.0, STYLES)
+        assert one.names == whole.names
+        assert one.frame_count == 1
+        assert np.abs(one.centroid[0] - whole.centroid[index]).max() < 0.1
+        np.testing.assert_allclose(one.area[0], whole.area[index], rtol=0.02)
+
+
+def test_a_frame_beyond_the_end_is_refused() -> None:
+    rng = np.random.default_rng(2)
+    clip = clip_of([draw(moving(index), rng) for index in range(12)])
+    with pytest.raises(InputError, match="no frame at 0.50 s"):
+        regions_of_frame(clip, 0.5, STYLES)

@@ -1,4 +1,4 @@
-"""Looking at single frames: the right one at every time, and no more decoding than it takes."""
+"""Single frames and small pictures: the right one at every time, and no more decoding than it takes."""
 
 from pathlib import Path
 
@@ -6,7 +6,9 @@ import cv2
 import numpy as np
 import pytest
 from _drawn_clip import Drawn
+from keymark.core.footage.clips.album import Album, watch_clip
 from keymark.core.footage.clips.clip import Clip, FrameReader
+from keymark.core.footage.clips.frame_checks import FrameChecks
 
 FPS = 30.0
 
@@ -77,3 +79,46 @@ def test_numbered_images_are_read_one_by_one(tmp_path: Path) -> None:
         cv2.imwrite(str(tmp_path / f"img_{index}.png"), gray(index))
     reader = FrameReader(Clip.open(tmp_path, fps=10.0))
     assert (reader.image_at(0.31) == gray(3)).all() and (reader.image_at(0.12) == gray(1)).all()
+
+
+GRADIENTS = [
+    np.broadcast_to(np.linspace(0.0, 100.0, 640)[None, :, None] + 30.0 * index, (480, 640, 3)).astype(
+        np.uint8
+    )
+    for index in range(4)
+]
+"""Pictures whose brightness tells their index."""
+
+
+def watched(album: Album) -> Clip:
+    """A clip of them that fills an album."""
+    return watch_clip(Clip(Path("drawn"), Drawn(GRADIENTS, fps=25.0, size=(640, 480))), FrameChecks(), album)
+
+
+def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
+    """Frames, times and size pass unchanged; each frame's picture is that frame on half the grid."""
+    album = Album()
+    clip = watch_clip(
+        Clip(Path("drawn"), Drawn(gradients(), fps=25.0, size=(640, 480))), FrameChecks(), album
+    )
+    read = list(clip.frames())
+    assert [(index, time_s) for index, time_s, _ in read] == [(i, i / 25.0) for i in range(4)]
+    assert (clip.size, clip.fps, clip.frame_count) == ((640, 480), 25.0, 4)
+    assert album.factor == 2
+    for index, _, image in read:
+        np.testing.assert_array_equal(image, GRADIENTS[index])
+        small = cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA)
+        assert np.abs(album.picture(index).astype(float) - small).max() <= 4.0
+
+
+def test_sampling_puts_nothing_into_the_album() -> None:
+    album = Album()
+    clip = watch_clip(
+        Clip(Path("drawn"), Drawn(gradients(), fps=25.0, size=(640, 480))), FrameChecks(), album
+    )
+    assert len(list(clip.sample(2))) == 2
+    assert 0 not in album
+    with pytest.raises(KeyError):
+        album.picture(0)
+    next(clip.frames())
+    assert 0 in album and 1 not in album

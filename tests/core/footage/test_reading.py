@@ -1,17 +1,30 @@
 """What is read of a clip: known again, kept as arrays, and read anew where anything differs."""
 
 import os
+import shutil
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
+from _boot import ROOT
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.footage.clips import clip as clip_module
-from keymark.core.footage.reading import Reading, reading_arrays, reading_from_arrays
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips.video_file import VideoFile
+from keymark.core.footage.reading import (
+    MOST_CLIPS,
+    Reading,
+    clip_times,
+    read_clip,
+    reading_arrays,
+    reading_from_arrays,
+    reading_key,
+)
+from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take import Take
@@ -143,3 +156,76 @@ def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
     file.write_bytes(bytes(150_000) + b"1" + bytes(149_999))
     os.utime(file, ns=(state.st_atime_ns, state.st_mtime_ns))
     assert file_fingerprint(file) != before
+
+
+DEMO = ROOT / "presets" / "demo" / "aerobic"
+
+
+@pytest.fixture
+def decoded(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """The clips that are decoded for their times, one entry a pass."""
+    seen: list[Path] = []
+    decode = VideoFile.time_stamps
+
+    def counted(video: VideoFile):  # noqa: ANN202
+        seen.append(video.path)
+        return decode(video)
+
+    monkeypatch.setattr(VideoFile, "time_stamps", counted)
+    return seen
+
+
+@pytest.fixture
+def clip(tmp_path: Path) -> Path:
+    return Path(shutil.copy(DEMO / "clip.mp4", tmp_path))
+
+
+def test_a_clip_is_decoded_once_for_its_times(clip: Path, decoded: list[Path]) -> None:
+    first, second = (run(clip_times(Clip.open(clip))) for _ in range(2))
+    assert decoded == [clip]
+    np.testing.assert_array_equal(first, list(Clip.open(clip).source.time_stamps()))
+    np.testing.assert_array_equal(second, first)
+    assert len(first) > 1
+
+
+def test_a_clip_that_has_changed_is_decoded_again(clip: Path, decoded: list[Path]) -> None:
+    first = run(clip_times(Clip.open(clip)))
+    video = cv2.VideoWriter(str(clip), cv2.VideoWriter.fourcc(*"mp4v"), 30.0, (64, 48))
+    for level in range(0, 100, 10):
+        video.write(np.full((48, 64, 3), level, dtype=np.uint8))
+    video.release()
+    assert len(run(clip_times(Clip.open(clip)))) == 10 != len(first)
+    assert decoded == [clip, clip]
+
+
+def test_a_reading_of_the_clip_knows_its_times(clip: Path, decoded: list[Path]) -> None:
+    """The same to the last digit; a reading of another file, or of other markers, is not asked."""
+    opened = Clip.open(clip)
+    reading = run(read_clip(opened, (), with_album=False))
+    style = MarkerStyle("trunk", "trunk", (70, 106, 213))
+    found = run(clip_times(opened, reading))
+    assert decoded == []
+    np.testing.assert_array_equal(found, list(opened.source.time_stamps()))
+    os.utime(clip, (1, 1))
+    run(clip_times(opened, reading))
+    os.utime(clip, (2, 2))
+    run(clip_times(opened, replace(reading, key=reading_key(clip, opened.fps, (style,), None))))
+    assert decoded == [clip] * 3  # one of them just now, to compare
+
+
+def test_a_pass_that_was_broken_off_leaves_nothing(clip: Path, decoded: list[Path]) -> None:
+    broken = clip_times(Clip.open(clip))
+    next(broken)
+    broken.close()
+    assert len(run(clip_times(Clip.open(clip)))) > 1
+    assert len(decoded) == 2
+
+
+def test_only_the_last_clips_are_remembered(clip: Path, tmp_path: Path, decoded: list[Path]) -> None:
+    others = [tmp_path / f"{number}.mp4" for number in range(MOST_CLIPS)]
+    for number, other in enumerate(others):
+        other.write_bytes(clip.read_bytes())
+        os.utime(other, (100 + number, 100 + number))  # the fingerprint has the time
+    for path in (clip, *others, clip):
+        run(clip_times(Clip.open(path)))
+    assert decoded == [clip, *others, clip]
