@@ -98,9 +98,7 @@ def watched(album: Album) -> Clip:
 def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
     """Frames, times and size pass unchanged; each frame's picture is that frame on half the grid."""
     album = Album()
-    clip = watch_clip(
-        Clip(Path("drawn"), Drawn(gradients(), fps=25.0, size=(640, 480))), FrameChecks(), album
-    )
+    clip = watched(album)
     read = list(clip.frames())
     assert [(index, time_s) for index, time_s, _ in read] == [(i, i / 25.0) for i in range(4)]
     assert (clip.size, clip.fps, clip.frame_count) == ((640, 480), 25.0, 4)
@@ -113,9 +111,7 @@ def test_a_watched_clip_is_the_clip_and_fills_the_album() -> None:
 
 def test_sampling_puts_nothing_into_the_album() -> None:
     album = Album()
-    clip = watch_clip(
-        Clip(Path("drawn"), Drawn(gradients(), fps=25.0, size=(640, 480))), FrameChecks(), album
-    )
+    clip = watched(album)
     assert len(list(clip.sample(2))) == 2
     assert 0 not in album
     with pytest.raises(KeyError):

@@ -6,11 +6,24 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import BLUE, RED, SIZE, STYLES, Ellipse, clip_of, draw, finish, moving, path, with_panel
+from _drawn_clip import (
+    BLUE,
+    RED,
+    SIZE,
+    STYLES,
+    Ellipse,
+    clip_of,
+    draw,
+    film,
+    moving,
+    path,
+    tracked,
+    with_panel,
+)
 from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.ignored_regions import IGNORED, IgnoredPixels, IgnoredRegion
 from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.markers import regions_of_frame, track_markers
+from keymark.core.footage.markers import regions_of_frame
 from keymark.core.footage.reading import Reading, read_clip, reading_key
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.footage.segmentation.regions import color_masks
@@ -30,7 +43,7 @@ def hidden_red(index: int) -> list[Ellipse]:
 
 
 def track(frames: list[np.ndarray], *ignored: IgnoredRegion) -> RegionTracks:
-    return finish(track_markers(clip_of(frames), STYLES, ignored=ignored))
+    return tracked(frames, ignored=ignored)
 
 
 def away(tracks: RegionTracks) -> np.ndarray:
@@ -116,7 +129,7 @@ def test_a_wall_that_hides_its_color_teaches_nothing_once_it_is_ignored() -> Non
 
     frames = [frame(index) for index in range(36)]
     red = STYLES[:1]
-    seen = finish(track_markers(clip_of(frames), red, ignored=(wall,)))
+    seen = tracked(frames, red, ignored=(wall,))
     true = np.array([(190.0 + 2.0 * index, 90.0) for index in range(36)])
     assert np.linalg.norm(seen.centroid[:, 0] - true, axis=1).max() < 0.5
     assert np.nanmedian(seen.quality[:, 0]) > 0.8
@@ -126,29 +139,20 @@ def test_a_region_that_an_ignored_one_cuts_is_seen_in_part() -> None:
     """Nothing of it lies inside, and it is known to be no whole marker, as at the picture's border."""
     rng = np.random.default_rng(11)
     frames = [draw([(RED, (150.0, 90.0), (30.0, 12.0), 0.0)], rng) for _ in range(20)]
-    half = finish(track_markers(clip_of(frames), STYLES[:1], ignored=(IgnoredRegion(box=(0, 0, 150, 240)),)))
-    whole = finish(track_markers(clip_of(frames), STYLES[:1]))
+    half = tracked(frames, STYLES[:1], ignored=(IgnoredRegion(box=(0, 0, 150, 240)),))
+    whole = tracked(frames, STYLES[:1])
     assert half.clipped[:, 0].all() and not whole.clipped.any()
     assert np.nanmedian(half.area) == pytest.approx(0.5 * np.nanmedian(whole.area), rel=0.05)
     beside = IgnoredRegion(box=(0, 0, 110, 240))
-    assert not finish(track_markers(clip_of(frames), STYLES[:1], ignored=(beside,))).clipped.any()
+    assert not tracked(frames, STYLES[:1], ignored=(beside,)).clipped.any()
 
 
 def test_a_region_ignored_in_some_frames_is_searched_in_the_others() -> None:
     """Red passes through a box that is ignored in its frames; long before and after it is found."""
-    rng = np.random.default_rng(13)
-    frames = [draw(moving(index), rng) for index in range(60)]
+    frames = film(moving, 60, 13)
     tracks = track(frames, IgnoredRegion(box=(0.0, 0.0, 320.0, 240.0), frames=(20, 29)))
     assert np.flatnonzero(~tracks.visible[:, 0]).tolist() == list(range(20, 30))
     assert not tracks.visible[20:30, 1].any() and tracks.visible[30:, 1].all()
-
-
-def test_a_reading_without_ignored_regions_is_the_same_bit_for_bit() -> None:
-    frames = images(12)
-    clip = clip_of(frames)
-    one, other = track(frames), finish(track_markers(clip, STYLES, None, ()))
-    for name in ("centroid", "second_moment", "area", "quality"):
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
 def test_the_key_of_a_reading_changes_with_what_is_ignored(tmp_path: Path) -> None:

@@ -7,10 +7,9 @@ from typing import TypeVar
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving
+from _drawn_clip import RED, STYLES, Drawn, Ellipse, clip_of, draw, film, moving, tracked
 from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.marker_check import MarkerCheck, check_markers
-from keymark.core.footage.markers import track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.footage.segmentation.regions import color_masks, mask_outlines
 from keymark.core.footage.still_areas import Likeness, marker_warnings
@@ -41,8 +40,7 @@ def words(result: MarkerCheck) -> str:
 
 
 def test_clear_colors_are_found_everywhere_with_their_areas() -> None:
-    rng = np.random.default_rng(1)
-    red, blue = check([draw(moving(index), rng) for index in range(40)]).readouts
+    red, blue = check(film(moving, 40, 1)).readouts
     assert (red.name, red.found, red.sampled) == ("red", 24, 24) and blue.found == 24
     assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
     assert blue.area_share == pytest.approx(np.pi * 8 * 18 / (320 * 240), rel=0.06)
@@ -52,8 +50,7 @@ def test_clear_colors_are_found_everywhere_with_their_areas() -> None:
 
 def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
     """Red is away for three quarters of the clip; the sentence says in how many frames it is found."""
-    rng = np.random.default_rng(2)
-    images = [draw(moving(index)[index >= 10 :], rng) for index in range(40)]
+    images = film(lambda index: moving(index)[index >= 10 :], 40, 2)
     result = check(images)
     red, blue = result.readouts
     assert (red.found, blue.found) == (6, 24)
@@ -61,8 +58,7 @@ def test_a_marker_is_found_in_the_frames_that_show_it_and_no_others() -> None:
 
 
 def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
-    rng = np.random.default_rng(3)
-    images = [draw(moving(index), rng) for index in range(20)]
+    images = film(moving, 20, 3)
     result = check(images, (*STYLES, MarkerStyle("shin", "shin.L", GREEN)))
     red, blue, shin = result.readouts
     assert (shin.found, shin.area_px, shin.distinctness) == (0, 0.0, 0.0)
@@ -72,9 +68,8 @@ def test_one_color_that_is_nowhere_does_not_hide_the_others() -> None:
 
 
 def test_a_wall_of_a_markers_color_is_named() -> None:
-    rng = np.random.default_rng(4)
     styles = (MarkerStyle("wall", "trunk", (200, 190, 176)), STYLES[1])
-    wall, blue = check([draw(moving(index), rng) for index in range(20)], styles).readouts
+    wall, blue = check(film(moving, 20, 4), styles).readouts
     assert wall.found == 0 and wall.distinctness == 0.0
     assert "of the picture around the markers have too" in wall.warnings[0]
     assert blue.found == 20 and blue.distinctness > 0.9
@@ -96,9 +91,8 @@ def test_a_background_that_comes_near_a_markers_color_makes_it_less_distinct() -
 
 
 def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
-    rng = np.random.default_rng(6)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
-    result = check([draw([*moving(index), bucket], rng) for index in range(40)])
+    result = check(film(lambda index: [*moving(index), bucket], 40, 6))
     red, blue = result.readouts
     assert red.area_px == pytest.approx(np.pi * 16 * 6, rel=0.06)
     share = 22 * 16 / (22 * 16 + 16 * 6)
@@ -107,12 +101,11 @@ def test_clutter_of_a_markers_color_is_named_with_its_share() -> None:
 
 
 def test_markers_of_one_color_are_named_both_and_each_is_found() -> None:
-    rng = np.random.default_rng(7)
     other: Ellipse = (RED, (200.0, 200.0), (9.0, 14.0), 0.0)
     styles = (*STYLES, MarkerStyle("twin", "shin.L", (RED[0] - 4, RED[1], RED[2] + 3)))
     places = np.array([[moving(index)[0][1], moving(index)[1][1], other[1]] for index in range(40)])
     expected = ExpectedRegions(places, np.full((40, 3), 40.0))
-    result = check([draw([*moving(index), other], rng) for index in range(40)], styles, expected)
+    result = check(film(lambda index: [*moving(index), other], 40, 7), styles, expected)
     red, blue, twin = result.readouts
     assert result.groups == ((0, 2), (1,))
     assert "red has almost the same color as twin" in red.warnings[0]
@@ -155,9 +148,8 @@ def test_a_tiny_marker_is_called_small() -> None:
 
 def test_previews_show_what_the_extraction_measures() -> None:
     """The masks' coverage sums to the regions' areas and every mask lies where its marker is."""
-    rng = np.random.default_rng(10)
-    images = [draw(moving(index), rng) for index in range(12)]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    images = film(moving, 12, 10)
+    tracks = tracked(images)
     masks = color_masks(images[5], check(images).model)
     assert masks.shape == (2, 240, 320)
     np.testing.assert_allclose(masks.sum(axis=(1, 2)), tracks.area[5], rtol=0.02)
@@ -165,8 +157,7 @@ def test_previews_show_what_the_extraction_measures() -> None:
 
 
 def test_large_images_are_previewed_on_the_measuring_grid() -> None:
-    rng = np.random.default_rng(11)
-    small = [draw(moving(index), rng) for index in range(6)]
+    small = film(moving, 6, 11)
     large = [cv2.resize(image, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC) for image in small]
     clip = Clip(Path("large"), Drawn(large, size=(1280, 960)))
     result = result_of(check_markers(result_of(sample_clip(clip)), STYLES))
