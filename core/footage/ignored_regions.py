@@ -114,9 +114,8 @@ MOST_POINTS = 1000  # points of one stroke
 VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
 VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
 VALID_FRAMES = "[first, last], scene frames in order"
-FARTHEST_FRAME = 10**7
 
-
+SceneFrame = Annotated[int, Whole(-(10**7), 10**7)]
 Coordinate = Annotated[float, Number(-LARGEST_SIDE_PX, 2 * LARGEST_SIDE_PX)]
 PixelPoint = Annotated[tuple[Coordinate, ...], Items("numbers", 2, 2)]
 
@@ -133,13 +132,7 @@ class RegionFields(Record):
     """Points [x, y] of a brush's path [px]."""
     radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
     """Radius of the brush [px]."""
-    frames: (
-        Annotated[
-            tuple[Annotated[int, Whole(-FARTHEST_FRAME, FARTHEST_FRAME)], ...],
-            Items("frames", 2, 2, VALID_FRAMES),
-        ]
-        | None
-    ) = None
+    frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
     """First and last scene frame in which it is ignored; the default is all."""
 
     def mistake(self) -> str:

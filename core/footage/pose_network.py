@@ -25,8 +25,7 @@ SIDE, CELLS = 256, 64  # of the network's input and of its heat maps
 POINTS, CENTER, ABOVE = 39, 33, 34
 """Point 33 is between the hips, 34 above it on the circle about the whole person."""
 CIRCLE = 2.5  # side of a crop by the circle's radius
-NEIGHBORS = 3
-"""A point goes to the middle of its heat map within so many cells, where that has such a peak."""
+NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
 OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
 
 
@@ -124,7 +123,7 @@ def _refined(place: SingleArray, heat: SingleArray) -> Array:
         return place.astype(np.float64)
     first = np.maximum([column - NEIGHBORS, row - NEIGHBORS], 0)
     part = _sigmoid(heat[first[1] : row + NEIGHBORS + 1, first[0] : column + NEIGHBORS + 1])
-    if part.max() < 0.5:
+    if part.max() < 0.5:  # no peak
         return place.astype(np.float64)
     rows, columns = np.indices(part.shape)
     middle = np.array([(columns * part).sum(), (rows * part).sum()]) / part.sum()

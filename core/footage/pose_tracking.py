@@ -25,14 +25,10 @@ STRETCH = 60  # frames kept at a time, 170 MB
 LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
 HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
 SIZES = (0.75,)  # the same by the largest person who is followed already
-STEP = 0.5
-"""Between crops, and least presence of one that is looked into again about whom it shows."""
-SURE = 0.9  # presence of somebody who is followed, and of somebody new
+STEP = 0.5  # between crops, by their side
 APART = 0.3  # share of a crop's side within which two crops show the same person
-MOST_OTHER = 1.6
-"""Frames in which somebody must be seen, and ratio of sizes beyond which a later person is another."""
-SMALLEST = 0.35
-"""Others are followed from this share of the largest one's size on, and so many together."""
+MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
+SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +157,7 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
             looks = 2 if pose.presence > 0.3 else 0  # somebody may be there, in another place of the crop
             for _ in range(looks):
                 pose = network(picture, pose.crop)
-            sure = pose.presence > SURE and pose.score.mean() > 0.5 and _is_inside(pose, picture)
+            sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
             if looks and sure and pose.crop.side > SMALLEST * largest:
                 here.append(pose)
         for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):

@@ -39,7 +39,7 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
     upright = straight & _along(head - ankle, np.array([0.0, -1.0]), float(np.cos(np.radians(30.0))))
     feet = pixel[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES], 1]
     with np.errstate(invalid="ignore"):
-        # A decimeter.
+        # Ankles are level to a decimeter.
         upright &= np.abs(feet[:, 0] - feet[:, 1]) < 0.06 * np.linalg.norm(head - ankle, axis=-1)
     upright &= _on_floor(ankle[:, 1], np.linalg.norm(head - ankle, axis=-1), fps)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
@@ -50,10 +50,10 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
         upper_px=head[chosen],
         lower_m=height["ankle"] * ones,
         length_m=(height["head"] - height["ankle"]) * ones,
-        pixel_std=0.025 * size,
-        length_std=0.025 * ones,
+        pixel_std=0.025 * size,  # a detector's point, a rising heel
+        length_std=0.025 * ones,  # knees bend, and the trunk leans
         lean_std_rad=float(np.radians(3.0)) * ones,
-        common_std=float(np.hypot(STATURE_STD, 0.02)),
+        common_std=float(np.hypot(STATURE_STD, 0.02)),  # detectors put ankles or heads too high throughout
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )
@@ -80,6 +80,8 @@ def _along(first: Array, second: Array, least: float) -> BoolArray:
 
 def _on_floor(row: Array, size: Array, fps: float) -> BoolArray:
     """(F,) whether the feet's row (F,) hardly changes about each frame, beside the body's size (F,) [px]."""
+    # Who leaves the floor falls by 0.3 m in a quarter second, a fifth of the length from ankles to head; who
+    # walks toward the camera comes down in the picture by less than an eighth of it.
     reach = max(1, round(0.25 * fps))
     padded = np.pad(row, reach, constant_values=np.nan)
     near = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)

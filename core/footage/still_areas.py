@@ -70,14 +70,9 @@ def marker_warnings(
 
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     """A sentence on the markers of the same color as one, if there are any."""
-    if not alike:
-        return []
-    return [
-        (
-            f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell "
-            "them apart"
-        )
-    ]
+    others = " and ".join(alike)
+    told = "only keyframes and paths tell them apart"
+    return [f"{name} has almost the same color as {others}; {told}"] if alike else []
 
 
 NEARLY_ALWAYS = 0.9

@@ -35,6 +35,7 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
     usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
     if not usual.any():
         return None
+    # Well seen regions, where there are any.
     good = np.flatnonzero(usual >= min(0.6, float(np.median(usual[usual > 0.0]))))
     chosen = good[np.unique(np.linspace(0, len(good) - 1, 8).round().astype(np.intp))]
     inside = []
@@ -64,7 +65,7 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
             peak = np.unravel_index(int(share.argmax()), share.shape)
             near = tuple(slice(max(int(at) - NEAR_CELLS, 0), int(at) + NEAR_CELLS + 1) for at in peak)
             mass = float(share[near].sum())
-            if mass < 0.07 * whole or mass == 0.0:
+            if mass < 0.07 * whole or mass == 0.0:  # of a part with at most four colors of its own
                 break
             cells = np.moveaxis(np.indices(share[near].shape), 0, -1) + [one.start for one in near]
             color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass

@@ -30,10 +30,9 @@ from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
 LONGEST_DETECTOR = 200  # characters
-"""Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
-
-
 NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
+VISIBLE = f"one line of at most {LONGEST_DETECTOR} visible characters"
+Detector = Annotated[str, Text(LONGEST_DETECTOR, VISIBLE, one_line=True)]
 Rows = Annotated[tuple[Any, ...], Items("entries, one a frame", 1, MOST_FRAMES, item=Anything("an entry"))]
 
 
@@ -53,17 +52,7 @@ class OwnFile(Record):
     proportions."""
     names: Annotated[Any, Anything("a list of body points")] = None
     """Body points of the layout own, each once; other layouts ignore it."""
-    detector: (
-        Annotated[
-            str,
-            Text(
-                LONGEST_DETECTOR,
-                f"one line of at most {LONGEST_DETECTOR} visible characters",
-                one_line=True,
-            ),
-        ]
-        | None
-    ) = None
+    detector: Detector | None = None
     """What saw the points; shown to people."""
     frame_start: Annotated[int, Whole(-(10**6), 10**6)] | None = None
     """Scene frame of the first entry, which is the clip's first frame."""

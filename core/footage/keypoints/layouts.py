@@ -64,43 +64,26 @@ def _hands(left: int, right: int) -> dict[int, str]:
     }
 
 
-_ARM, _LEG = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
+_ARM, _LEG, _FOOT = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"), ("toe", "small_toe", "heel")
 _COCO = ["nose", *_both("eye", "ear", *_ARM, *_LEG)]
+_FEET = [*_limb("L", *_FOOT), *_limb("R", *_FOOT)]
+_HALPE = [*_COCO, "crown", "neck", "pelvis", *_both(*_FOOT)]
 _OPENPOSE_ARMS = ["nose", "neck", *_limb("R", *_ARM), *_limb("L", *_ARM)]
-_OPENPOSE_FACE = ["eye.R", "eye.L", "ear.R", "ear.L"]
-_HALPE = [*_COCO, "crown", "neck", "pelvis", *_both("toe", "small_toe", "heel")]
-_FOOT = ("toe", "small_toe", "heel")
+_OPENPOSE_LEGS = [*_limb("R", *_LEG), *_limb("L", *_LEG), "eye.R", "eye.L", "ear.R", "ear.L"]  # and the face
 _BLAZEPOSE = [
     *("nose", None, "eye.L", None, None, "eye.R", None, "ear.L", "ear.R", None, None),
     *_both(*_ARM, "pinky", "index", "thumb", *_LEG, "heel", "toe"),
 ]
-
-LAYOUTS: Mapping[str, Layout] = MappingProxyType(
-    {
-        layout.name: layout
-        for layout in (
-            _layout("coco17", 17, _COCO),
-            _layout("coco18", 18, [*_OPENPOSE_ARMS, *_limb("R", *_LEG), *_limb("L", *_LEG), *_OPENPOSE_FACE]),
-            _layout(
-                "body25",
-                25,
-                [
-                    *_OPENPOSE_ARMS,
-                    "pelvis",
-                    *_limb("R", *_LEG),
-                    *_limb("L", *_LEG),
-                    *_OPENPOSE_FACE,
-                    *_limb("L", *_FOOT),
-                    *_limb("R", *_FOOT),
-                ],
-            ),
-            _layout("halpe26", 26, _HALPE),
-            _layout("blazepose33", 33, _BLAZEPOSE),
-            _layout("wholebody133", 133, [*_COCO, *_limb("L", *_FOOT), *_limb("R", *_FOOT)], _hands(91, 112)),
-            _layout("halpe136", 136, _HALPE, _hands(94, 115)),
-        )
-    }
+_KNOWN = (
+    _layout("coco17", 17, _COCO),
+    _layout("coco18", 18, [*_OPENPOSE_ARMS, *_OPENPOSE_LEGS]),
+    _layout("body25", 25, [*_OPENPOSE_ARMS, "pelvis", *_OPENPOSE_LEGS, *_FEET]),
+    _layout("halpe26", 26, _HALPE),
+    _layout("blazepose33", 33, _BLAZEPOSE),
+    _layout("wholebody133", 133, [*_COCO, *_FEET], _hands(91, 112)),
+    _layout("halpe136", 136, _HALPE, _hands(94, 115)),
 )
+LAYOUTS: Mapping[str, Layout] = MappingProxyType({layout.name: layout for layout in _KNOWN})
 """All that detectors use; no two have the same number of points."""
 
 
