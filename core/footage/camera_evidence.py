@@ -97,8 +97,7 @@ class Uprights:
 class CameraEvidence:
     """Lines in the picture, each given by its two ends [px], and upright things of known length."""
 
-    vertical: Array = field(default_factory=_no_lines)
-    """(V, 2, 2) plumb in the world: door frames, corners of walls."""
+    vertical: Array = field(default_factory=_no_lines)  # (V, 2, 2) plumb: door frames, corners of walls
     along: Array = field(default_factory=_no_lines)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
     across: Array = field(default_factory=_no_lines)  # (C, 2, 2) level and at right angles to those

@@ -219,21 +219,18 @@ def clip_times(
     the fraction done.
     """
     key = footage_digest(clip.path), clip.fps
-    if key not in _known and kept is not None:
-        own = reading_key(clip.path, clip.fps, styles, None, ignored)
-        if of_same_footage(kept.key, own):
-            _remember(key, kept.tracks.time_s)
     if key not in _known:
-        stamps: list[float] = []
-        for stamp in clip.source.time_stamps():
-            stamps.append(stamp)
-            yield min(len(stamps) / clip.frame_count, 1.0)
-        _remember(key, np.array(stamps, dtype=np.float64))
+        own = "" if kept is None else reading_key(clip.path, clip.fps, styles, None, ignored)
+        if kept is not None and of_same_footage(kept.key, own):
+            time_s = kept.tracks.time_s.copy()
+        else:
+            stamps: list[float] = []
+            for stamp in clip.source.time_stamps():
+                stamps.append(stamp)
+                yield min(len(stamps) / clip.frame_count, 1.0)
+            time_s = np.array(stamps, dtype=np.float64)
+        time_s.setflags(write=False)
+        _known[key] = time_s
+        for oldest in list(_known)[:-MOST_CLIPS]:
+            del _known[oldest]
     return _known[key]
-
-
-def _remember(key: tuple[str, float], time_s: Array) -> None:
-    _known[key] = time_s.copy()
-    _known[key].setflags(write=False)
-    for oldest in list(_known)[:-MOST_CLIPS]:
-        del _known[oldest]

@@ -122,11 +122,7 @@ class Regions(NamedTuple):
 
 
 NO_REGIONS = Regions(
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, 6)),
-    np.zeros((0, 4), dtype=np.int64),
-    np.zeros(0),
-    np.zeros(0, dtype=np.bool_),
+    np.zeros(0, np.int64), np.zeros((0, 6)), np.zeros((0, 4), np.int64), np.zeros(0), np.zeros(0, np.bool_)
 )
 
 

@@ -151,7 +151,13 @@ class FrameChecks:
 
     def findings(self) -> FrameFindings:
         """The findings so far."""
-        return FrameFindings(self._frames, tuple(self._blank), self._cuts(), self._interlaced())
+        usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
+        # Levels, and several times the usual change.
+        cuts = tuple(index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual))
+        rows, columns = np.mean(self._combed, axis=0) if self._combed else (0.0, 0.0)
+        # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
+        interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
+        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced)
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""
@@ -160,18 +166,6 @@ class FrameChecks:
         if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
-
-    def _interlaced(self) -> bool:
-        if not self._combed:
-            return False
-        rows, columns = np.mean(self._combed, axis=0)
-        # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
-        return bool(rows > 5e-4 and rows > 10.0 * columns)
-
-    def _cuts(self) -> tuple[int, ...]:
-        usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
-        # Levels, and several times the usual change.
-        return tuple(index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual))
 
 
 def _colorfulness(image: Image) -> int:

@@ -177,12 +177,14 @@ def find_images(path: Path) -> list[Path] | None:
     if path.is_dir():
         found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
-            raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
+            kinds = ", ".join(sorted(extension[1:] for extension in EXTENSIONS))
+            raise InputError(f"{path}: the folder holds no image; it must hold {kinds} files")
         return _only_sequence(path, found)
     if path.suffix.lower() not in EXTENSIONS:
         return None
     if path.is_file():
-        return _siblings(path)
+        around = stem_of_number(path)
+        return [path] if around is None else _numbered(path.parent, *around)
     if not PATTERN.search(path.name):
         return None
     head, _, tail = PATTERN.split(path.name, maxsplit=1)
@@ -231,12 +233,6 @@ def stem_of_number(path: Path) -> tuple[str, str] | None:
     return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
 
 
-def _siblings(path: Path) -> list[Path]:
-    """The sequence a numbered image belongs to; an image without a number stands alone."""
-    around = stem_of_number(path)
-    return [path] if around is None else _numbered(path.parent, *around)
-
-
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
     name = re.compile(re.escape(head) + r"\d+" + re.escape(tail) + "$")
     if not folder.is_dir():
@@ -255,7 +251,3 @@ def _natural_key(path: Path) -> list[tuple[int, int, str]]:
     """Sort key of natural order: digits by value, the rest as text."""
     parts = re.split(r"(\d+)", path.name.lower())
     return [(1, int(part), part) if part.isdecimal() else (0, 0, part) for part in parts]
-
-
-def _names() -> str:
-    return ", ".join(sorted(extension[1:] for extension in EXTENSIONS))

@@ -168,7 +168,10 @@ class VideoFile:
 
     @contextmanager
     def _capture(self) -> Iterator[cv2.VideoCapture]:
-        capture = _open_quietly(self.path)
+        name = os.path.abspath(self.path)  # a name of a word and a colon begins like FFmpeg's protocols
+        with opencv_silence():
+            capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
+            capture = capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
         try:
             if not capture.isOpened():
                 raise InputError(
@@ -180,13 +183,6 @@ class VideoFile:
             yield capture
         finally:
             capture.release()
-
-
-def _open_quietly(path: Path) -> cv2.VideoCapture:
-    name = os.path.abspath(path)  # where a name begins with a word and a colon, that is a protocol to FFmpeg
-    with opencv_silence():
-        capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
-        return capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
 
 
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:

@@ -68,7 +68,7 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
         near = np.linalg.norm(chroma - center, axis=1) < 0.10
         share = float(left[near].sum() / counts.sum())
         if share > LEAST_SHARE:
-            blue, green, red = _median(colors[near], left[near])
+            blue, green, red = (round(weighted_median(channel, left[near])) for channel in colors[near].T)
             # Blends at borders are many and dull; a marker is small and strong.
             standing_out = float(np.linalg.norm(center)) * share**0.25
             found.append((standing_out, StrongColor((red, green, blue), share)))
@@ -83,10 +83,6 @@ def _densest(chroma: Array, weight: Array) -> Array:
     _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
     inside = index == int(np.bincount(index, weight).argmax())
     return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))
-
-
-def _median(colors: Array, weight: Array) -> list[int]:
-    return [round(weighted_median(channel, weight)) for channel in colors.T]
 
 
 def color_confusion(model: ColorModel) -> Array:
