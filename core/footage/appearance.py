@@ -30,8 +30,7 @@ MARGIN_PX = 5  # error of a predicted body: pixels nearer to it do not count as 
 HIGHEST = 255  # replaces occluded levels, so that they are sorted last
 SPARSE = 2  # sampling step, in rows and columns, of the background's histogram
 STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
-DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
-"""Range and standard deviation of the light on a background pixel, relative to its usual light."""
+DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15  # of the light on the background, relative to usual
 CHANGED = 0.1  # prior share of pixels that differ from the background's usual color
 
 

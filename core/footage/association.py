@@ -18,8 +18,7 @@ from .segmentation.moments import MOMENT_POWERS
 
 HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
 RESTART_COST = 10.0
-STEP_TAIL = 1.0
-"""Scale of Student's t of the steps: a swung arm takes several steps of four deviations in a row."""
+STEP_TAIL = 1.0  # scale of Student's t of the steps: a swung arm takes several large ones in a row
 STILL_STEP_PX = 1.5
 TAKEN_COST = 20.0
 

@@ -206,8 +206,7 @@ FULL_FRAME_MM = 36.0  # long side of the full-frame sensor that focal lengths ar
 
 PHONE_MM = 26.0  # full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28
 STABILISED = 1.1  # crop factor of phones' video stabilization: a tenth is usual
-WEBCAM_DEGREES = 68.0
-"""Diagonal view of a webcam in 16 to 9: makers state 60 (plain ones) to 78 (better ones)."""
+WEBCAM_DEGREES = 68.0  # diagonal view of a webcam in 16 to 9: makers state 60 to 78
 
 EYE_HEIGHT_M = 1.4
 

@@ -13,8 +13,7 @@ from .camera_fields import heading_rad
 CLICK_STD_PX = 1.5  # standard deviation of a click, or of a line's end drawn by hand [px]
 COMMON_LEAN_RAD = float(np.radians(2.5))
 """Lean that one person has at all moments alike: heads lie in front of ankles, and walkers lean forward."""
-STATURE_STD = 0.015
-"""Share by which a stated stature is off throughout: shoes, hair, and what people say of themselves."""
+STATURE_STD = 0.015  # share by which stated statures are off: shoes, hair, and what people say
 
 
 def _no_lines() -> Array:
@@ -105,11 +104,9 @@ class CameraEvidence:
 
 
 REACH_M = 8  # lines lie so far to each side of the floor's part that is looked at
-AHEAD_M = 4.0
-"""Distance of that part where the camera does not look down on it: a whole person fits the picture there."""
+AHEAD_M = 4.0  # distance of that part at most: a whole person fits the picture there
 PIECES = 4  # pieces of a meter, each straight, as a lens with distortion bends lines
-MARGIN = 0.1
-"""Share of the picture's size beyond which nothing is drawn: distortion is not defined far outside."""
+MARGIN = 0.1  # share of the picture beyond which nothing is drawn, as distortion is not defined there
 HORIZON_DEGREES = 60.0
 
 

@@ -30,15 +30,12 @@ PARAMETERS = (HEIGHT, TILT, ROLL, LENS)
 BELIEVED_STD = np.array([0.4, np.radians(15.0), np.radians(4.0), 0.35])
 """Of the logarithm of the height (from 0.6 to 3 m about 1.4 m, twice that deviation), tilt and roll (held in
 hands, or on a slanting support), and of the logarithm of the focal length (17 to 70 mm about 35)."""
-KNOWN_LENS_STD = 0.01
-"""Of the logarithm of a focal length that somebody knows: zooms state theirs to a hundredth."""
-DETERMINED = 0.5
-"""Largest ratio of the standard deviation found to that believed before, of what the picture determines."""
+KNOWN_LENS_STD = 0.01  # of the logarithm of a known focal length: zooms state theirs to a hundredth
+DETERMINED = 0.5  # largest ratio of a deviation found to that believed before
 START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])  # tilts from which it starts
 HEADING = len(PARAMETERS)
 DIFFERENCE = 1e-5
-EXPECTED_WEIGHT = 4.0
-"""Degrees of freedom with which the image noise is believed beforehand, as few lines tell little of it."""
+EXPECTED_WEIGHT = 4.0  # degrees of freedom of the image noise believed beforehand
 LEAST_RISE_M = 0.01  # least height of the camera above a point [m]
 
 

@@ -18,8 +18,7 @@ from .segmentation.moments import centroid_and_second_moment
 from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
 
-STRETCH_BYTES = 100_000_000
-"""Memory of the images buffered until the colors are learned: five seconds of video and more."""
+STRETCH_BYTES = 100_000_000  # images buffered until the colors are learned: five seconds of video
 BATCH_SIZE = 4  # images segmented together: enough to amortize the overhead of each step
 
 

@@ -18,8 +18,7 @@ from .keypoints.keypoints import Keypoints
 from .keypoints.performer import principal_keypoints
 
 IN_LINE = float(np.cos(np.radians(15.0)))  # cosine of the largest angle between trunk and legs
-MOST_UNLIKE = 0.2
-"""Largest logarithm of the ratio of legs to trunk, relative to that of someone upright in the same clip."""
+MOST_UNLIKE = 0.2  # logarithm of the ratio of legs to trunk, relative to that of someone upright
 
 
 def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights:

@@ -75,8 +75,7 @@ def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     return [f"{name} has almost the same color as {others}; {told}"] if alike else []
 
 
-NEARLY_ALWAYS = 0.9
-"""Share of the sampled frames in which a still pixel has the color; in others a passing limb may hide it."""
+NEARLY_ALWAYS = 0.9  # share of the samples in which a still pixel has the color; limbs pass before it
 MARGIN = 2  # pixels of the measuring grid around a still area that lens and encoding blend its color into
 SIDE = cv2.getStructuringElement(cv2.MORPH_RECT, (3, 3))
 THIRDS = (

@@ -13,8 +13,7 @@ from ...errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
 from .frame_checks import video_notes
 
-FRAMES_PER_SEEK = 125
-"""Mean cost of seeking, which decodes from the last video keyframe on: half of the usual 250 frames."""
+FRAMES_PER_SEEK = 125  # mean cost of seeking: half of the usual 250 frames between video keyframes
 LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
 
 CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"

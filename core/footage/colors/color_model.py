@@ -14,14 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Array, Image, IndexArray, Int32Array, SingleArray
 
-CELL_BITS = 6
-"""Bits kept of each channel: 64³ cells hold a color to within two levels, less than compression noise."""
+CELL_BITS = 6  # of each channel: 64³ cells hold a color to two levels, less than compression noise
 CELLS_PER_CHANNEL = 1 << CELL_BITS
 CELL_COUNT = CELLS_PER_CHANNEL**3
 CELL_WIDTH = 256 // CELLS_PER_CHANNEL
 
-LUMA_OFFSET = 16.0
-"""Levels added to luma before dividing by it: about five times the noise of a compressed dark pixel."""
+LUMA_OFFSET = 16.0  # levels added before dividing by luma: five times the noise of a dark pixel
 
 # Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
 LUMA_BGR = np.array([0.114, 0.587, 0.299])
@@ -87,10 +85,8 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
 
 ColorArray = Array | SingleArray
 
-NOISE_LEVELS = 5.0
-"""Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
-OUTLIER_DISTANCE = 16.0
-"""Squared distance past which no color is a marker's, even one that the background lacks: 99.9 % of χ²."""
+NOISE_LEVELS = 5.0  # deviation of a decoded, smoothed color difference: sensor and compression
+OUTLIER_DISTANCE = 16.0  # squared distance past which no color is a marker's: 99.9 % of χ²
 BACKGROUND = 255  # label of pixels that are no marker's
 
 

@@ -21,8 +21,7 @@ from .color_model import (
 
 _Number = TypeVar("_Number", bound=np.generic)
 
-LEARNING_NOISE_LEVELS = 2.5
-"""Noise assumed in learning, lower than in classification: pixels explained by noise alone teach nothing."""
+LEARNING_NOISE_LEVELS = 2.5  # less than in classification: pixels explained by noise alone teach nothing
 NO_MARKER = 255
 KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 # A Gaussian kernel of one cell's deviation, cut off after two.

@@ -25,10 +25,8 @@ CONTRAST = np.array(
     ]
 )
 """Turns blue, green, red into luma and chroma of like noise."""
-DARKEST, BRIGHTEST = 0.5, 1.15
-"""Range of the light on the background, relative to its usual light: shadows are no surface."""
-ODD = 6.0
-"""Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
+DARKEST, BRIGHTEST = 0.5, 1.15  # light on the background, relative to usual: shadows are no surface
+ODD = 6.0  # squared distance from a color, in deviations, of what may be something else as well
 SMALLEST_DEVIATION = 3.0  # of a color, in levels: compression and the smoothing of what lies beside it
 MOST_GAIN = 12.0  # largest gain of a pixel: models of color are wrong once in so many (e^12)
 LEAST_GAIN = 2.0
