@@ -34,13 +34,6 @@ def test_a_rectangle_of_whole_pixels_has_exactly_the_rectangles_moments() -> Non
     np.testing.assert_allclose(second, [[16 / 12, 0.0], [0.0, 3.0]], atol=1e-12)
 
 
-def test_the_first_pixels_center_lies_at_a_half() -> None:
-    """The origin is the outer corner of the first pixel; a pixel alone has the variance of a square."""
-    centroid, second = measured(np.ones((1, 1)))
-    np.testing.assert_allclose(centroid, [0.5, 0.5])
-    np.testing.assert_allclose(second, np.eye(2) / 12)
-
-
 def test_a_window_counts_from_its_own_corner() -> None:
     image = np.zeros((60, 80))
     image[20:31, 33:50] = np.random.default_rng(2).uniform(0, 1, (11, 17))

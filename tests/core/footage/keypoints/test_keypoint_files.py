@@ -273,84 +273,76 @@ def test_frame_rate_and_start_of_the_file(tmp_path: Path) -> None:
         read(path, 13, frame_start=101)
 
 
-def broken(tmp_path: Path, kind: str) -> Path:
-    person, path = moving_person(COCO17), tmp_path / "x.json"
-    value = own_value(person)
-    if kind == "truncated":
-        path.write_text('{"layout": "coco17", "frames": [[[1, 2', encoding="utf-8")
-        return path
-    if kind == "truncated in a folder":
-        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
-        (folder / "clip_000000000003_keypoints.json").write_text('{"people": [', encoding="utf-8")
-        return folder
-    if kind in ("two alike", "no frames", "link", "points", "other points", "many people"):
-        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
-        one = folder / "clip_000000000003_keypoints.json"
-        if kind == "two alike":
-            write(folder / "other_3.json", openpose_frame([]))
-        elif kind == "no frames":
-            for file in folder.iterdir():
-                file.rename(file.with_name("x" + "y" * int(file.name[5:17]) + ".json"))
-        elif kind == "link":
-            one.rename(tmp_path / "outside.json")
-            one.symlink_to(tmp_path / "outside.json")
-        elif kind == "many people":
-            write(one, openpose_frame([moving_person(BODY25)[0]] * 101))
-        else:
-            count = {"points": 20, "other points": 17}[kind]
-            write(one, openpose_frame([np.ones((count, 3))]))
-        return folder
-    values: dict[str, Any] = {
-        "one picture": openpose_frame([moving_person(BODY25)[0]]),
-        "one picture of MMPose": mmpose_value(person)["instance_info"][0]["instances"],
-        "of no kind": {"poses": []},
-        "a text": "keypoints",
-        "an empty list": [],
-        "nobody": value | {"frames": [None] * FRAMES},
-        "nobody scored": value | {"frames": (person * 0.0).tolist()},
-        "empty": value | {"frames": []},
-        "shares": value | {"frames": (person / [320.0, 240.0, 1.0]).tolist()},
-        "larger picture": own_value(person * [6.0, 6.0, 1.0]),
-        "in space": {"instance_info": [{"frame_id": 0, "instances": [{"keypoints": [[1, 2, 3]] * 17}]}]},
-        "half the frames": value | {"frames": person[::2].tolist()},
-        "far": value | {"frames": (person * 1e8).tolist()},
-    }
-    return write(path, values[kind])
-
-
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        ("truncated", "no valid JSON"),
-        ("truncated in a folder", "000003_keypoints.json.*no valid JSON"),
-        ("two alike", "the same number"),
-        ("no frames", "ends in a number"),
-        ("link", "leads by a link"),
-        ("points", "has 20 points; those before have 25"),
-        ("other points", "all must be alike"),
-        ("many people", "has 101 people; at most 100"),
-        ("one picture", "one frame of OpenPose, whose folder"),
-        ("one picture of MMPose", "one picture of MMPose"),
-        ("of no kind", "the fields .'poses'., which no known format has"),
-        ("an empty list", "is empty; it must be"),
-        ("a text", "it must be Keymark's own file"),
-        ("nobody", "nobody is seen in any of its 12 frames"),
-        ("nobody scored", "no point has a score above 0|nobody"),
-        ("empty", "frames has 0 of them; it must be a list of 1 to 1000000 entries, one a frame"),
-        ("shares", "must be pixels of the clip"),
-        ("larger picture", "outside the clip's picture"),
-        ("in space", "points in space"),
-        ("half the frames", "has 6 frames, the clip 12.*one for every 2"),
-        ("far", "a number beyond 1e"),
-    ],
-)
-def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, words: str) -> None:
-    path = broken(tmp_path, kind)
+def refused(path: Path, words: str) -> None:
+    """A file is refused in a sentence that names it and what would be valid."""
     with pytest.raises(InputError, match=words) as caught:
         read(path)
     text = str(caught.value)
     assert str(path) in text and len(text.splitlines()) == 1
     assert any(valid in text for valid in ("must", "at most", "no valid JSON", "layouts that are read"))
+
+
+PERSON, BODY = moving_person(COCO17), moving_person(BODY25)
+OWN = own_value(PERSON)
+IN_SPACE = {"frame_id": 0, "instances": [{"keypoints": [[1, 2, 3]] * 17}]}
+UNUSABLE: dict[str, Any] = {
+    "one frame of OpenPose, whose folder": openpose_frame([BODY[0]]),
+    "one picture of MMPose": mmpose_value(PERSON)["instance_info"][0]["instances"],
+    "the fields .'poses'., which no known format has": {"poses": []},
+    "it must be Keymark's own file": "keypoints",
+    "is empty; it must be": [],
+    "nobody is seen in any of its 12 frames": OWN | {"frames": [None] * FRAMES},
+    "no point has a score above 0|nobody": OWN | {"frames": (PERSON * 0.0).tolist()},
+    "frames has 0 of them; it must be a list of 1 to 1000000 entries, one a frame": OWN | {"frames": []},
+    "must be pixels of the clip": OWN | {"frames": (PERSON / [320.0, 240.0, 1.0]).tolist()},
+    "outside the clip's picture": own_value(PERSON * [6.0, 6.0, 1.0]),
+    "points in space": {"instance_info": [IN_SPACE]},
+    "has 6 frames, the clip 12.*one for every 2": OWN | {"frames": PERSON[::2].tolist()},
+    "a number beyond 1e": OWN | {"frames": (PERSON * 1e8).tolist()},
+}
+
+
+@pytest.mark.parametrize("words", UNUSABLE)
+def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, words: str) -> None:
+    refused(write(tmp_path / "x.json", UNUSABLE[words]), words)
+
+
+def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.json").write_text('{"layout": "coco17", "frames": [[[1, 2', encoding="utf-8")
+    refused(tmp_path / "x.json", "no valid JSON")
+
+
+def without_numbers(file: Path) -> None:
+    """Rename all files of the folder."""
+    for one in list(file.parent.iterdir()):
+        one.rename(one.with_name("x" + "y" * int(one.name[5:17]) + ".json"))
+
+
+def linked(file: Path) -> None:
+    """Replace a file by a link that leads outside."""
+    outside = file.rename(file.parents[1] / "outside.json")
+    file.symlink_to(outside)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda file: file.write_text('{"people": ['), "000003_keypoints.json.*no valid JSON"),
+        (lambda file: write(file.with_name("other_3.json"), openpose_frame([])), "the same number"),
+        (without_numbers, "ends in a number"),
+        (linked, "leads by a link"),
+        (
+            lambda file: write(file, openpose_frame([np.ones((20, 3))])),
+            "has 20 points; those before have 25",
+        ),
+        (lambda file: write(file, openpose_frame([np.ones((17, 3))])), "all must be alike"),
+        (lambda file: write(file, openpose_frame([BODY[0]] * 101)), "has 101 people; at most 100"),
+    ],
+)
+def test_unusable_folders_are_refused_with_a_sentence(tmp_path: Path, change: Any, words: str) -> None:
+    folder = write_openpose(tmp_path / "json", BODY)
+    change(folder / "clip_000000000003_keypoints.json")
+    refused(folder, words)
 
 
 def test_the_takes_at_hand(shared_takes: Path) -> None:
