@@ -173,11 +173,7 @@ def region_costs(
 
 
 def rival_costs(
-    found: Candidates,
-    taken: BoolArray,
-    expected: ExpectedRegions | None,
-    marker: int,
-    rivals: Sequence[int],
+    found: Candidates, taken: BoolArray, expected: ExpectedRegions | None, marker: int, rivals: Sequence[int]
 ) -> Array:
     """Additional cost (N,) of each region because it may be another marker of the same color.
 

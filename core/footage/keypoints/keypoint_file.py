@@ -188,11 +188,7 @@ LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of 
 
 
 def read_keypoints(
-    path: Path,
-    frame_count: int | None,
-    size: tuple[int, int],
-    fps: float | None = None,
-    frame_start: int = 1,
+    path: Path, frame_count: int | None, size: tuple[int, int], fps: float | None = None, frame_start: int = 1
 ) -> People:
     """Read keypoints of a clip, whatever wrote them; `notes` says what was taken for granted.
 

@@ -183,11 +183,7 @@ def test_a_size_that_changes_is_refused(drawn: Path, tmp_path: Path) -> None:
     ("name", "arguments", "word"),
     [
         ("wide.mp4", ("-vf", "scale=120:120,setsar=4/3", *H264), "1.33 times as wide as high"),
-        (
-            "pq.mp4",
-            (*BT2020, "-color_trc", "smpte2084"),
-            "(PQ)",
-        ),
+        ("pq.mp4", (*BT2020, "-color_trc", "smpte2084"), "(PQ)"),
         ("hlg.mkv", (*BT2020, "-color_trc", "arib-std-b67"), "(HLG)"),
     ],
 )

@@ -331,10 +331,7 @@ def linked(file: Path) -> None:
         (lambda file: write(file.with_name("other_3.json"), openpose_frame([])), "the same number"),
         (without_numbers, "ends in a number"),
         (linked, "leads by a link"),
-        (
-            lambda file: write(file, openpose_frame([np.ones((20, 3))])),
-            "has 20 points; those before have 25",
-        ),
+        (lambda file: write(file, openpose_frame([np.ones((20, 3))])), "has 20 points; those before have 25"),
         (lambda file: write(file, openpose_frame([np.ones((17, 3))])), "all must be alike"),
         (lambda file: write(file, openpose_frame([BODY[0]] * 101)), "has 101 people; at most 100"),
     ],
