@@ -55,6 +55,16 @@ class Drawn:
             yield index / self.fps, self.images[index]
 
 
+def write_video(path: Path, levels: Sequence[int], fps: float = 25.0, code: str = "mp4v") -> Path:
+    """A video of 64 by 48 pixels, each of whose frames has one gray level."""
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), fps, (64, 48))
+    assert video.isOpened()
+    for level in levels:
+        video.write(np.full((48, 64, 3), level, dtype=np.uint8))
+    video.release()
+    return path
+
+
 Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], float]
 
 

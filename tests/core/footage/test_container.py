@@ -6,8 +6,8 @@ import zlib
 from pathlib import Path
 
 import cv2
-import numpy as np
 import pytest
+from _drawn_clip import write_video
 from keymark.core import MOST_PIXELS
 from keymark.core.errors import InputError
 from keymark.core.footage.clips import image_sequence
@@ -15,20 +15,12 @@ from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.container import check_container, check_pixels
 from keymark.core.footage.clips.image_sequence import read_image
 
-SIZE = (64, 48)
-
-
-def write_video(path: Path, code: str = "mp4v") -> Path:
-    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), 25.0, SIZE)
-    for level in range(6):
-        video.write(np.full((SIZE[1], SIZE[0], 3), 40 * level, dtype=np.uint8))
-    video.release()
-    return path
+SIZE, GRAYS = (64, 48), range(0, 240, 40)
 
 
 @pytest.fixture(scope="module")
 def outside(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", "MJPG")
+    return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", GRAYS, code="MJPG")
 
 
 def playlists(target: Path) -> dict[str, str]:
@@ -71,7 +63,7 @@ def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> N
 def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if os.name == "nt" and ":" in name:
         pytest.skip("no file is called so here")
-    write_video(tmp_path / "plain.avi", "MJPG").rename(tmp_path / name)
+    write_video(tmp_path / "plain.avi", GRAYS, code="MJPG").rename(tmp_path / name)
     monkeypatch.chdir(tmp_path)
     assert Clip.open(name).size == SIZE
 
@@ -80,7 +72,7 @@ def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.Mo
     ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
 )
 def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
-    path = write_video(tmp_path / name, code)
+    path = write_video(tmp_path / name, GRAYS, code=code)
     check_container(path)
     assert Clip.open(path).size == SIZE
 

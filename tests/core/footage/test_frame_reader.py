@@ -5,7 +5,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import Drawn
+from _drawn_clip import Drawn, write_video
 from keymark.core.footage.clips.album import Album, watch_clip
 from keymark.core.footage.clips.clip import Clip, FrameReader
 from keymark.core.footage.clips.frame_checks import FrameChecks
@@ -65,10 +65,7 @@ def test_uneven_frames_are_found_by_their_times() -> None:
 @pytest.mark.parametrize("order", [(0, 1, 2, 290, 291, 150, 140), (299, 0, 131)])
 def test_a_file_is_searched_exactly(tmp_path: Path, order: tuple[int, ...]) -> None:
     path = tmp_path / "long.mp4"
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), FPS, (64, 48))
-    for index in range(300):
-        writer.write(gray(index))
-    writer.release()
+    write_video(path, [20 + 8 * (index % 25) for index in range(300)], FPS)
     reader = FrameReader(Clip.open(path))
     for index in order:
         assert reader.image_at(index / FPS).mean() == pytest.approx(20 + 8 * (index % 25), abs=3.9)

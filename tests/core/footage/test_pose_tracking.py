@@ -1,14 +1,13 @@
 """People are found in a clip and followed, by a landmark network whose points lie where they are seen."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 import pytest
+from _drawn_clip import Drawn
 from _fake_network import SHAPE, FakeNetwork, draw_people
-from keymark.core.arrays import Image
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints
@@ -31,24 +30,13 @@ SIZE = (320, 240)
 People3 = list[tuple[float, float, float]]
 
 
-@dataclass
-class Drawn:
-    people: Sequence[People3]
-    size: tuple[int, int] = SIZE
-    fps: float = 30.0
-
-    @property
-    def frame_count(self) -> int:
-        return len(self.people)
-
-    def frames(self) -> Iterator[tuple[int, float, Image]]:
-        for index, people in enumerate(self.people):
-            yield index, index / self.fps, draw_people(self.size, people)
+def drawn(people: Sequence[People3], size: tuple[int, int] = SIZE, name: str = "drawn.mp4") -> Clip:
+    """A clip of these."""
+    return Clip(Path(name), cast(Any, Drawn([draw_people(size, each) for each in people], size=size)))
 
 
 def seen(people: Sequence[People3], size: tuple[int, int] = SIZE) -> People:
-    clip = Clip(Path("drawn.mp4"), cast(Any, Drawn(people, size)))
-    return run(find_people(clip, cast(Any, FakeNetwork()), 10_000))
+    return run(find_people(drawn(people, size), cast(Any, FakeNetwork()), 10_000))
 
 
 def counts(people: People) -> list[int]:
@@ -57,7 +45,7 @@ def counts(people: People) -> list[int]:
 
 def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
     frames = STRETCH * 2 + 5
-    clip = Clip(Path("x"), cast(Any, Drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])))
+    clip = drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])
     progress: list[Progress] = []
     found = run(find_people(clip, cast(Any, FakeNetwork()), 10_000), progress.append)
     assert counts(found) == [1] * frames and found.size == SIZE
@@ -107,7 +95,7 @@ def test_a_clip_without_anybody_is_one_sentence() -> None:
         seen([[]] * 60)
     with pytest.raises(InputError, match="holds no frame"):
         seen([])
-    clip = Clip(Path("long.mp4"), cast(Any, Drawn([[(160.0, 120.0, 50.0)]] * 60)))
+    clip = drawn([[(160.0, 120.0, 50.0)]] * 60, name="long.mp4")
     with pytest.raises(InputError, match=r"long.mp4: has more than 50 frames"):
         run(find_people(clip, cast(Any, FakeNetwork()), 50))
 
@@ -175,13 +163,8 @@ def test_the_performer_of_the_demonstration_is_found(repository: Path) -> None:
     clip = Clip.open(take / "clip.mp4")
     images = list(clip.source.at(range(6)))
 
-    class Short:
-        size, fps, frame_count = clip.size, clip.fps, len(images)
-
-        def frames(self) -> Any:
-            yield from ((index, index / 30.0, image) for index, image in images)
-
-    found = run(find_people(Clip(clip.path, Short()), PoseNetwork(), 100))  # type: ignore[arg-type]
+    short = Clip(clip.path, cast(Any, Drawn([image for _, image in images], size=clip.size)))
+    found = run(find_people(short, PoseNetwork(), 100))
     usual = read_keypoints(take / "keypoints.json", None, clip.size)
     both = [name for name in found.names if name in usual.names]
     own, theirs = [[names.index(name) for name in both] for names in (found.names, usual.names)]

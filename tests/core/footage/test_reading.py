@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from _boot import ROOT
+from _drawn_clip import write_video
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.footage.clips import clip as clip_module
@@ -190,10 +190,7 @@ def test_a_clip_is_decoded_once_for_its_times(clip: Path, decoded: list[Path]) -
 
 def test_a_clip_that_has_changed_is_decoded_again(clip: Path, decoded: list[Path]) -> None:
     first = run(clip_times(Clip.open(clip)))
-    video = cv2.VideoWriter(str(clip), cv2.VideoWriter.fourcc(*"mp4v"), 30.0, (64, 48))
-    for level in range(0, 100, 10):
-        video.write(np.full((48, 64, 3), level, dtype=np.uint8))
-    video.release()
+    write_video(clip, range(0, 100, 10), 30.0)
     assert len(run(clip_times(Clip.open(clip)))) == 10 != len(first)
     assert decoded == [clip, clip]
 
