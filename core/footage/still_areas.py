@@ -71,8 +71,8 @@ def marker_warnings(
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     """A sentence on the markers of the same color as one, if there are any."""
     others = " and ".join(alike)
-    told = "only keyframes and paths tell them apart"
-    return [f"{name} has almost the same color as {others}; {told}"] if alike else []
+    told = f"{name} has almost the same color as {others}; only keyframes and paths tell them apart"
+    return [told] if alike else []
 
 
 NEARLY_ALWAYS = 0.9  # share of the samples in which a still pixel has the color; limbs pass before it

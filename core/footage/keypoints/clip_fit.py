@@ -93,11 +93,17 @@ def _aligned(
                     f"{where}: frame_start is {start} and its {count} entries are not the clip's "
                     f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
                 )
-            taken = "the first entry was taken for the clip's first frame"
-            notes += (f"{where}: frame_start is {start}, that of the clip is {frame_start}; {taken}",)
+            note = (
+                f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
+                "entry was taken for the clip's first frame"
+            )
+            notes += (note,)
         if rates and aligned.frame_count == count:
-            said = f"says {rates[0]:g} frames per second, the clip has {rates[1]:g}"
-            notes += (f"{where}: {said}; it was taken frame by frame",)
+            note = (
+                f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
+                "taken frame by frame"
+            )
+            notes += (note,)
         aligned = Alignment(aligned.first, aligned.frame_count, notes)
     if aligned.frame_count > MOST_FRAMES:
         raise InputError(f"{where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read")
@@ -122,8 +128,10 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
-    scaled = f"scaled to the clip's {clip_width} x {clip_height}"
-    note = f"{detected.where}: was found in pictures of {width} x {height}; {scaled}"
+    note = (
+        f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
+        f"{clip_width} x {clip_height}"
+    )
     return np.array([clip_width / width, clip_height / height]), (note,)
 
 

@@ -65,8 +65,10 @@ def align_numbered(
     fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
     notes: tuple[str, ...] = ()
     if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
-        beyond = f"beyond the clip's {frame_count} frames; they are left out"
-        notes = (f"{where}: goes on to frame {highest}, {beyond}",)
+        note = (
+            f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are left out"
+        )
+        notes = (note,)
         fitting = [lowest]
     if not fitting:
         raise InputError(
@@ -83,8 +85,11 @@ def align_numbered(
             f"frame must be there, also where nobody was seen{_rate_words(length, frame_count)}"
         )
     if len(touching or fitting) > 1 and missing:
-        check = "no frame tells for certain, so check that they lie on the performer"
-        notes += (f"{where}: its frames were taken to count from {first}; {check}",)
+        note = (
+            f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
+            "check that they lie on the performer"
+        )
+        notes += (note,)
     return Alignment(first, frame_count, notes + _hole_notes(numbers, first, frame_count, where, complete))
 
 
