@@ -21,11 +21,7 @@ load_project()
 from keymark.core.body.body_volume import standing_height_m  # noqa: E402
 from keymark.core.body.kinematics import Body  # noqa: E402
 from keymark.core.estimate.reconstruct import reconstruct  # noqa: E402
-from keymark.core.footage.camera import (  # noqa: E402
-    Camera,  # noqa: E402
-    default_camera_pose,
-    guess_lens,
-)
+from keymark.core.footage.camera import Camera, default_camera_pose, guess_lens  # noqa: E402
 from keymark.core.footage.camera_evidence import CameraEvidence, Uprights  # noqa: E402
 from keymark.core.footage.camera_fields import CameraPlacement  # noqa: E402
 from keymark.core.footage.camera_fit import HEIGHT, LENS, PARAMETERS, ROLL, TILT, fit_camera  # noqa: E402

@@ -1,6 +1,6 @@
 """Clips drawn in memory, whose colored regions are known exactly."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -9,7 +9,9 @@ import cv2
 import numpy as np
 import pytest
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
+from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.core.footage.markers import track_markers
+from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, RegionTracks
 
 SIZE = (320, 240)
 RED, BLUE = (200, 45, 50), (55, 90, 215)
@@ -53,6 +55,16 @@ class Drawn:
             yield index / self.fps, self.images[index]
 
 
+def write_video(path: Path, levels: Sequence[int], fps: float = 25.0, code: str = "mp4v") -> Path:
+    """A video of 64 by 48 pixels, each of whose frames has one gray level."""
+    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), fps, (64, 48))
+    assert video.isOpened()
+    for level in levels:
+        video.write(np.full((48, 64, 3), level, dtype=np.uint8))
+    video.release()
+    return path
+
+
 Ellipse = tuple[tuple[int, int, int], tuple[float, float], tuple[float, float], float]
 
 
@@ -94,6 +106,24 @@ def finish(job: Generator[float, None, RegionTracks]) -> RegionTracks:
             assert fractions[0] == 0.0 and fractions[-1] == pytest.approx(1.0)
             assert fractions == sorted(fractions)
             return stop.value
+
+
+def film(
+    shapes: Callable[[int], list[Ellipse]], count: int, seed: int, noise: float = 2.0
+) -> list[np.ndarray]:
+    """So many pictures of what is there in each frame."""
+    rng = np.random.default_rng(seed)
+    return [draw(shapes(index), rng, noise) for index in range(count)]
+
+
+def tracked(
+    images: list[np.ndarray],
+    styles: Sequence[MarkerStyle] = STYLES,
+    expected: ExpectedRegions | None = None,
+    ignored: Sequence[IgnoredRegion] = (),
+) -> RegionTracks:
+    """The markers of a clip of images."""
+    return finish(track_markers(clip_of(images), styles, expected, ignored))
 
 
 def path(index: int) -> tuple[float, float]:

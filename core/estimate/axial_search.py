@@ -15,8 +15,8 @@ from ..body.kinematics import Pose
 from ..evidence.contours import FREE, UNKNOWN, ContourModel, LimbAxes, part_map
 from ..evidence.occlusion import PartOutlines
 from ..footage.appearance import Appearance
+from ..footage.surface_colors import BAND_LEVELS as LEVELS
 from ..footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
-from ..footage.surface_colors import LEVELS_BAND_COLORS as LEVELS
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
 LINES = np.array([-0.4, 0.0, 0.4])

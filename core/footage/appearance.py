@@ -16,62 +16,38 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, BoolArray, Image, IndexArray
 
-NO_PART = -1
-"""Label of pixels without a part of the body."""
+NO_PART = -1  # label of pixels without a part of the body
 BITS = 5
 LEVELS = 1 << BITS
 CELLS = LEVELS**3
 CELL_VOLUME = (256 / LEVELS) ** 3
-UNSEEN = 0.02
-"""Share of any surface's colors that a few frames do not show."""
+UNSEEN = 0.02  # share of any surface's colors that a few frames do not show
 BLUR = gaussian_filter1d(np.eye(LEVELS), 1.0, axis=0, truncate=3.0)
 """Smoothing matrix of a histogram along one axis."""
 UNSEEN_LOG_DENSITY = float(np.log(UNSEEN / (CELLS * CELL_VOLUME)))
 """Log density of a color that was never seen on any surface."""
-MARGIN_PX = 5
-"""Error of a predicted body: pixels nearer to it do not count as background."""
-FEWEST_FREE = 3
-"""Frames that must show a pixel's background for its Gaussian to be known."""
-HIGHEST = 255
-"""Replaces occluded levels, so that they are sorted last."""
-SPARSE = 2
-"""Sampling step, in rows and columns, of the background's histogram."""
-SMALLEST_DEVIATION, LARGEST_DEVIATION = 3.0, 12.0
-"""Bounds of a background pixel's standard deviation in levels."""
-STEADY = 6.0
-"""Standard deviation below which a background pixel is static, in levels."""
-STEADY_SHARE = 0.9
-"""Share of static pixels in a static background."""
-DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15
-"""Range and standard deviation of the light on a background pixel, relative to its usual light."""
-LEAST_KNOWN_SHARE = 0.5
-"""Least share of static pixels among all, where each is judged by itself."""
-CHANGED = 0.1
-"""Prior share of pixels that differ from the background's usual color."""
+MARGIN_PX = 5  # error of a predicted body: pixels nearer to it do not count as background
+HIGHEST = 255  # replaces occluded levels, so that they are sorted last
+SPARSE = 2  # sampling step, in rows and columns, of the background's histogram
+STEADY = 6.0  # standard deviation below which a background pixel is static, in levels
+DARKEST, BRIGHTEST, LIGHT_DEVIATION = 0.55, 1.1, 0.15  # of the light on the background, relative to usual
+CHANGED = 0.1  # prior share of pixels that differ from the background's usual color
 
 
 @dataclass(frozen=True, eq=False)
 class Appearance:
     """Log likelihoods of colors, as densities per level³."""
 
-    parts: Array
-    """(O + 1, cells) histogram of each part of the body and, last, of the whole background."""
-    color: Array
-    """(rows, columns, 3) median color of the background."""
-    deviation: Array
-    """(rows, columns) standard deviation of the background's color, in levels."""
-    known: BoolArray
-    """(rows, columns) whether the background was visible in enough frames."""
-    steady: bool
-    """Whether the background is static, so that pixels that differ from it are foreground."""
+    parts: Array  # (O + 1, cells) histogram of each part of the body and, last, of the whole background
+    color: Array  # (rows, columns, 3) median color of the background
+    deviation: Array  # (rows, columns) standard deviation of the background's color, in levels
+    known: BoolArray  # (rows, columns) whether the background was visible in enough frames
+    steady: bool  # whether the background is static, so that pixels that differ from it are foreground
 
     def with_parts(self, images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> "Appearance":
         """This appearance with the colors of O parts learned from frames in which the body is known best.
 
-        Args:
-            images: Frames (rows, columns, 3).
-            labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-            parts: Number of parts, O.
+        `labels` are as in `learn_appearance`.
         """
         nothing = np.ones(labels[0].shape, dtype=np.bool_)
         seen = [_seen(image, label, nothing, parts) for image, label in zip(images, labels, strict=True)]
@@ -84,7 +60,8 @@ class Appearance:
         Before a flickering screen or waving leaves these are left out, and the others keep what they tell.
         """
         known = self.known & (self.deviation < STEADY)
-        return replace(self, known=known, steady=bool(np.mean(known) >= LEAST_KNOWN_SHARE))
+        # Where each pixel is judged by itself.
+        return replace(self, known=known, steady=bool(np.mean(known) >= 0.5))
 
     def part(self, index: IndexArray, pixels: Image) -> Array:
         """Log likelihood of pixels (..., 3) under the parts `index` (...), broadcast against them."""
@@ -114,21 +91,19 @@ class Appearance:
 
 
 def learn_appearance(images: list[Image], labels: list[NDArray[np.int8]], parts: int) -> Appearance:
-    """Learn appearance models of parts and background from frames with a rough part segmentation.
+    """Learn from frames (rows, columns, 3) of a static camera and a rough segmentation into O parts.
 
-    Args:
-        images: Frames (rows, columns, 3) of a static camera.
-        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-        parts: Number of parts, O.
+    `labels` are, for each frame, (rows, columns) the visible part of the body, `NO_PART` for none.
     """
     wide = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * MARGIN_PX + 1, 2 * MARGIN_PX + 1))
     body = np.stack([cv2.dilate((label != NO_PART).astype(np.uint8), wide) for label in labels]) > 0
     seen = [_seen(image, label, near, parts) for image, label, near in zip(images, labels, body, strict=True)]
     counts = _counts(seen, parts)
     color, spread = _middle_and_spread(np.stack(images), ~body)
-    known = np.count_nonzero(~body, axis=0) >= FEWEST_FREE
-    steady = bool(known.any() and np.mean(spread[known] < STEADY) >= STEADY_SHARE)
-    deviation = np.clip(spread, SMALLEST_DEVIATION, LARGEST_DEVIATION)
+    # Frames that must show a pixel's background for its Gaussian to be known.
+    known = np.count_nonzero(~body, axis=0) >= 3
+    steady = bool(known.any() and np.mean(spread[known] < STEADY) >= 0.9)
+    deviation = np.clip(spread, 3.0, 12.0)  # of a background pixel, in levels
     return Appearance(_log_densities(counts), color, deviation, known, steady)
 
 
@@ -152,12 +127,10 @@ def histogram_cells(pixels: Image, bits: int) -> IndexArray:
 
 
 def _cells(pixels: Image) -> IndexArray:
-    """Histogram cell of pixels (..., 3), coarser than the cells of the markers' color model."""
     return histogram_cells(pixels, BITS)
 
 
 def _interior(label: NDArray[np.int8]) -> BoolArray:
-    """Whether all neighbors of a pixel have its label."""
     kernel = np.ones((3, 3), dtype=np.uint8)
     shifted = (label + 1).astype(np.uint8)
     return np.asarray(cv2.erode(shifted, kernel) == cv2.dilate(shifted, kernel))

@@ -13,55 +13,26 @@ import numpy as np
 from scipy.ndimage import percentile_filter
 
 from ..arrays import Array, BoolArray, IntArray
-from .region_tracks import ExpectedRegions
+from .region_tracks import ExpectedRegions, Regions
 from .segmentation.moments import MOMENT_POWERS
-from .segmentation.regions import Regions
 
-HIDING_COST = 4.0
-"""Cost of becoming hidden: a visible marker is visible in the next frame in 98 of 100 cases."""
-HIDDEN_COST = 2.5
-"""Cost of each hidden frame: once hidden, a marker stays so for a while."""
-CERTAINTY_WEIGHT = 3.0
-"""Effective number of independent pixels of a region: their errors are correlated."""
+HIDDEN_COST = 2.5  # cost of each hidden frame: once hidden, a marker stays so for a while
 RESTART_COST = 10.0
-LONGEST_GAP = 12
-"""Hidden frames over which the speed still bounds where a marker reappears."""
-AREA_DEVIATION = 1.2
-"""Standard deviation of the log area: foreshortening and occlusion change areas by a factor of three."""
-STEP_IN_SIZES = 0.35
-"""Standard deviation of a step between frames, in sizes of the marker: limbs move their own size in 0.1 s."""
-STEP_TAIL = 1.0
-"""Scale of Student's t of the steps: a swung arm takes several steps of four deviations in a row."""
-STILL_SHARE = 0.5
+STEP_TAIL = 1.0  # scale of Student's t of the steps: a swung arm takes several large ones in a row
 STILL_STEP_PX = 1.5
-STILL_LOG_AREA = 0.4
-STILL_CELL = 2.0 / 3.0
-"""Width of a cell in steps, so that a cell and its neighbors reach one step on average."""
-STILL_COST = 20.0
 TAKEN_COST = 20.0
-RIVAL_DEVIATION = 0.2
-"""Standard deviation of a marker from its expected position, in units of its generous radius."""
-RIVAL_SHARE = 0.25
-RIVAL_AREA = 0.1
-"""Least area of a moving region that is no noise, relative to the static one's."""
 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
     """The detected regions of one color over a clip, N in all."""
 
-    frame: IntArray
-    """(N,) frame index of each region, ascending."""
-    moments: Array
-    """(N, 6) raw moments."""
-    box: Array
-    """(N, 4) left, top, right, bottom in px."""
-    certainty: Array
-    """(N,) color certainty in 0..1."""
-    clipped: BoolArray
-    """(N,) whether the region touches the image's border."""
-    start: IntArray
-    """(F + 1,) index of each frame's first region."""
+    frame: IntArray  # (N,) frame index of each region, ascending
+    moments: Array  # (N, 6) raw moments
+    box: Array  # (N, 4) left, top, right, bottom in px
+    certainty: Array  # (N,) color certainty in 0..1
+    clipped: BoolArray  # (N,) whether the region touches the image's border
+    start: IntArray  # (F + 1,) index of each frame's first region
 
     @property
     def centroid(self) -> Array:
@@ -75,13 +46,7 @@ class Candidates:
 
 
 def gather_candidates(regions: Sequence[Regions], color: int, scale: float) -> Candidates:
-    """Gather the regions of one color, in pixels of the image.
-
-    Args:
-        regions: The regions detected in each frame.
-        color: Index of the color.
-        scale: Pixels of the image to one of the measuring grid.
-    """
+    """The regions of one color, in pixels of the image; `scale` are those to one of the measuring grid."""
     frame = np.repeat(np.arange(len(regions)), [len(found.color) for found in regions])
     own = np.concatenate([found.color for found in regions]) == color
     frame = frame[own]
@@ -114,9 +79,9 @@ def static_clutter(found: Candidates) -> BoolArray:
     rest = float(np.median(found.area[still]))
     with_still = np.zeros(frames, dtype=np.bool_)
     with_still[found.frame[still]] = True
-    rival = ~still & with_still[found.frame] & (found.area >= RIVAL_AREA * rest)
+    rival = ~still & with_still[found.frame] & (found.area >= 0.1 * rest)  # less is noise
     rivals = len(np.unique(found.frame[rival]))
-    return still if rivals >= RIVAL_SHARE * frames else np.zeros_like(still)
+    return still if rivals >= 0.25 * frames else np.zeros_like(still)
 
 
 def _still(found: Candidates, frames: int) -> BoolArray:
@@ -126,7 +91,8 @@ def _still(found: Candidates, frames: int) -> BoolArray:
     """
     if not len(found.frame):
         return np.zeros(0, dtype=np.bool_)
-    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, STILL_LOG_AREA]) * STILL_CELL
+    # A cell and its neighbors reach one step on average.
+    steps = np.array([STILL_STEP_PX, STILL_STEP_PX, 0.4]) * (2.0 / 3.0)
     cells = np.column_stack([found.centroid, np.log(found.area)]) / steps
     cells = np.floor(cells - cells.min(axis=0)).astype(np.int64) + 1
     sides = cells.max(axis=0) + 2
@@ -140,33 +106,31 @@ def _still(found: Candidates, frames: int) -> BoolArray:
         )
         where = np.minimum(np.searchsorted(cell, neighbor), len(cell) - 1)
         around += np.where(cell[where] == neighbor, count[where], 0)
-    return np.asarray(around[index] >= STILL_SHARE * frames)
+    return np.asarray(around[index] >= 0.5 * frames)
 
 
 def viterbi_path(found: Candidates, unary: Array, size_px: float) -> IntArray:
     """The Viterbi path: index of the marker's main region in each frame (F,), -1 where it is hidden.
 
-    Args:
-        found: The regions.
-        unary: (N,) cost of each region as the marker.
-        size_px: Length of the marker, the measure of its steps.
+    `unary` is the cost (N,) of each region as the marker, whose length in px measures its steps.
     """
     # Most frames hold one region: numbers of Python's own are quicker here than short arrays.
     frame, start = found.frame.tolist(), found.start.tolist()
-    position = (found.centroid / (STEP_IN_SIZES * size_px)).tolist()
+    position = (found.centroid / (0.35 * size_px)).tolist()  # limbs move their own size in 0.1 s
     own = unary.tolist()
     total: list[float] = []
     previous: list[int] = []
     best_before, best_index = 0.0, -1  # the cheapest path so far plus its hidden frames, and where it ended
     for now in range(len(start) - 1):
-        first = start[max(now - LONGEST_GAP, 0)]
+        first = start[max(now - 12, 0)]  # hidden frames over which the speed bounds a path
         restart = best_before + (RESTART_COST if best_index >= 0 else 0.0)
         for here in range(start[now], start[now + 1]):
             least, source = restart, best_index
             x, y = position[here]
             for before in range(start[now] - 1, first - 1, -1):
                 gap = now - frame[before]
-                through = total[before] + (HIDING_COST + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
+                # A visible marker is visible in the next frame in 98 of 100 cases.
+                through = total[before] + (4.0 + HIDDEN_COST * (gap - 1) if gap > 1 else 0.0)
                 if through < least:
                     across, down = position[before]
                     squared = ((x - across) ** 2 + (y - down) ** 2) / gap**2
@@ -200,34 +164,27 @@ def region_costs(
     """
     if not len(found.frame):
         return np.zeros(0)
-    cost = 0.5 * (np.log(found.area / usual_area) / AREA_DEVIATION) ** 2
-    cost -= CERTAINTY_WEIGHT * np.log(np.clip(found.certainty, 1e-3, 1.0))
-    cost += np.where(clutter, STILL_COST, 0.0)
+    # Foreshortening and occlusion change areas by a factor of three.
+    cost = 0.5 * (np.log(found.area / usual_area) / 1.2) ** 2
+    cost -= 3.0 * np.log(np.clip(found.certainty, 1e-3, 1.0))  # as many pixels err independently
+    cost += np.where(clutter, 20.0, 0.0)
     far = 0.5 * (2.0 * _relative_offset(found, expected, marker)) ** 2
     return np.asarray(cost + np.nan_to_num(np.minimum(far, 2.0 * RESTART_COST)))
 
 
 def rival_costs(
-    found: Candidates,
-    taken: BoolArray,
-    expected: ExpectedRegions | None,
-    marker: int,
-    rivals: Sequence[int],
+    found: Candidates, taken: BoolArray, expected: ExpectedRegions | None, marker: int, rivals: Sequence[int]
 ) -> Array:
     """Additional cost (N,) of each region because it may be another marker of the same color.
 
-    Args:
-        found: The regions.
-        taken: (N,) whether a region is assigned to a rival already.
-        expected: Expected regions of the markers.
-        marker: Index of the marker.
-        rivals: Indices of the other markers of its color.
+    `taken` says (N,) whether a region is a rival's already; `rivals` are the other markers of its color.
     """
     cost = np.where(taken, TAKEN_COST, 0.0)
     own = _relative_offset(found, expected, marker)
     for rival in rivals:
         nearer = own**2 - _relative_offset(found, expected, rival) ** 2
-        cost += np.clip(np.nan_to_num(0.5 * nearer / RIVAL_DEVIATION**2), 0.0, TAKEN_COST)
+        # In units of the generous radius.
+        cost += np.clip(np.nan_to_num(0.5 * nearer / 0.2**2), 0.0, TAKEN_COST)
     return np.asarray(cost)
 
 
@@ -243,25 +200,13 @@ def _relative_offset(found: Candidates, expected: ExpectedRegions | None, marker
     return relative
 
 
-# --- Joining the fragments of a marker's region, and the quality of the result
-
-
-AREA_WINDOW = 31
-"""Window in frames for a marker's full area; the marker turns and approaches more slowly."""
-CLIPPED_QUALITY = 0.4
-
-
 class MarkerRegion(NamedTuple):
     """A marker's joined region in each of F frames."""
 
-    moments: Array
-    """(F, 6) raw moments, zero where hidden."""
-    clipped: BoolArray
-    """(F,) whether it touches the image's border."""
-    certainty: Array
-    """(F,) certainty of its color, in 0..1."""
-    share: Array
-    """(F,) share of its main fragment in its area."""
+    moments: Array  # (F, 6) raw moments, zero where hidden
+    clipped: BoolArray  # (F,) whether it touches the image's border
+    certainty: Array  # (F,) certainty of its color, in 0..1
+    share: Array  # (F,) share of its main fragment in its area
 
 
 def join_fragments(
@@ -269,12 +214,8 @@ def join_fragments(
 ) -> MarkerRegion:
     """Join each frame's main region with the fragments that an occluding limb cut off from it.
 
-    Args:
-        found: The marker's regions.
-        path: (F,) main region of each frame, -1 where hidden.
-        cost: (N,) cost of each region; too costly ones are clutter.
-        reach_px: Widest gap between a fragment and the main region.
-        most_cost: Highest cost of a fragment.
+    `path` (F,) is the main region of each frame, -1 where hidden. Fragments lie within `reach_px` of it and
+    cost (N,) no more than `most_cost`; others are clutter.
     """
     frames = len(path)
     main = path[found.frame]  # (N,) of each region, the main one of its frame
@@ -303,10 +244,11 @@ def region_quality(own: MarkerRegion) -> Array:
         return np.zeros(len(area))
     seen = area > 0.0
     full = np.zeros(len(area))
-    full[seen] = percentile_filter(area[seen], 80, size=min(AREA_WINDOW, int(seen.sum())), mode="nearest")
+    # Frames; a marker turns more slowly.
+    full[seen] = percentile_filter(area[seen], 80, size=min(31, int(seen.sum())), mode="nearest")
     ratio = np.where(seen, area, 1.0) / np.where(seen, full, 1.0)
     whole = np.minimum(np.minimum(ratio, 1.5 / ratio), 1.0)
-    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, CLIPPED_QUALITY, 1.0)
+    quality = whole * own.certainty * (0.5 + 0.5 * own.share) * np.where(own.clipped, 0.4, 1.0)
     return np.where(seen, np.clip(quality, 0.0, 1.0), 0.0)
 
 

@@ -15,34 +15,24 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..files.fields import Fields
-from .camera_fields import CameraFields
-
-NEWTON_STEPS = 20
-NEWTON_TOLERANCE = 1e-12
+from .camera_fields import CameraFields, CameraPlacement
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
     """A fixed or moving pinhole camera with polynomial radial distortion."""
 
-    lens_mm: float
-    """Focal length in millimeters."""
-    sensor_width_mm: float
-    """Width of the sensor in millimeters; it spans the image's width."""
-    resolution: tuple[int, int]
-    """Image width and height in pixels (square pixels)."""
-    matrix_world: Array
-    """Camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters."""
-    shift_x: float = 0.0
-    """Shift of the view to the right, in image widths."""
-    shift_y: float = 0.0
-    """Shift of the view upwards, in image widths (as in Blender, not heights)."""
+    lens_mm: float  # focal length in millimeters
+    sensor_width_mm: float  # width of the sensor in millimeters; it spans the image's width
+    resolution: tuple[int, int]  # image width and height in pixels (square pixels)
+    matrix_world: Array  # camera to world, (4, 4) for a fixed camera, (F, 4, 4) for one pose a frame; meters
+    shift_x: float = 0.0  # shift of the view to the right, in image widths
+    shift_y: float = 0.0  # shift of the view upwards, in image widths (as in Blender, not heights)
     distortion: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """K1, k2, k3 of Blender's polynomial model, which takes undistorted normalized coordinates to
     distorted ones: x_d = x (1 + k1 r² + k2 r⁴ + k3 r⁶), r² = x² + y²."""
 
     def __post_init__(self) -> None:
-        """Keep a read-only copy of the pose."""
         matrix = np.array(self.matrix_world, dtype=np.float64)
         if matrix.ndim not in (2, 3) or matrix.shape[-2:] != (4, 4):
             raise ValueError(f"matrix_world must have shape (4, 4) or (F, 4, 4), not {matrix.shape}")
@@ -51,26 +41,15 @@ class Camera:
 
     @classmethod
     def from_dict(cls, fields: Mapping[str, Any], where: str = "camera") -> "Camera":
-        """Read a camera from the fields of `take.json`.
-
-        Args:
-            fields: Those of `CameraFields`.
-            where: Location in the file as messages name it, for instance "take.json: camera".
+        """Read a camera from the `CameraFields` of `take.json`; `where` is their place for messages.
 
         Raises:
             InputError: A field is missing or invalid; the sentence names it.
         """
         read = CameraFields.of(Fields(fields, where))
-        width, height = read.resolution
-        return cls(
-            lens_mm=read.lens_mm,
-            sensor_width_mm=read.sensor_width_mm,
-            resolution=(width, height),
-            matrix_world=read.pose,
-            shift_x=read.shift_x,
-            shift_y=read.shift_y,
-            distortion=read.distortion,
-        )
+        lens = (read.lens_mm, read.sensor_width_mm)
+        size = (read.resolution[0], read.resolution[1])
+        return cls(*lens, size, read.pose, read.shift_x, read.shift_y, read.distortion)
 
     def to_dict(self) -> dict[str, Any]:
         """The fields as in `take.json`; `from_dict` reads them back unchanged."""
@@ -103,15 +82,10 @@ class Camera:
         return np.array([width / 2 - self.shift_x * width, height / 2 + self.shift_y * width])
 
     def world_to_camera(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Take world points (..., 3) in meters to camera coordinates (..., 3) in meters.
+        """Take world points (..., 3) to camera coordinates (..., 3) [m].
 
-        Args:
-            points: World points, (..., 3).
-            frame: Index of the pose of each point, integers broadcastable to the leading axes; a fixed camera
-                ignores it.
-
-        Raises:
-            ValueError: The camera moves and no frame is given.
+        Here and below, `frame` is the index of each point's pose, integers that broadcast to the leading
+        axes; a fixed camera ignores it.
         """
         rotation, location = self.pose(frame)
         offset = np.asarray(points, dtype=np.float64) - location
@@ -137,15 +111,7 @@ class Camera:
         return np.array(np.broadcast_to(-rotation[..., 2], shape))
 
     def project(self, points: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """Project world points to the image.
-
-        Args:
-            points: World points, (..., 3), in meters.
-            frame: Index of each point's pose; see `world_to_camera`.
-
-        Returns:
-            Pixels (..., 2), NaN for points not in front of the camera, and depth (...) in meters.
-        """
+        """Pixels (..., 2) of world points (..., 3), NaN for those not in front, and their depth (...) [m]."""
         x, y, depth = self._normalized(self.world_to_camera(points, frame))
         factor, _ = self._radial_factor(x * x + y * y)
         column, row = self.principal_point
@@ -159,18 +125,11 @@ class Camera:
         return np.asarray(self.motion_jacobian(points, frame)[..., :3] @ np.swapaxes(rotation, -1, -2))
 
     def motion_jacobian(self, points: ArrayLike, frame: ArrayLike | None = None) -> Array:
-        """Jacobian of pixels by the rigid motion of the points' bodies, in the camera's own axes.
+        """Jacobian (..., 2, 6) of pixels by the rigid motion of the points' bodies, in the camera's own axes.
 
         This is the interaction matrix of visual servoing (Chaumette & Hutchinson 2006, *Visual servo control,
-        part I*, eq. 11) for a camera that looks along -Z.
-
-        Args:
-            points: World points, (..., 3), in meters.
-            frame: Index of each point's pose; see `world_to_camera`.
-
-        Returns:
-            (..., 2, 6) d pixel / d (velocity of the body's point that passes through the camera, its angular
-            velocity), in pixels per meter and per radian; NaN behind the camera.
+        part I*, eq. 11) for a camera that looks along -Z: px per meter of the velocity of the body's point
+        that passes through the camera, and per radian of its angular velocity; NaN behind the camera.
         """
         x, y, depth = self._normalized(self.world_to_camera(points, frame))
         near = 1.0 / np.where(depth > 0.0, depth, np.nan)
@@ -188,15 +147,9 @@ class Camera:
         return np.moveaxis(rates, (0, 1), (-2, -1))
 
     def rays(self, pixels: ArrayLike, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """The line of sight of each pixel.
+        """Origin (3,) or (..., 3) [m] and unit direction (..., 3) of the lines of sight of pixels (..., 2).
 
-        Args:
-            pixels: Image points, (..., 2).
-            frame: Index of each pixel's pose; see `world_to_camera`.
-
-        Returns:
-            Origin (3,) or (..., 3) in meters and unit direction (..., 3), both in the world. Directions are
-            NaN for pixels the distortion polynomial reaches from nowhere.
+        Directions are NaN for pixels the distortion polynomial reaches from nowhere.
         """
         rotation, location = self.pose(frame)
         offset = np.asarray(pixels, dtype=np.float64) - self.principal_point
@@ -206,10 +159,7 @@ class Camera:
         return location, np.einsum("...ij,...j->...i", rotation, camera)
 
     def pose(self, frame: ArrayLike | None = None) -> tuple[Array, Array]:
-        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) in meters.
-
-        Args:
-            frame: Index of each pose wanted; a fixed camera ignores it.
+        """The camera's orientation (..., 3, 3), its axes as columns, and its position (..., 3) [m].
 
         Raises:
             ValueError: The camera moves and no frame is given.
@@ -241,40 +191,24 @@ class Camera:
         target = np.linalg.norm(distorted, axis=-1)
         radius = target.copy()
         with np.errstate(all="ignore"):  # a diverging pixel ends as NaN, which is its answer
-            for _ in range(NEWTON_STEPS):
+            for _ in range(20):
                 factor, slope = self._radial_factor(radius**2)
                 radius = radius - (radius * factor - target) / (factor + 2.0 * radius**2 * slope)
             factor, slope = self._radial_factor(radius**2)
-            found = np.abs(radius * factor - target) <= NEWTON_TOLERANCE * (1.0 + target)
+            found = np.abs(radius * factor - target) <= 1e-12 * (1.0 + target)
             # Past the fold of the polynomial a root exists that no light takes.
             found &= (radius >= 0.0) & (factor + 2.0 * radius**2 * slope > 0.0)
             scale = np.where(target > 0.0, radius / np.where(target > 0.0, target, 1.0), 1.0)
         return np.asarray(distorted * np.where(found, scale, np.nan)[..., None])
 
 
-# --- The default camera of new footage
+FULL_FRAME_MM = 36.0  # long side of the full-frame sensor that focal lengths are compared on [mm]
 
-
-FULL_FRAME_MM = 36.0
-"""Long side of the full-frame sensor that focal lengths are compared on [mm]."""
-FULL_FRAME_DIAGONAL_MM = hypot(36.0, 24.0)
-
-PHONE_MM = 26.0
-"""Full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28."""
-STABILISED = 1.1
-"""Crop factor of phones' video stabilization: a tenth is usual."""
-WEBCAM_DEGREES = 68.0
-"""Diagonal view of a webcam in 16 to 9: makers state 60 (plain ones) to 78 (better ones)."""
-WEBCAM_HEIGHT_PX = 600
-"""Largest height of a 4 to 3 picture that counts as a webcam's; other cameras film larger, wider pictures."""
-USUAL_MM = 35.0
-"""Lens of any other camera: between the wide end of a usual zoom (24 to 28) and its middle (50) [mm]."""
+PHONE_MM = 26.0  # full-frame equivalent of a phone's main camera by its diagonal [mm]; makers state 24 to 28
+STABILISED = 1.1  # crop factor of phones' video stabilization: a tenth is usual
+WEBCAM_DEGREES = 68.0  # diagonal view of a webcam in 16 to 9: makers state 60 to 78
 
 EYE_HEIGHT_M = 1.4
-REACH_M = 1.0
-"""Half the arm span of an adult [m]."""
-FILLED = 0.9
-"""Largest share of the picture that a performer at the origin fills."""
 
 
 @dataclass(frozen=True)
@@ -284,28 +218,24 @@ class LensGuess:
     lens_mm: float
     sensor_width_mm: float
     """Width of the sensor, which spans the picture's width; its long side is that of full frame [mm]."""
-    reason: str
-    """Kind of camera that was assumed, to follow "as of"."""
+    reason: str  # kind of camera that was assumed, to follow "as of"
 
 
 def guess_lens(size: tuple[int, int]) -> LensGuess:
-    """Guess a lens from the size of the picture.
+    """Guess a lens from the size of the picture (width, height) [px] as shown, after any rotation.
 
     An upright picture is a phone's; its focal length is stated for photographs of 4 to 3, whose long side a
     video keeps. A small one of 4 to 3 is a webcam's, which crops the sides of its 16 to 9 view.
-
-    Args:
-        size: Width and height [px], as shown, so after any rotation that the file asks for.
     """
     width, height = size
     if height > width:
-        photograph_mm = FULL_FRAME_DIAGONAL_MM * 4.0 / 5.0
+        photograph_mm = hypot(36.0, 24.0) * 4.0 / 5.0
         lens_mm, reason = STABILISED * PHONE_MM * FULL_FRAME_MM / photograph_mm, "a phone held upright"
-    elif 3 * width == 4 * height and height <= WEBCAM_HEIGHT_PX:
+    elif 3 * width == 4 * height and height <= 600:  # other cameras film larger, wider pictures
         focal_in_heights = 0.5 * hypot(16.0, 9.0) / 9.0 / np.tan(np.radians(WEBCAM_DEGREES / 2.0))
         lens_mm, reason = float(focal_in_heights * height / width * FULL_FRAME_MM), "a webcam"
     else:
-        lens_mm, reason = USUAL_MM, "a camera's usual zoom"
+        lens_mm, reason = 35.0, "a camera's usual zoom"  # between the wide end of a zoom and its middle
     return LensGuess(round(lens_mm, 1), FULL_FRAME_MM * width / max(width, height), reason)
 
 
@@ -313,21 +243,9 @@ def default_camera_pose(lens_mm: float, sensor_width_mm: float, size: tuple[int,
     """Initial pose of a camera: (4, 4) camera to world [m].
 
     At eye height, looking level along +Y at the world's origin, from a distance at which the floor there and
-    a performer with outstretched arms are within the picture.
-
-    Args:
-        lens_mm: Focal length.
-        sensor_width_mm: Width of the sensor, which spans the picture's width.
-        size: Width and height of the picture [px].
+    a performer with outstretched arms are within a picture of `size` (width, height).
     """
-    across = 0.5 * FILLED * sensor_width_mm / lens_mm
+    across = 0.45 * sensor_width_mm / lens_mm  # a performer at the origin fills nine tenths of the picture
     down = across * size[1] / size[0]
-    distance = max(EYE_HEIGHT_M / down, REACH_M / across)
-    return np.array(
-        [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, -1.0, -distance],
-            [0.0, 1.0, 0.0, EYE_HEIGHT_M],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    distance = max(EYE_HEIGHT_M / down, 1.0 / across)  # half the arm span of an adult [m]
+    return CameraPlacement(EYE_HEIGHT_M, 0.0, 0.0).matrix((0.0, -distance))

@@ -1,6 +1,7 @@
 """What a picture shows of the camera that took it: lines of buildings, and upright things of known length."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -9,21 +10,13 @@ from ..arrays import Array
 from .camera import Camera
 from .camera_fields import heading_rad
 
-CLICK_STD_PX = 1.5
-"""Standard deviation of a click, or of a line's end drawn by hand [px]."""
-PERSON_LENGTH_STD, PERSON_LEAN_STD_RAD = 0.02, float(np.radians(3.0))
-"""Someone who stands or walks upright: share by which they are shorter than their stature or taller, as heads
-rise and fall by 3 % in every step, and lean to any side."""
+CLICK_STD_PX = 1.5  # standard deviation of a click, or of a line's end drawn by hand [px]
 COMMON_LEAN_RAD = float(np.radians(2.5))
 """Lean that one person has at all moments alike: heads lie in front of ankles, and walkers lean forward."""
-STATURE_STD = 0.015
-"""Share by which a stated stature is off throughout: shoes, hair, and what people say of themselves."""
-THING_LENGTH_STD, THING_LEAN_STD_RAD = 0.005, float(np.radians(0.5))
-"""The same of things that were built upright and measured."""
+STATURE_STD = 0.015  # share by which stated statures are off: shoes, hair, and what people say
 
 
-def no_lines() -> Array:
-    """No line at all, (0, 2, 2)."""
+def _no_lines() -> Array:
     return np.zeros((0, 2, 2))
 
 
@@ -31,26 +24,16 @@ def no_lines() -> Array:
 class Uprights:
     """N upright things of known length that stand on the floor, or a performer at N moments."""
 
-    lower_px: Array
-    """(N, 2) the lower point in the picture [px]."""
-    upper_px: Array
-    """(N, 2) the point above it [px]."""
-    lower_m: Array
-    """(N,) height of the lower point above the floor [m]."""
-    length_m: Array
-    """(N,) length between the two [m]."""
-    pixel_std: Array
-    """(N,) standard deviation of a point in the picture [px]."""
-    length_std: Array
-    """(N,) share by which each length may be off."""
-    lean_std_rad: Array
-    """(N,) lean to the side."""
-    common_std: float = 0.0
-    """Share by which all lengths may be off together."""
-    common_lean_rad: float = 0.0
-    """Lean that all may have together, as somebody who walks to one side has."""
-    doubtful: bool = False
-    """Whether single ones may be far off, as where nobody has looked at them."""
+    lower_px: Array  # (N, 2) the lower point in the picture [px]
+    upper_px: Array  # (N, 2) the point above it [px]
+    lower_m: Array  # (N,) height of the lower point above the floor [m]
+    length_m: Array  # (N,) length between the two [m]
+    pixel_std: Array  # (N,) standard deviation of a point in the picture [px]
+    length_std: Array  # (N,) share by which each length may be off
+    lean_std_rad: Array  # (N,) lean to the side
+    common_std: float = 0.0  # share by which all lengths may be off together
+    common_lean_rad: float = 0.0  # lean that all may have together, as somebody who walks to one side has
+    doubtful: bool = False  # whether single ones may be far off, as where nobody has looked at them
 
     @classmethod
     def none(cls) -> "Uprights":
@@ -60,27 +43,17 @@ class Uprights:
 
     @classmethod
     def persons(cls, ground_px: ArrayLike, crown_px: ArrayLike, stature_m: float) -> "Uprights":
-        """Someone who stands upright at N places, clicked on.
-
-        Args:
-            ground_px: (N, 2) the floor between the feet [px].
-            crown_px: (N, 2) the top of the head [px].
-            stature_m: Body height [m].
-        """
-        return cls._standing(
-            ground_px,
-            crown_px,
-            stature_m,
-            PERSON_LENGTH_STD,
-            PERSON_LEAN_STD_RAD,
-            STATURE_STD,
-            COMMON_LEAN_RAD,
-        )
+        """Someone of a stature [m] at N places, clicked on the floor between the feet and on the crown."""
+        # In every step heads rise and fall by 3 %, and walkers lean to any side.
+        single = (0.02, float(np.radians(3.0)))
+        return cls._standing(ground_px, crown_px, stature_m, single, (STATURE_STD, COMMON_LEAN_RAD))
 
     @classmethod
     def things(cls, lower_px: ArrayLike, upper_px: ArrayLike, length_m: ArrayLike) -> "Uprights":
         """Things of known lengths (N,) [m] that stand on the floor, as doors, by their ends (N, 2) [px]."""
-        return cls._standing(lower_px, upper_px, length_m, THING_LENGTH_STD, THING_LEAN_STD_RAD, 0.0, 0.0)
+        # They were built upright, and measured.
+        single = (0.005, float(np.radians(0.5)))
+        return cls._standing(lower_px, upper_px, length_m, single, (0.0, 0.0))
 
     @classmethod
     def _standing(
@@ -88,46 +61,31 @@ class Uprights:
         lower_px: ArrayLike,
         upper_px: ArrayLike,
         length_m: ArrayLike,
-        length_std: float,
-        lean_std_rad: float,
-        common_std: float,
-        common_lean_rad: float,
+        single: tuple[float, float],
+        common: tuple[float, float],
     ) -> "Uprights":
+        """With deviations of length [share] and lean [rad] of each, and of all together."""
         lower = np.array(lower_px, dtype=np.float64).reshape(-1, 2)
         upper = np.array(upper_px, dtype=np.float64).reshape(-1, 2)
         ones = np.ones(len(lower))
-        return cls(
-            lower,
-            upper,
-            0.0 * ones,
-            np.broadcast_to(np.asarray(length_m, dtype=np.float64), ones.shape),
-            CLICK_STD_PX * ones,
-            length_std * ones,
-            lean_std_rad * ones,
-            common_std,
-            common_lean_rad,
-        )
+        length = np.broadcast_to(np.asarray(length_m, dtype=np.float64), ones.shape)
+        stds = (CLICK_STD_PX * ones, single[0] * ones, single[1] * ones)
+        return cls(lower, upper, 0.0 * ones, length, *stds, *common)
 
     def __len__(self) -> int:
-        """How many there are."""
         return len(self.lower_px)
 
     def __add__(self, other: "Uprights") -> "Uprights":
         """Both together; what may be off in common is taken to be the same of both."""
         if not len(self) or not len(other):
             return self if len(self) else other
-
-        def joined(name: str) -> Array:
-            return np.concatenate([getattr(self, name), getattr(other, name)])
-
+        arrays: dict[str, Any] = {
+            name: np.concatenate([own, getattr(other, name)])
+            for name, own in vars(self).items()
+            if isinstance(own, np.ndarray)
+        }
         return Uprights(
-            joined("lower_px"),
-            joined("upper_px"),
-            joined("lower_m"),
-            joined("length_m"),
-            joined("pixel_std"),
-            joined("length_std"),
-            joined("lean_std_rad"),
+            **arrays,
             common_std=max(self.common_std, other.common_std),
             common_lean_rad=max(self.common_lean_rad, other.common_lean_rad),
             doubtful=self.doubtful or other.doubtful,
@@ -138,50 +96,31 @@ class Uprights:
 class CameraEvidence:
     """Lines in the picture, each given by its two ends [px], and upright things of known length."""
 
-    vertical: Array = field(default_factory=no_lines)
-    """(V, 2, 2) plumb in the world: door frames, corners of walls."""
-    along: Array = field(default_factory=no_lines)
+    vertical: Array = field(default_factory=_no_lines)  # (V, 2, 2) plumb: door frames, corners of walls
+    along: Array = field(default_factory=_no_lines)
     """(A, 2, 2) level and parallel to each other in the world: on the floor, or on a wall."""
-    across: Array = field(default_factory=no_lines)
-    """(C, 2, 2) level and at right angles to those."""
+    across: Array = field(default_factory=_no_lines)  # (C, 2, 2) level and at right angles to those
     uprights: Uprights = field(default_factory=Uprights.none)
 
 
-# --- The floor as a grid of meters in the picture, by which people judge a camera
-
-
-REACH_M = 8
-"""Lines lie so far to each side of the floor's part that is looked at."""
-AHEAD_M = 4.0
-"""Distance of that part where the camera does not look down on it: a whole person fits the picture there."""
-PIECES = 4
-"""Pieces of a meter, each straight, as a lens with distortion bends lines."""
-MARGIN = 0.1
-"""Share of the picture's size beyond which nothing is drawn: distortion is not defined far outside."""
+REACH_M = 8  # lines lie so far to each side of the floor's part that is looked at
+AHEAD_M = 4.0  # distance of that part at most: a whole person fits the picture there
+PIECES = 4  # pieces of a meter, each straight, as a lens with distortion bends lines
+MARGIN = 0.1  # share of the picture beyond which nothing is drawn, as distortion is not defined there
 HORIZON_DEGREES = 60.0
-HORIZON_PIECES = 48
-FAR_M = 1e5
 
 
 @dataclass(frozen=True, eq=False)
 class FloorGrid:
     """Straight pieces of lines in the picture, each from one point to another [px]."""
 
-    lines: Array
-    """(S, 2, 2) of the grid."""
-    depth_m: Array
-    """(S,) distance of each from the camera, along the viewing axis [m]."""
-    horizon: Array
-    """(H, 2, 2) where the floor would end."""
+    lines: Array  # (S, 2, 2) of the grid
+    depth_m: Array  # (S,) distance of each from the camera, along the viewing axis [m]
+    horizon: Array  # (H, 2, 2) where the floor would end
 
 
 def floor_grid(camera: Camera, frame: int | None = None) -> FloorGrid:
-    """The grid of whole meters on the floor z = 0, about where the camera looks.
-
-    Args:
-        camera: The camera.
-        frame: Index of its pose, where it moves.
-    """
+    """The grid of whole meters on the floor z = 0, about where the camera looks."""
     rotation, location = camera.pose(frame)
     ahead = -rotation[:, 2]
     middle = np.round(location[:2] + _reach(location[2], ahead) * _level(rotation))
@@ -215,12 +154,12 @@ def _level(rotation: Array) -> Array:
 def _horizon(camera: Camera, frame: int | None) -> Array:
     rotation, location = camera.pose(frame)
     x, y = _level(rotation)
-    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, HORIZON_PIECES + 1))
+    angles = np.radians(np.linspace(-HORIZON_DEGREES, HORIZON_DEGREES, 48 + 1))
     far = np.stack(
         [x * np.cos(angles) - y * np.sin(angles), x * np.sin(angles) + y * np.cos(angles), 0.0 * angles],
         axis=-1,
     )
-    pixel, _ = camera.project(location + FAR_M * far, frame)
+    pixel, _ = camera.project(location + 1e5 * far, frame)
     pieces = np.stack([pixel[:-1], pixel[1:]], axis=-2)
     return np.asarray(pieces[_in_picture(camera, pieces)])
 

@@ -19,18 +19,15 @@ from ..files.kinds import Items, Kind, Number, Whole, refuse
 from ..files.records import Record, read_record
 from ..files.safe_path import number_array
 
-STRAIGHT_DOWN = 1e-6
-"""Horizontal share of a viewing direction below which it has no heading."""
+STRAIGHT_DOWN = 1e-6  # horizontal share of a viewing direction below which it has no heading
 
 
 @dataclass(frozen=True)
 class CameraPlacement:
     """Height and attitude of a camera over the floor z = 0."""
 
-    height_m: float
-    """Above the floor [m]."""
-    tilt_rad: float
-    """Of the viewing direction above the horizon; negative where the camera looks down."""
+    height_m: float  # above the floor [m]
+    tilt_rad: float  # of the viewing direction above the horizon; negative where the camera looks down
     roll_rad: float
     """About the viewing direction, counterclockwise as the camera's operator sees it: the picture then leans
     clockwise."""
@@ -49,26 +46,13 @@ class CameraPlacement:
     def rotation(self, heading_rad: float = 0.0) -> Array:
         """The camera's orientation (3, 3), its axes as columns: turned about Z, tilted, rolled."""
         tilted, rolled = self.tilt_rad, self.roll_rad
-        turn = np.array(
-            [
-                [cos(heading_rad), -sin(heading_rad), 0.0],
-                [sin(heading_rad), cos(heading_rad), 0.0],
-                [0.0, 0.0, 1.0],
-            ]
-        )
         lift = np.array(
             [[1.0, 0.0, 0.0], [0.0, -sin(tilted), -cos(tilted)], [0.0, cos(tilted), -sin(tilted)]]
         )
-        roll = np.array([[cos(rolled), -sin(rolled), 0.0], [sin(rolled), cos(rolled), 0.0], [0.0, 0.0, 1.0]])
-        return np.asarray(turn @ lift @ roll)
+        return np.asarray(_about_z(heading_rad) @ lift @ _about_z(rolled))
 
     def matrix(self, place: tuple[float, float] = (0.0, 0.0), heading_rad: float = 0.0) -> Array:
-        """The pose (4, 4), camera to world, above a place on the floor [m].
-
-        Args:
-            place: Where on the floor [m].
-            heading_rad: About the world's Z, counterclockwise from looking along +Y.
-        """
+        """The pose (4, 4), camera to world, above a place on the floor [m], turned from looking along +Y."""
         pose = np.eye(4)
         pose[:3, :3] = self.rotation(heading_rad)
         pose[:3, 3] = *place, self.height_m
@@ -80,6 +64,10 @@ class CameraPlacement:
         return self.matrix((float(before[0, 3]), float(before[1, 3])), heading_rad(before))
 
 
+def _about_z(angle: float) -> Array:
+    return np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
+
+
 def heading_rad(matrix_world: ArrayLike) -> float:
     """Heading of a camera's pose (4, 4) or orientation (3, 3) about the world's Z, 0 along +Y [rad]."""
     matrix = np.asarray(matrix_world, dtype=np.float64)
@@ -89,26 +77,14 @@ def heading_rad(matrix_world: ArrayLike) -> float:
     return atan2(-float(ahead[0]), float(ahead[1]))
 
 
-# --- Validation of a camera's fields in a take
-
-
-LENGTHS_MM = (0.1, 100_000.0)
-"""A focal length or a sensor's width lies between these [mm]."""
-MOST_SHIFT = 100.0
-"""Largest shift [image widths]."""
+MOST_SHIFT = 100.0  # largest shift [image widths]
 LARGEST_SIDE_PX = 2**16
-MOST_DISTORTION = 100.0
-"""Largest coefficient; those of real lenses are below 1."""
-FARTHEST_M = 1e6
-"""Largest entry of a pose: distance from the origin along an axis, or scale."""
-FACING = "distance_m"
-"""Says where the world's origin is, which is of no use without the rest."""
+MOST_DISTORTION = 100.0  # largest coefficient; those of real lenses are below 1
+FARTHEST_M = 1e6  # largest entry of a pose: distance from the origin along an axis, or scale
+FACING = "distance_m"  # says where the world's origin is, which is of no use without the rest
 MATRICES = ("matrix_world", "matrix_world_frames")
-HEIGHTS_M = (0.01, 1000.0)
-"""A camera's height above the floor lies between these [m]."""
-SMALLEST_SCALE = 1e-4
-ROTATION_TOLERANCE = 1e-3
-"""Files written by hand or in single precision have errors of about 1e-6."""
+HEIGHTS_M = (0.01, 1000.0)  # A camera's height above the floor lies between these [m]
+ROTATION_TOLERANCE = 1e-3  # files written by hand or in single precision have errors of about 1e-6
 
 
 class Pose(Kind):
@@ -124,9 +100,8 @@ class Pose(Kind):
     def read(self, value: Any, where: str, name: str) -> Array:
         """See `Kind`."""
         matrices = number_array(value)
-        if matrices is None or matrices.ndim != 2 + self.several:
-            raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
-        if matrices.shape[-2:] != (4, 4) or not matrices.size:
+        formed = matrices is not None and matrices.ndim == 2 + self.several and matrices.size > 0
+        if matrices is None or not formed or matrices.shape[-2:] != (4, 4):
             raise InputError(f"{where}: {name} has the wrong form; it must be {self.valid}")
         stacked = matrices.reshape(-1, 4, 4).copy()
         fault = _first_fault(stacked)
@@ -157,7 +132,7 @@ class Distortion(Kind):
         return k1, k2, k3
 
 
-LensNumber = Annotated[float, Number(*LENGTHS_MM, "mm")]
+LensNumber = Annotated[float, Number(0.1, 100_000.0, "mm")]
 Shift = Annotated[float, Number(-MOST_SHIFT, MOST_SHIFT)]
 
 
@@ -237,7 +212,7 @@ def _first_fault(matrices: Array) -> tuple[int, str] | None:
     far = np.abs(matrices).max(axis=(1, 2)) > FARTHEST_M
     sound = np.where((last | far)[:, None, None], np.eye(4), matrices)
     determinants = np.linalg.det(sound[:, :3, :3])
-    flat = determinants < SMALLEST_SCALE**3
+    flat = determinants < 1e-4**3
     rotations = _scaled(np.where(flat[:, None, None], np.eye(4), sound))
     error = np.abs(np.swapaxes(rotations, 1, 2) @ rotations - np.eye(3)).max(axis=(1, 2))
     faults = last | far | flat | (error > ROTATION_TOLERANCE)

@@ -14,7 +14,6 @@ was kept may be wrong.
 """
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -31,38 +30,24 @@ PARAMETERS = (HEIGHT, TILT, ROLL, LENS)
 BELIEVED_STD = np.array([0.4, np.radians(15.0), np.radians(4.0), 0.35])
 """Of the logarithm of the height (from 0.6 to 3 m about 1.4 m, twice that deviation), tilt and roll (held in
 hands, or on a slanting support), and of the logarithm of the focal length (17 to 70 mm about 35)."""
-KNOWN_LENS_STD = 0.01
-"""Of the logarithm of a focal length that somebody knows: zooms state theirs to a hundredth."""
-DETERMINED = 0.5
-"""Largest ratio of the standard deviation found to that believed before, of what the picture determines."""
-STARTS = 8
-"""Headings of the level lines from which the descent starts, over half a turn."""
-START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])
-"""Tilts from which it starts."""
-FOLLOWED_STARTS = 3
-"""The likeliest of them, which are followed to their end."""
+KNOWN_LENS_STD = 0.01  # of the logarithm of a known focal length: zooms state theirs to a hundredth
+DETERMINED = 0.5  # largest ratio of a deviation found to that believed before
+START_TILTS_RAD = np.radians([0.0, -25.0, -12.0, 12.0])  # tilts from which it starts
 HEADING = len(PARAMETERS)
 DIFFERENCE = 1e-5
-DEGREES = 4.0
-"""Degrees of freedom of Student's t of what may be far off."""
-EXPECTED_WEIGHT = 4.0
-"""Degrees of freedom with which the image noise is believed beforehand, as few lines tell little of it."""
-EXACT = 1e-6
-LEAST_RISE_M, FLATTEST = 0.01, 1e-3
-"""Least height of the camera above a point [m], and least slope of the line of sight down to it."""
+EXPECTED_WEIGHT = 4.0  # degrees of freedom of the image noise believed beforehand
+LEAST_RISE_M = 0.01  # least height of the camera above a point [m]
 
 
 @dataclass(frozen=True, eq=False)
 class CameraFit:
     """A camera as a picture shows it."""
 
-    camera: Camera
-    """With the lens and the pose found; the place on the floor and the heading are as before."""
+    camera: Camera  # with the lens and the pose found; the place on the floor and the heading are as before
     std: dict[str, float]
     """Standard deviation of each of `PARAMETERS`: height [m], tilt and roll [rad], lens [mm]; of those kept,
     how open they are."""
-    kept: tuple[str, ...]
-    """Those of `PARAMETERS` that the picture does not determine, which kept their value."""
+    kept: tuple[str, ...]  # those of `PARAMETERS` that the picture does not determine, which kept their value
     misfit_px: float
     """Root of the mean square distance of the lines' and uprights' ends from where they should be [px]."""
     excess: float
@@ -75,12 +60,7 @@ class CameraFit:
 
 
 def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = False) -> CameraFit:
-    """Find the camera that took a picture.
-
-    Args:
-        camera: The still camera as it is believed now.
-        evidence: What the picture shows.
-        lens_is_known: Whether its lens is right; it is kept then.
+    """Find the camera that took a picture, from the still one believed now; a known lens is kept.
 
     Raises:
         ValueError: The camera moves.
@@ -96,12 +76,12 @@ def fit_camera(camera: Camera, evidence: CameraEvidence, lens_is_known: bool = F
     found = problem.camera_of(best)
     placement = CameraPlacement.of(found.matrix_world)
     unit = np.array([placement.height_m, 1.0, 1.0, found.lens_mm])
-    residuals = problem.residuals(best)
+    off_px, _ = problem.residuals(best)
     return CameraFit(
         replace(found, matrix_world=placement.applied_to(camera.matrix_world)),
         dict(zip(PARAMETERS, map(float, shares * unit), strict=True)),
         tuple(PARAMETERS[index] for index in kept),
-        float(np.sqrt(np.mean(residuals.px**2))) if residuals.px.size else 0.0,
+        float(np.sqrt(np.mean(off_px**2))) if off_px.size else 0.0,
         problem.excess(best),
     )
 
@@ -119,25 +99,11 @@ def _undetermined(covariance: Array, believed_std: Array) -> IndexArray:
         # Given those kept, the others have the inverse of what is left of the information.
         information = np.linalg.inv(covariance)[np.ix_(free, free)]
         variance = np.diag(np.linalg.inv(information))
-        shares = {
-            int(at): float(np.sqrt(v)) / believed_std[at]
-            for at, v in zip(free, variance, strict=True)
-            if at < count
-        }
-        worst = max(shares, key=lambda at: shares[at])
-        if shares[worst] <= DETERMINED:
+        shares = (np.sqrt(variance) / believed_std[free])[free < count]
+        if shares.max() <= DETERMINED:
             break
-        kept.append(worst)
+        kept.append(int(free[shares.argmax()]))
     return np.array(sorted(kept), dtype=np.intp)
-
-
-class _Residuals(NamedTuple):
-    """Residuals of all lines and uprights."""
-
-    px: Array
-    """(R,) [px]."""
-    scaled: Array
-    """(R,) in standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +131,7 @@ class _Problem:
             std[PARAMETERS.index(LENS)] = KNOWN_LENS_STD
         heading = [np.inf] if self.has_level_lines else []
         uprights = self.evidence.uprights
-        return np.array([*std, *heading, *np.maximum([uprights.common_std, uprights.common_lean_rad], EXACT)])
+        return np.array([*std, *heading, *np.maximum([uprights.common_std, uprights.common_lean_rad], 1e-6)])
 
     def placement_of(self, x: Array) -> CameraPlacement:
         now = CameraPlacement.of(self.camera.matrix_world)
@@ -177,8 +143,8 @@ class _Problem:
         lens = self.camera.lens_mm * float(np.exp(x[3]))
         return replace(self.camera, lens_mm=lens, matrix_world=self.placement_of(x).matrix())
 
-    def residuals(self, x: Array) -> _Residuals:
-        """All residuals at x."""
+    def residuals(self, x: Array) -> tuple[Array, Array]:
+        """Of all lines and uprights (R,), in px and in standard deviations."""
         camera = self.camera_of(x)
         parts = [_line_residuals(camera, self.evidence.vertical, np.array([0.0, 0.0, 1.0]))]
         if self.has_level_lines:
@@ -187,16 +153,16 @@ class _Problem:
             parts.append(_line_residuals(camera, self.evidence.across, np.array([-along, across, 0.0])))
         lines = np.concatenate(parts)
         px, scaled = self._upright_residuals(camera, float(np.exp(x[-2])), float(x[-1]))
-        return _Residuals(np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled]))
+        return np.concatenate([lines, px]), np.concatenate([lines / CLICK_STD_PX, scaled])
 
     def descend(self) -> Array:
         """The most probable x (X,), from the likeliest starts."""
-        headings = np.arange(STARTS) * np.pi / STARTS if self.has_level_lines else np.zeros(1)
+        headings = np.arange(8) * np.pi / 8 if self.has_level_lines else np.zeros(1)
         starts = np.zeros((len(headings) * len(START_TILTS_RAD), len(self.believed_std)))
         starts[:, PARAMETERS.index(TILT)] = np.tile(START_TILTS_RAD, len(headings))
         if self.has_level_lines:
             starts[:, HEADING] = np.repeat(headings, len(START_TILTS_RAD))
-        order = np.argsort([self._cost(start) for start in starts])[:FOLLOWED_STARTS]
+        order = np.argsort([self._cost(start) for start in starts])[:3]  # the likeliest
         nothing = np.zeros(0, dtype=np.intp)
         return min((self.descend_from(starts[index], nothing) for index in order), key=self._cost)
 
@@ -226,7 +192,7 @@ class _Problem:
         """Ratio of the residuals' variance at x to the expected one."""
         normal = self._normal(x)
         determined = float(np.trace(np.linalg.solve(normal + self._believed, normal)))
-        squared = self._robust(self.residuals(x).scaled) ** 2
+        squared = self._scaled(x) ** 2
         free = max(len(squared) - determined, 0.0)
         return (float(squared.sum()) + EXPECTED_WEIGHT) / (free + EXPECTED_WEIGHT)
 
@@ -237,28 +203,26 @@ class _Problem:
     def _normal(self, x: Array) -> Array:
         """Normal matrix (X, X) of what the picture shows."""
         steps = DIFFERENCE * np.eye(len(x))
-        rows = [
-            self._robust(self.residuals(x + sign * step).scaled) for step in steps for sign in (1.0, -1.0)
-        ]
+        rows = [self._scaled(x + sign * step) for step in steps for sign in (1.0, -1.0)]
         jacobian = ((np.array(rows[::2]) - np.array(rows[1::2])) / (2.0 * DIFFERENCE)).T
         return np.asarray(jacobian.T @ jacobian)
 
-    def _robust(self, scaled: Array) -> Array:
-        """Residuals whose squares are twice the negative logarithm of Student's t, where any are doubtful."""
+    def _scaled(self, x: Array) -> Array:
+        """Residuals; where any are doubtful, their squares are twice the cost of Student's t."""
+        _, scaled = self.residuals(x)
         if not self.evidence.uprights.doubtful:
             return scaled
-        return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, DEGREES, 1)))
+        return np.asarray(np.sign(scaled) * np.sqrt(2.0 * multivariate_cost(scaled**2, 4.0, 1)))
 
     def _rows(self, x: Array) -> Array:
-        """Residuals of picture and beliefs."""
-        return np.concatenate([self._robust(self.residuals(x).scaled), x / self.believed_std])
+        return np.concatenate([self._scaled(x), x / self.believed_std])
 
     def _upright_residuals(self, camera: Camera, longer: float, lean_rad: float) -> tuple[Array, Array]:
         """Residuals (2 N,) of the upper ends, along and aside [px], and in standard deviations."""
         uprights = self.evidence.uprights
         location, sight = camera.rays(uprights.lower_px)
         rise = np.maximum(location[2] - uprights.lower_m, LEAST_RISE_M)
-        lower = location + (rise / np.maximum(-sight[:, 2], FLATTEST))[:, None] * sight
+        lower = location + (rise / np.maximum(-sight[:, 2], 1e-3))[:, None] * sight
         upper = lower + (longer * uprights.length_m)[:, None] * np.array([0.0, 0.0, 1.0])
         shown = _in_front(camera, upper)
         drawn = uprights.upper_px - uprights.lower_px

@@ -21,31 +21,23 @@ from ..files.records import Record
 from .camera_fields import LARGEST_SIDE_PX
 from .segmentation.working_image import halvings
 
-IGNORED = 255
-"""Value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored."""
+IGNORED = 255  # value of ignored pixels in a mask; of one made smaller, pixels from half of it on are ignored
 SUBPIXEL_BITS = 4
-SUBPIXELS = 1 << SUBPIXEL_BITS
-"""Parts of a pixel in drawn coordinates."""
-MOST_MASKS = 16
-"""Masks of a session that are kept, some hundred kilobytes each."""
+SUBPIXELS = 1 << SUBPIXEL_BITS  # parts of a pixel in drawn coordinates
 
 Point = tuple[float, float]
-PixelBox = tuple[float, float, float, float]
-"""Left, top, right, bottom in pixels of the footage."""
+PixelBox = tuple[float, float, float, float]  # left, top, right, bottom in pixels of the footage
 
 
 @dataclass(frozen=True)
 class IgnoredRegion:
     """One region of the picture that is never a marker, in pixels of the footage."""
 
-    box: PixelBox | None = None
-    """A box; None for a stroke."""
+    box: PixelBox | None = None  # A box; None for a stroke
     stroke: tuple[Point, ...] = ()
     """Points of a brush's path, all pixels within the radius of which are ignored."""
-    radius_px: float = 0.0
-    """The brush's radius."""
-    frames: tuple[int, int] | None = None
-    """Index of the first frame and of the last one; None for all."""
+    radius_px: float = 0.0  # the brush's radius
+    frames: tuple[int, int] | None = None  # index of the first frame and of the last one; None for all
 
     def holds_in(self, frame: int) -> bool:
         """Whether it is ignored in a frame of the clip, by its index."""
@@ -57,8 +49,7 @@ class IgnoredPixels:
     """The ignored pixels of a clip, frame by frame."""
 
     regions: tuple[IgnoredRegion, ...]
-    size: tuple[int, int]
-    """Width and height of the footage in px."""
+    size: tuple[int, int]  # width and height of the footage in px
     sampled: tuple[int, ...] | None = None
     """Index in the clip of each frame that is asked for; None where frames are the clip's own."""
 
@@ -81,7 +72,7 @@ def without(label: Image, mask: Image, nothing: int) -> Image:
     return np.where(is_ignored(mask), np.uint8(nothing), label)
 
 
-@lru_cache(MOST_MASKS)
+@lru_cache(16)  # a session's, some hundred kilobytes each
 def _mask(regions: tuple[IgnoredRegion, ...], size: tuple[int, int]) -> Image:
     """The pixels of the measuring grid whose centers lie in any of the regions."""
     times = halvings(size)
@@ -117,19 +108,14 @@ def _draw_between(mask: Image, one: Array, other: Array, radius: float) -> None:
         cv2.fillConvexPoly(mask, corners, (float(IGNORED),), shift=SUBPIXEL_BITS)
 
 
-# --- Ignored regions as the field `ignored_regions` of `take.json`
-
-
 IGNORED_REGIONS = "ignored_regions"
 MOST_REGIONS = 200
-MOST_POINTS = 1000
-"""Points of one stroke."""
+MOST_POINTS = 1000  # points of one stroke
 VALID_BOX = "[left, top, right, bottom] in pixels of the footage, as in [10, 20, 60, 90]"
 VALID_STROKE = f"a list of 1 to {MOST_POINTS} points [x, y] in pixels of the footage"
 VALID_FRAMES = "[first, last], scene frames in order"
-FARTHEST_FRAME = 10**7
 
-
+SceneFrame = Annotated[int, Whole(-(10**7), 10**7)]
 Coordinate = Annotated[float, Number(-LARGEST_SIDE_PX, 2 * LARGEST_SIDE_PX)]
 PixelPoint = Annotated[tuple[Coordinate, ...], Items("numbers", 2, 2)]
 
@@ -146,13 +132,7 @@ class RegionFields(Record):
     """Points [x, y] of a brush's path [px]."""
     radius_px: Annotated[float, Number(0.5, LARGEST_SIDE_PX, "pixels of the footage")] | None = None
     """Radius of the brush [px]."""
-    frames: (
-        Annotated[
-            tuple[Annotated[int, Whole(-FARTHEST_FRAME, FARTHEST_FRAME)], ...],
-            Items("frames", 2, 2, VALID_FRAMES),
-        ]
-        | None
-    ) = None
+    frames: Annotated[tuple[SceneFrame, ...], Items("frames", 2, 2, VALID_FRAMES)] | None = None
     """First and last scene frame in which it is ignored; the default is all."""
 
     def mistake(self) -> str:
@@ -171,13 +151,7 @@ class RegionFields(Record):
 def ignored_regions(
     regions: Sequence[RegionFields], size: tuple[int, int], frame_start: int, source: str
 ) -> tuple[IgnoredRegion, ...]:
-    """Regions of a take, from its fields.
-
-    Args:
-        regions: The fields.
-        size: Width and height of the footage in px.
-        frame_start: Scene frame of the clip's first frame.
-        source: The file that gives them.
+    """Regions of a take, from the fields that `source` gives, for footage of (width, height).
 
     Raises:
         InputError: One lies beside the picture.
@@ -187,19 +161,14 @@ def ignored_regions(
 
 
 def ignored_region_fields(regions: Sequence[IgnoredRegion], frame_start: int) -> list[dict[str, Any]]:
-    """Regions as the field that `read_ignored_regions` reads."""
-    return [_fields(region, frame_start) for region in regions]
-
-
-def _fields(region: IgnoredRegion, frame_start: int) -> dict[str, Any]:
-    said: dict[str, Any] = {}
-    if region.box is not None:
-        said["box"] = list(region.box)
-    else:
-        said |= {"stroke": [list(point) for point in region.stroke], "radius_px": region.radius_px}
-    if region.frames is not None:
-        said["frames"] = [index + frame_start for index in region.frames]
-    return said
+    """Regions as the field `ignored_regions` of `take.json`."""
+    listed: list[dict[str, Any]] = []
+    for one in regions:
+        stroke = {"stroke": [list(point) for point in one.stroke], "radius_px": one.radius_px}
+        listed.append(stroke if one.box is None else {"box": list(one.box)})
+        if one.frames is not None:
+            listed[-1]["frames"] = [index + frame_start for index in one.frames]
+    return listed
 
 
 def _region(region: RegionFields, size: tuple[int, int], frame_start: int, where: str) -> IgnoredRegion:

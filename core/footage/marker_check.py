@@ -17,8 +17,8 @@ from .association import (
     typical_area,
 )
 from .clips.clip import ClipSamples
+from .colors.color_learning import ColorLearner
 from .colors.color_model import ColorModel
-from .colors.streaming_color_learning import StreamingColorLearner
 from .colors.strong_colors import color_confusion
 from .ignored_regions import IgnoredPixels, IgnoredRegion, PixelBox
 from .region_tracks import ExpectedRegions, MarkerStyle
@@ -27,8 +27,7 @@ from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings
 from .still_areas import Likeness, alike_warnings, marker_warnings, places, still_areas
 
-HIGHEST_FRAGMENT_COST = 10.0
-"""Highest cost of a region that counts as a fragment of a marker."""
+HIGHEST_FRAGMENT_COST = 10.0  # highest cost of a region that counts as a fragment of a marker
 
 
 def assign_regions(
@@ -39,12 +38,8 @@ def assign_regions(
 ) -> dict[int, MarkerRegion]:
     """Assign regions to markers in every frame; return each marker's by its index.
 
-    Args:
-        found: The regions of each color.
-        groups: The markers of each color.
-        expected: Expected regions of the markers.
-        choose: Function of a color's regions, their costs (N,) and the marker's length in px that gives the
-            index of its main region in each frame (F,), -1 where it is hidden.
+    `found` and `groups` are the regions and the markers of each color. `choose` gives, of a color's regions,
+    their costs (N,) and the marker's length in px, the main region of each frame (F,), -1 where it is hidden.
     """
     alone = [len(group) == 1 for group in groups]
     clutter = [
@@ -76,28 +71,19 @@ def _length(found: Candidates, clutter: BoolArray, usual_area: float) -> float:
     return float(np.median(np.sqrt(12.0 * np.linalg.eigvalsh(second)[:, 1])))
 
 
-# --- Marker check
-
-
 @dataclass(frozen=True)
 class MarkerReadout:
     """Result of the check for one marker, from N sampled frames."""
 
-    name: str
-    """The marker's name."""
-    found: int
-    """Number of frames in which it is detected."""
-    sampled: int
-    """Number of sampled frames, N."""
-    area_px: float
-    """Median area where it is detected, in pixels of the clip; 0 if it never is."""
-    area_share: float
-    """The same as a share of the picture."""
+    name: str  # the marker's name
+    found: int  # number of frames in which it is detected
+    sampled: int  # number of sampled frames, N
+    area_px: float  # median area where it is detected, in pixels of the clip; 0 if it never is
+    area_share: float  # the same as a share of the picture
     distinctness: float
     """Probability in 0..1 that a pixel of the marker is classified as such, times the share of the pixels so
     classified that are the marker's; 0 if it is never detected."""
-    warnings: tuple[str, ...]
-    """Sentences that name the marker."""
+    warnings: tuple[str, ...]  # sentences that name the marker
     still_boxes: tuple[PixelBox, ...] = ()
     """Boxes around still areas of its color that are surely no marker, in pixels of the clip."""
 
@@ -106,12 +92,9 @@ class MarkerReadout:
 class MarkerCheck:
     """Result of the check for M markers in C colors."""
 
-    readouts: tuple[MarkerReadout, ...]
-    """One a marker."""
-    model: ColorModel
-    """The learned color model, for previews."""
-    groups: tuple[tuple[int, ...], ...]
-    """The markers of each color."""
+    readouts: tuple[MarkerReadout, ...]  # one a marker
+    model: ColorModel  # the learned color model, for previews
+    groups: tuple[tuple[int, ...], ...]  # the markers of each color
     missing: Mapping[int, str]
     """For each marker whose color is nowhere, by index, a sentence that begins with its name; tracking
     refuses such a clip."""
@@ -125,52 +108,37 @@ def check_markers(
 ) -> Generator[float, None, MarkerCheck]:
     """Detect the markers in sampled frames as tracking does, but in each frame by itself.
 
-    A missing color does not prevent the check of the others.
-
-    Args:
-        samples: Frames spread over the clip.
-        styles: The markers, M of them, at least one.
-        expected: Expected region of each marker in every frame of the clip, (F, M); optional.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
+    A missing color does not prevent the check of the others. `expected` is that of the whole clip. Yields the
+    fraction done.
     """
     yield 0.0
     frames = len(samples.images)
-    at_samples = None if expected is None else _at(expected, samples.indices)
+    at_samples = None
+    if expected is not None:  # frames beyond the last known one get what is expected in that
+        rows = np.minimum(samples.indices, len(expected.center) - 1)
+        at_samples = ExpectedRegions(expected.center[rows], expected.radius[rows])
     pixels = IgnoredPixels(tuple(ignored), samples.size, samples.indices)
-    colors = StreamingColorLearner(samples.path, samples.size, styles, at_samples, pixels)
+    colors = ColorLearner(samples.path, samples.size, styles, at_samples, pixels)
     colors.learn(samples.images)
     yield 0.5
     regions = []
     for done, image in enumerate(samples.images):
         regions += find_regions([image], 0, colors.model, ignored=[pixels.mask(done)])
         yield 0.5 + 0.5 * done / frames
-    found = [
-        gather_candidates(regions, color, 2.0 ** halvings(samples.size))
-        for color in range(len(colors.groups))
-    ]
+    scale = 2.0 ** halvings(samples.size)
+    found = [gather_candidates(regions, color, scale) for color in range(len(colors.groups))]
     own = assign_regions(found, colors.groups, at_samples, _cheapest)
     areas = [own[marker].moments[:, 0] for marker in range(len(styles))]
     likenesses = _likenesses([style.name for style in styles], colors, found, areas)
     complaints = colors.complaints()
     still = still_areas(samples, colors.model, colors.groups, found, pixels)
     readouts = [
-        _readout(
-            style.name, areas[marker], samples.size, likenesses[marker], complaints.get(marker), still[marker]
-        )
-        for marker, style in enumerate(styles)
+        _readout(style.name, area, samples.size, likenesses[marker], complaints.get(marker), still[marker])
+        for marker, (style, area) in enumerate(zip(styles, areas, strict=True))
     ]
     yield 1.0
     groups = tuple(tuple(group) for group in colors.groups)
     return MarkerCheck(tuple(readouts), colors.model, groups, complaints)
-
-
-def _at(expected: ExpectedRegions, indices: Sequence[int]) -> ExpectedRegions:
-    """Expected regions in some frames; frames beyond the last known one get those of the last."""
-    rows = np.minimum(indices, len(expected.center) - 1)
-    return ExpectedRegions(expected.center[rows], expected.radius[rows])
 
 
 def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
@@ -184,7 +152,7 @@ def _cheapest(found: Candidates, cost: Array, _length_px: float) -> IntArray:
 
 
 def _likenesses(
-    names: Sequence[str], colors: StreamingColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
+    names: Sequence[str], colors: ColorLearner, found: Sequence[Candidates], areas: Sequence[Array]
 ) -> dict[int, Likeness]:
     """Likeness of each marker to other things, by its index, from its area in every frame."""
     claims = color_confusion(colors.model)
@@ -221,11 +189,11 @@ def _readout(
             f"{name} is in none of the {sampled} sampled frames, or something larger has its color; "
             "pick the color anew, or wear another"
         )
-        return MarkerReadout(
-            name, 0, sampled, 0.0, 0.0, 0.0, (*alike_warnings(name, likeness.alike), sentence)
-        )
+        warnings = (*alike_warnings(name, likeness.alike), sentence)
+        return MarkerReadout(name, 0, sampled, 0.0, 0.0, 0.0, warnings)
     typical = float(np.median(area[area > 0.0]))
     own = 1.0 - likeness.background - sum(share for _, share in likeness.claimed)
+    grid_area = typical / 4.0 ** halvings(size)
     return MarkerReadout(
         name=name,
         found=found,
@@ -233,8 +201,6 @@ def _readout(
         area_px=typical,
         area_share=typical / (size[0] * size[1]),
         distinctness=max(own, 0.0) * (1.0 - likeness.clutter) * (1.0 - likeness.rivals),
-        warnings=marker_warnings(
-            name, found, sampled, typical / 4.0 ** halvings(size), likeness, places(still, size)
-        ),
+        warnings=marker_warnings(name, found, sampled, grid_area, likeness, places(still, size)),
         still_boxes=still,
     )

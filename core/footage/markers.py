@@ -10,18 +10,16 @@ from ..arrays import Array, Image
 from ..errors import InputError
 from .association import gather_candidates, region_quality, viterbi_path
 from .clips.clip import Clip, FrameReader
-from .colors.streaming_color_learning import StreamingColorLearner
+from .colors.color_learning import ColorLearner, color_groups
 from .ignored_regions import IgnoredPixels, IgnoredRegion
 from .marker_check import assign_regions
-from .region_tracks import Detections, ExpectedRegions, MarkerStyle, RegionTracks, color_groups
+from .region_tracks import NO_REGIONS, Detections, ExpectedRegions, MarkerStyle, Regions, RegionTracks
 from .segmentation.moments import centroid_and_second_moment
-from .segmentation.regions import NO_REGIONS, Regions, find_regions
+from .segmentation.regions import find_regions
 from .segmentation.working_image import halvings, measuring_image
 
-STRETCH_BYTES = 100_000_000
-"""Memory of the images buffered until the colors are learned: five seconds of video and more."""
-BATCH_SIZE = 4
-"""Images segmented together: enough to amortize the overhead of each step."""
+STRETCH_BYTES = 100_000_000  # images buffered until the colors are learned: five seconds of video
+BATCH_SIZE = 4  # images segmented together: enough to amortize the overhead of each step
 
 
 def track_markers(
@@ -30,22 +28,10 @@ def track_markers(
     expected: ExpectedRegions | None = None,
     ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, RegionTracks]:
-    """Track the markers through a clip.
+    """Track the markers through a clip; yields the fraction done.
 
     One pass over the clip in constant memory detects the regions of each marker's color; they are then
     assigned to the markers, apart from clutter of like hue, over the whole clip at once.
-
-    Args:
-        clip: The footage.
-        styles: The markers, M of them, in the order of the result.
-        expected: Expected region of each marker, (F, M); optional.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The markers' regions in every frame.
 
     Raises:
         InputError: A marker's color matches nothing in the clip, or a frame cannot be read.
@@ -64,7 +50,7 @@ def detect_markers(
 ) -> Generator[float, None, Detections]:
     """Detect all regions of the markers' colors in a clip, in one pass; see `track_markers`."""
     pixels = IgnoredPixels(tuple(ignored), clip.size)
-    colors = StreamingColorLearner(clip.path, clip.size, styles, expected, pixels)
+    colors = ColorLearner(clip.path, clip.size, styles, expected, pixels)
     regions, time_s = yield from _detect_regions(clip, colors, pixels)
     colors.check_found()
     return Detections(tuple(regions), time_s, clip.size, tuple(colors.learning_rounds), colors.samples)
@@ -78,19 +64,36 @@ def still_valid(
 ) -> bool:
     """Whether other expected regions would give exactly the same detections."""
     pixels = IgnoredPixels(tuple(ignored), seen.size)
-    colors = StreamingColorLearner(Path(), seen.size, styles, expected, pixels)
-    return colors.learn_again(seen)
+    return ColorLearner(Path(), seen.size, styles, expected, pixels).learn_again(seen)
 
 
 def assign_detections(
     seen: Detections, styles: Sequence[MarkerStyle], expected: ExpectedRegions | None = None
 ) -> RegionTracks:
-    """Assign the detected regions to the markers; see `track_markers`."""
-    return _tracks(seen.regions, styles, color_groups(styles), expected, seen.time_s, seen.size)
+    """Assign the detected regions to the markers over the whole clip at once."""
+    groups, scale = color_groups(styles), 2.0 ** halvings(seen.size)
+    found = [gather_candidates(seen.regions, color, scale) for color in range(len(groups))]
+    joined = assign_regions(found, groups, expected, viterbi_path)
+    rows = [joined[marker] for marker in range(len(styles))]
+    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
+    centroid, second = centroid_and_second_moment(moments)
+    how = "only their paths tell which is which" if expected is None else "the keyframes tell which is which"
+    alike = [" and ".join(styles[marker].name for marker in group) for group in groups if len(group) > 1]
+    return RegionTracks(
+        names=tuple(style.name for style in styles),
+        centroid=centroid,
+        second_moment=second,
+        area=np.where(moments[..., 0] > 0.0, moments[..., 0], np.nan),
+        quality=np.stack([region_quality(row) for row in rows], axis=1),
+        clipped=np.stack([row.clipped for row in rows], axis=1),
+        time_s=seen.time_s,
+        size=seen.size,
+        notes=tuple(f"markers {names} have almost the same color; {how}" for names in alike),
+    )
 
 
 def _detect_regions(
-    clip: Clip, colors: StreamingColorLearner, ignored: IgnoredPixels
+    clip: Clip, colors: ColorLearner, ignored: IgnoredPixels
 ) -> Generator[float, None, tuple[list[Regions], Array]]:
     """Detect the regions of every frame; return them and the frames' times.
 
@@ -126,7 +129,7 @@ def _detect_regions(
 
 def _regions_of_stretch(
     waiting: list[Image],
-    colors: StreamingColorLearner,
+    colors: ColorLearner,
     ignored: IgnoredPixels,
     regions: list[Regions],
     frame_count: int,
@@ -147,53 +150,6 @@ def _masks(ignored: IgnoredPixels, first: int, count: int) -> list[Image | None]
     return [ignored.mask(first + number) for number in range(count)] if ignored.regions else []
 
 
-def _tracks(
-    regions: Sequence[Regions],
-    styles: Sequence[MarkerStyle],
-    groups: Sequence[Sequence[int]],
-    expected: ExpectedRegions | None,
-    time_s: Array,
-    size: tuple[int, int],
-) -> RegionTracks:
-    """Assign regions to the markers over the whole clip at once."""
-    found = [gather_candidates(regions, color, 2.0 ** halvings(size)) for color in range(len(groups))]
-    joined = assign_regions(found, groups, expected, viterbi_path)
-    rows = [joined[marker] for marker in range(len(styles))]
-    moments = np.stack([row.moments for row in rows], axis=1)  # (F, M, 6)
-    centroid, second = centroid_and_second_moment(moments)
-    area = moments[..., 0]
-    return RegionTracks(
-        names=tuple(style.name for style in styles),
-        centroid=centroid,
-        second_moment=second,
-        area=np.where(area > 0.0, area, np.nan),
-        quality=np.stack([region_quality(row) for row in rows], axis=1),
-        clipped=np.stack([row.clipped for row in rows], axis=1),
-        time_s=time_s,
-        size=size,
-        notes=_notes(styles, groups, expected is not None),
-    )
-
-
-def _notes(styles: Sequence[MarkerStyle], groups: Sequence[Sequence[int]], placed: bool) -> tuple[str, ...]:
-    """Sentences on markers that look alike."""
-    how = "the keyframes tell which is which" if placed else "only their paths tell which is which"
-    return tuple(
-        (
-            f"markers {' and '.join((styles[marker].name for marker in group))} have almost the same "
-            f"color; {how}"
-        )
-        for group in groups
-        if len(group) > 1
-    )
-
-
-# --- The markers' regions in a single frame, without a pass over the clip
-
-
-SAMPLED_FRAMES = 12
-
-
 def regions_of_frame(
     clip: Clip,
     time_s: float,
@@ -204,16 +160,8 @@ def regions_of_frame(
 ) -> RegionTracks:
     """Detect the markers in one frame, by colors learned from frames spread over the clip.
 
-    Args:
-        clip: The footage.
-        time_s: Time of the frame in seconds from the first.
-        styles: The markers, M of them, in the order of the result.
-        expected: Expected regions in this frame, (1, M), which tell markers from clutter of their colors.
-        ignored: Regions of the picture that are never a marker.
-        index: Index of the frame, for regions that are ignored in some frames only.
-
-    Returns:
-        Tracks of one frame.
+    The frame is that at a time from the first; its index counts for regions that are ignored in some frames
+    only. Expected regions are those of this frame, (1, M).
 
     Raises:
         InputError: A marker's color matches nothing in the clip, or there is no such frame.
@@ -222,10 +170,10 @@ def regions_of_frame(
     if image is None:
         raise InputError(f"{clip.path}: there is no frame at {time_s:.2f} s; go to a frame of the footage")
     times = halvings(clip.size)
-    samples = [(number, measuring_image(sample, times)) for number, sample in clip.sample(SAMPLED_FRAMES)]
+    samples = [(number, measuring_image(sample, times)) for number, sample in clip.sample(12)]
     pixels = IgnoredPixels(tuple(ignored), clip.size)
     of_samples = replace(pixels, sampled=tuple(number for number, _ in samples))
-    colors = StreamingColorLearner(clip.path, clip.size, styles, ignored=of_samples)
+    colors = ColorLearner(clip.path, clip.size, styles, ignored=of_samples)
     colors.learn([sample for _, sample in samples])
     colors.check_found()
     regions = find_regions([image], times, colors.model, ignored=[pixels.mask(index)])

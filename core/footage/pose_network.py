@@ -21,14 +21,11 @@ MODEL = FOLDER / "pose_landmark.tflite"
 CHECKSUMS = FOLDER / "SHA256SUMS"
 NAME = "BlazePose"
 LAYOUT = LAYOUTS["blazepose33"]
-SIDE, CELLS = 256, 64
-"""Of the network's input and of its heat maps."""
+SIDE, CELLS = 256, 64  # of the network's input and of its heat maps
 POINTS, CENTER, ABOVE = 39, 33, 34
 """Point 33 is between the hips, 34 above it on the circle about the whole person."""
-CIRCLE = 2.5
-"""Side of a crop by the circle's radius."""
-NEIGHBORS, CLEAR = 3, 0.5
-"""A point goes to the middle of its heat map within so many cells, where that has such a peak."""
+CIRCLE = 2.5  # side of a crop by the circle's radius
+NEIGHBORS = 3  # a point goes to the middle of its heat map within so many cells
 OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
 
 
@@ -36,12 +33,9 @@ OUTPUTS = ("Identity", "Identity_1", "Identity_3", "Identity_4")
 class Crop:
     """A square of a picture, which may reach beyond it."""
 
-    center: Array
-    """(2,) [px]"""
-    side: float
-    """[px]"""
-    angle: float = 0.0
-    """Clockwise turn of the person within the picture [rad]."""
+    center: Array  # (2,) [px]
+    side: float  # [px]
+    angle: float = 0.0  # clockwise turn of the person within the picture [rad]
 
     @property
     def matrix(self) -> Array:
@@ -60,27 +54,17 @@ class Crop:
 class Pose:
     """A person as the network sees one, N points of `LAYOUT`."""
 
-    pixel: Array
-    """(N, 2) [px]"""
-    score: Array
-    """(N,) 0 to 1."""
-    hint_m: Array
-    """(N, 3) as in `Keypoints`."""
-    presence: float
-    """How sure it is that the crop shows anybody, 0 to 1."""
-    crop: Crop
-    """About this person."""
+    pixel: Array  # (N, 2) [px]
+    score: Array  # (N,) 0 to 1
+    hint_m: Array  # (N, 3) as in `Keypoints`
+    presence: float  # how sure it is that the crop shows anybody, 0 to 1
+    crop: Crop  # about this person
 
 
 class PoseNetwork:
     """The network with its weights."""
 
     def __init__(self, model: Path = MODEL) -> None:
-        """Load the weights.
-
-        Raises:
-            InputError: They are missing or damaged.
-        """
         again = "install Keymark's zip again, or run tools/fetch_model.py in a copy of its source"
         try:
             weights = model.read_bytes()
@@ -94,7 +78,7 @@ class PoseNetwork:
         self._net = cv2.dnn.readNetFromTFLite(np.frombuffer(weights, dtype=np.uint8))
 
     def __call__(self, picture: Image, crop: Crop) -> Pose:
-        """Look at a crop of a picture (height, width, 3), blue first."""
+        """The person in a crop of a picture (height, width, 3), blue first."""
         return self.postprocess(self.infer(self.preprocess(picture, crop)), crop)
 
     def preprocess(self, picture: Image, crop: Crop) -> SingleArray:
@@ -139,7 +123,7 @@ def _refined(place: SingleArray, heat: SingleArray) -> Array:
         return place.astype(np.float64)
     first = np.maximum([column - NEIGHBORS, row - NEIGHBORS], 0)
     part = _sigmoid(heat[first[1] : row + NEIGHBORS + 1, first[0] : column + NEIGHBORS + 1])
-    if part.max() < CLEAR:
+    if part.max() < 0.5:  # no peak
         return place.astype(np.float64)
     rows, columns = np.indices(part.shape)
     middle = np.array([(columns * part).sum(), (rows * part).sum()]) / part.sum()

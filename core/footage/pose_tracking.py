@@ -21,48 +21,26 @@ from .keypoints.keypoints import People, SeenPeople
 from .pose_network import LAYOUT, NAME, Crop, Pose, PoseNetwork
 
 DETECTING = "Detecting keypoints"
-STRETCH = 60
-"""Frames kept at a time, 170 MB."""
-LARGEST_SIDE_PX = 1280
-"""Pictures are made as small; the network sees 256 pixels of a person."""
-HEIGHTS = (1.15, 0.75, 0.5, 0.33)
-"""Sides of the crops that are looked into, by the height of the picture."""
-SIZES = (0.75,)
-"""The same by the largest person who is followed already."""
-STEP, FEWEST_HIDDEN = 0.5, 0.3
-"""Between crops, and least presence of one that is looked into again about whom it shows."""
-LOOKS = 2
-"""More of these, each about the person as last seen."""
-PRESENT, SURE = 0.5, 0.9
-"""Presence of somebody who is followed, and of somebody new."""
-SCORE, NEW_SCORE = 0.3, 0.5
-"""The same of the mean score of all points."""
-FARTHEST, MOST_GROWN = 0.35, 1.5
-"""Of a step between frames: shares of the crop's side, and a ratio of sides."""
-APART = 0.3
-"""Share of a crop's side within which two crops show the same person."""
-FEWEST_FRAMES, MOST_OTHER = 4, 1.6
-"""Frames in which somebody must be seen, and ratio of sizes beyond which a later person is another."""
-SMALLEST, MOST_PEOPLE = 0.35, 4
-"""Others are followed from this share of the largest one's size on, and so many together."""
+STRETCH = 60  # frames kept at a time, 170 MB
+LARGEST_SIDE_PX = 1280  # pictures are made as small; the network sees 256 pixels of a person
+HEIGHTS = (1.15, 0.75, 0.5, 0.33)  # sides of the crops that are looked into, by the height of the picture
+SIZES = (0.75,)  # the same by the largest person who is followed already
+STEP = 0.5  # between crops, by their side
+APART = 0.3  # share of a crop's side within which two crops show the same person
+MOST_OTHER = 1.6  # ratio of sizes beyond which a later person is another
+SMALLEST = 0.35  # others are followed from this share of the largest one's size on
 
 
 @dataclass(frozen=True, eq=False)
 class _Sighting:
     """A person in one frame."""
 
-    track: int
-    """Number of the person, a new one where somebody was lost in between."""
+    track: int  # number of the person, a new one where somebody was lost in between
     pose: Pose
 
 
 def find_people(clip: Clip, network: PoseNetwork, longest: int) -> Job[People]:
-    """Find everyone in a clip.
-
-    Args:
-        clip: The clip.
-        network: The network.
-        longest: Most frames of a clip.
+    """Find everyone in a clip of at most `longest` frames.
 
     Raises:
         InputError: It is a picture, has no frames or too many, or nobody is in it.
@@ -160,7 +138,7 @@ def _next(network: PoseNetwork, picture: Image, before: Pose) -> Pose | None:
     now = network(picture, before.crop)
     moved = np.hypot(*(now.crop.center - before.crop.center)) / before.crop.side
     grown = max(now.crop.side / before.crop.side, before.crop.side / max(now.crop.side, 1.0))
-    if now.presence < PRESENT or now.score.mean() < SCORE or moved > FARTHEST or grown > MOST_GROWN:
+    if now.presence < 0.5 or now.score.mean() < 0.3 or moved > 0.35 or grown > 1.5:
         return None
     return now if _is_inside(now, picture) else None
 
@@ -176,14 +154,14 @@ def _scan(network: PoseNetwork, picture: Image, known: Sequence[Pose]) -> list[P
             if any(_overlap(crop, pose.crop) for pose in chain(known, found)):
                 continue
             pose = network(picture, crop)
-            looks = LOOKS if pose.presence > FEWEST_HIDDEN else 0
+            looks = 2 if pose.presence > 0.3 else 0  # somebody may be there, in another place of the crop
             for _ in range(looks):
                 pose = network(picture, pose.crop)
-            sure = pose.presence > SURE and pose.score.mean() > NEW_SCORE and _is_inside(pose, picture)
+            sure = pose.presence > 0.9 and pose.score.mean() > 0.5 and _is_inside(pose, picture)
             if looks and sure and pose.crop.side > SMALLEST * largest:
                 here.append(pose)
         for pose in sorted(here, key=lambda one: -one.presence * float(one.score.mean())):
-            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < MOST_PEOPLE:
+            if not _is_among(pose, [*known, *found]) and len(known) + len(found) < 4:
                 found.append(pose)
                 largest = max(largest, pose.crop.side)
         if found and not known and number:  # somebody else may be one size smaller
@@ -205,7 +183,6 @@ def _grid(picture: Image, side: float) -> Iterator[Crop]:
 
 
 def _is_inside(pose: Pose, picture: Image) -> bool:
-    """Whether the middle of a person is in the picture."""
     return bool((pose.crop.center > 0.0).all() and (pose.crop.center < picture.shape[1::-1]).all())
 
 
@@ -228,7 +205,7 @@ def _believed(seen: Sequence[Sequence[_Sighting]]) -> list[list[Pose]]:
     for one in chain.from_iterable(seen):
         sides.setdefault(one.track, []).append(one.pose.crop.side)
     longest = max(map(len, sides.values()), default=0)
-    kept = {track for track, own in sides.items() if len(own) >= min(longest, FEWEST_FRAMES)}
+    kept = {track for track, own in sides.items() if len(own) >= min(longest, 4)}
     if all(len(frame) < 2 for frame in seen) and kept:
         usual = float(np.median(max(sides.values(), key=len)))
         alike = (usual / MOST_OTHER, usual * MOST_OTHER)

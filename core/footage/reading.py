@@ -18,29 +18,19 @@ from .clips.frame_checks import NO_FINDINGS, FrameChecks, FrameFindings
 from .clips.image_sequence import find_images
 from .ignored_regions import IgnoredRegion
 from .markers import assign_detections, detect_markers, still_valid
-from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, RegionTracks
-from .segmentation.regions import Regions
+from .region_tracks import Detections, ExpectedRegions, LearningRound, MarkerStyle, Regions, RegionTracks
 
 
 @dataclass(frozen=True, eq=False)
 class Reading:
     """Result of one pass over a clip."""
 
-    tracks: RegionTracks
-    """The markers' regions in every frame."""
-    album: Album | None = None
-    """A small picture of every frame; None where only markers are used."""
-    detections: Detections | None = None
-    """All regions of the markers' colors; None where they were not kept."""
-    notes: tuple[str, ...] = ()
-    """Sentences on possible faults of the clip."""
-    key: str = ""
-    """Cache key of the clip and the settings, see `reading_key`; empty where unknown."""
-    frame_findings: FrameFindings = NO_FINDINGS
-    """Blank frames, cuts and interlacing."""
-
-
-# --- A reading as named arrays of numbers and text, and back
+    tracks: RegionTracks  # the markers' regions in every frame
+    album: Album | None = None  # a small picture of every frame; None where only markers are used
+    detections: Detections | None = None  # all regions of the markers' colors; None where they were not kept
+    notes: tuple[str, ...] = ()  # sentences on possible faults of the clip
+    key: str = ""  # cache key of the clip and the settings, see `reading_key`; empty where unknown
+    frame_findings: FrameFindings = NO_FINDINGS  # blank frames, cuts and interlacing
 
 
 Arrays = dict[str, NDArray[Any]]
@@ -70,11 +60,7 @@ def reading_arrays(reading: Reading) -> Arrays:
 
 
 def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
-    """The reading that `reading_arrays` gave as arrays.
-
-    Raises:
-        KeyError, ValueError: They are not of a reading.
-    """
+    """The reading that `reading_arrays` gave; KeyError or ValueError where they are not of one."""
     width, height = arrays["tracks.size"].tolist()
     tracks = RegionTracks(
         names=tuple(arrays["tracks.names"].tolist()),
@@ -91,9 +77,8 @@ def reading_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Reading:
 
 
 def _under(name: str, arrays: Mapping[str, NDArray[Any]]) -> Arrays:
-    return {
-        key.removeprefix(f"{name}."): array for key, array in arrays.items() if key.startswith(f"{name}.")
-    }
+    start = f"{name}."
+    return {key.removeprefix(start): array for key, array in arrays.items() if key.startswith(start)}
 
 
 def _text(lines: tuple[str, ...]) -> NDArray[Any]:
@@ -128,14 +113,7 @@ def _detections(arrays: Arrays, tracks: RegionTracks) -> Detections:
     return Detections(regions, tracks.time_s, tracks.size, learning_rounds, samples)
 
 
-# --- Cache key of a reading
-
-
-FORMAT = 2
-"""Version of the reading's algorithm and arrays; raised whenever either changes."""
-MOST_SAMPLED = 24
-"""Images of a longer sequence whose content is hashed, evenly spread."""
-PREFIX = "reading"
+FORMAT = 2  # version of the reading's algorithm and arrays; raised whenever either changes
 
 
 def reading_key(
@@ -145,26 +123,11 @@ def reading_key(
     expected: ExpectedRegions | None,
     ignored: Sequence[IgnoredRegion] = (),
 ) -> str:
-    """Cache key that changes with everything a reading depends on.
-
-    Args:
-        path: The clip, as `Clip.open` takes it.
-        fps: Frames per second of an image sequence.
-        styles: The markers.
-        expected: Their expected regions.
-        ignored: Regions of the picture that are never a marker.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
-    try:
-        footage = _footage(path, fps)
-    except OSError as error:
-        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    """Cache key that changes with everything a reading depends on, of a clip as `Clip.open` takes it."""
     wanted = tuple((style.name, style.segment, tuple(style.color_srgb)) for style in styles)
     regions = None if expected is None else (expected.center, expected.radius)
     left_out = [(one.box, one.stroke, one.radius_px, one.frames) for one in ignored] if wanted else []
-    return f"{PREFIX}-{digest(FORMAT, footage, wanted, *left_out)}-{digest(regions)}"
+    return f"reading-{digest(FORMAT, _footage(path, fps), wanted, *left_out)}-{digest(regions)}"
 
 
 def of_same_footage(key: str, other: str) -> bool:
@@ -173,31 +136,21 @@ def of_same_footage(key: str, other: str) -> bool:
 
 
 def footage_digest(path: Path) -> str:
-    """Digest of a clip's file, or of the images of a sequence, independent of their folder.
-
-    Args:
-        path: The clip, as `Clip.open` takes it.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
-    try:
-        return digest(*_footage(path, 0.0))
-    except OSError as error:
-        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
+    """Digest of a clip's file, or of the images of a sequence, independent of their folder."""
+    return digest(*_footage(path, 0.0))
 
 
 def _footage(path: Path, fps: float) -> tuple[object, ...]:
-    images = find_images(path)
-    if images is None:
-        return (file_fingerprint(path),)
-    states = [file.stat() for file in images]
-    names = tuple((file.name, one.st_size, one.st_mtime_ns) for file, one in zip(images, states, strict=True))
-    step = max(1, len(images) // MOST_SAMPLED)
-    return fps, names, tuple(file_fingerprint(file) for file in images[::step])
-
-
-# --- One pass over a clip for all later steps, or none where a cached reading is still valid
+    try:
+        images = find_images(path)
+        if images is None:
+            return (file_fingerprint(path),)
+        states = [(file.name, file.stat()) for file in images]
+        names = tuple((name, state.st_size, state.st_mtime_ns) for name, state in states)
+        some = images[:: max(1, len(images) // 24)]
+        return fps, names, tuple(file_fingerprint(file) for file in some)
+    except OSError as error:
+        raise InputError(f"{path}: the clip cannot be read ({error.strerror})") from error
 
 
 def read_clip(
@@ -210,21 +163,9 @@ def read_clip(
 ) -> Generator[float, None, Reading]:
     """Track the markers through a clip, check its frames and keep a small picture of each.
 
-    Args:
-        clip: The footage.
-        styles: The markers.
-        expected: Expected regions of the markers; optional.
-        with_album: Whether pictures are kept.
-        kept: A cached reading, of any clip. It is returned without decoding the clip if its key is the same;
-            if only the expected regions differ and the colors would be learned alike, its detections are
-            assigned to the markers anew.
-        ignored: Regions of the picture that are never a marker.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The reading, to the last digit the same as without a cached one.
+    A cached reading of any clip may be `kept`: it is returned without decoding the clip if its key is the
+    same; if only the expected regions differ and the colors would be learned alike, its detections are
+    assigned to the markers anew. The result is the same to the last digit. Yields the fraction done.
 
     Raises:
         InputError: The clip shows nothing, a marker's color matches nothing, or a frame cannot be read.
@@ -240,11 +181,16 @@ def read_clip(
         if seen is not None and same and still_valid(seen, styles, expected, ignored):
             return replace(kept, tracks=assign_detections(seen, styles, expected), key=key)
     album, checks = Album() if with_album else None, FrameChecks()
+    watched = watch_clip(clip, checks, album)
     if not styles:
-        tracks = yield from _watch(watch_clip(clip, checks, album))
+        time_s: list[float] = []
+        for _, stamp, _ in watched.frames():
+            time_s.append(stamp)
+            yield min(len(time_s) / clip.frame_count, 1.0)
+        tracks = RegionTracks.unmarked(np.array(time_s), clip.size)
         return Reading(tracks, album, key=key, frame_findings=checks.findings())
     try:
-        seen = yield from detect_markers(watch_clip(clip, checks, album), styles, expected, ignored)
+        seen = yield from detect_markers(watched, styles, expected, ignored)
     except InputError as error:
         why = checks.nothing_seen()
         if why is not None:
@@ -253,25 +199,11 @@ def read_clip(
             raise InputError("; ".join([str(error), *clip.notes])) from error
         raise
     yield 1.0
-    return Reading(
-        assign_detections(seen, styles, expected), album, seen, key=key, frame_findings=checks.findings()
-    )
+    tracks = assign_detections(seen, styles, expected)
+    return Reading(tracks, album, seen, key=key, frame_findings=checks.findings())
 
 
-def _watch(clip: Clip) -> Generator[float, None, RegionTracks]:
-    """Decode a clip in which no marker is followed, for its checks, pictures and times."""
-    time_s: list[float] = []
-    for _, stamp, _ in clip.frames():
-        time_s.append(stamp)
-        yield min(len(time_s) / clip.frame_count, 1.0)
-    return RegionTracks.unmarked(np.array(time_s), clip.size)
-
-
-# --- Times of a clip's frames
-
-
-MOST_CLIPS = 8
-"""Clips whose times are remembered: those of the takes at hand."""
+MOST_CLIPS = 8  # clips whose times are remembered: those of the takes at hand
 _known: dict[tuple[str, float], Array] = {}
 
 
@@ -281,39 +213,24 @@ def clip_times(
     styles: Sequence[MarkerStyle] = (),
     ignored: Sequence[IgnoredRegion] = (),
 ) -> Generator[float, None, Array]:
-    """Find the time of every frame of a clip, by a pass over it unless its file is known and unchanged.
+    """The times (F,) [s] of all frames, by a pass over the clip unless its file is known and unchanged.
 
-    Args:
-        clip: The clip.
-        kept: A cached reading of any clip; it knows the times where it is one of this clip, ...
-        styles: ... with these markers ...
-        ignored: ... and these regions that are never one.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        (F,) times [s].
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
+    A cached reading knows them where it is one of this clip with these markers and ignored regions. Yields
+    the fraction done.
     """
     key = footage_digest(clip.path), clip.fps
-    if key not in _known and kept is not None:
-        own = reading_key(clip.path, clip.fps, styles, None, ignored)
-        if of_same_footage(kept.key, own):
-            _remember(key, kept.tracks.time_s)
     if key not in _known:
-        stamps: list[float] = []
-        for stamp in clip.source.time_stamps():
-            stamps.append(stamp)
-            yield min(len(stamps) / clip.frame_count, 1.0)
-        _remember(key, np.array(stamps, dtype=np.float64))
+        own = "" if kept is None else reading_key(clip.path, clip.fps, styles, None, ignored)
+        if kept is not None and of_same_footage(kept.key, own):
+            time_s = kept.tracks.time_s.copy()
+        else:
+            stamps: list[float] = []
+            for stamp in clip.source.time_stamps():
+                stamps.append(stamp)
+                yield min(len(stamps) / clip.frame_count, 1.0)
+            time_s = np.array(stamps, dtype=np.float64)
+        time_s.setflags(write=False)
+        _known[key] = time_s
+        for oldest in list(_known)[:-MOST_CLIPS]:
+            del _known[oldest]
     return _known[key]
-
-
-def _remember(key: tuple[str, float], time_s: Array) -> None:
-    _known[key] = time_s.copy()
-    _known[key].setflags(write=False)
-    for oldest in list(_known)[:-MOST_CLIPS]:
-        del _known[oldest]

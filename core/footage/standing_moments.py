@@ -17,49 +17,29 @@ from .camera_evidence import COMMON_LEAN_RAD, STATURE_STD, Uprights
 from .keypoints.keypoints import Keypoints
 from .keypoints.performer import principal_keypoints
 
-APART_S = 0.3
-"""Time after which a posture is another one: half a step of someone who walks."""
-SURE = 0.3
-"""Least confidence of a keypoint."""
-PIXEL_SHARE = 0.025
-"""Standard deviation of a detector's point, and of a rising heel, as a share from ankles to head."""
-LEVEL_SHARE = 0.06
-"""Largest difference of both ankles' heights in the picture, as such a share: a decimeter."""
-LENGTH_STD, LEAN_STD_RAD = 0.025, float(np.radians(3.0))
-"""Of someone who walks: knees bend, heels rise, and the trunk leans."""
-DETECTOR_STD = 0.02
-"""Share by which detectors put ankles and head too high or too low throughout."""
-IN_LINE = float(np.cos(np.radians(15.0)))
-"""Cosine of the largest angle between trunk and legs."""
-PLUMB = float(np.cos(np.radians(30.0)))
-"""The same between the body and the picture's vertical: whoever lies is in line as well."""
-FLIGHT_S, FLIGHT_SHARE = 0.25, 0.12
-"""Whoever leaves the floor falls by 0.3 m in a quarter second, a fifth of the length from ankles to head; who
-walks toward the camera comes down in the picture by less than these shares in that time."""
-MOST_UNLIKE = 0.2
-"""Largest logarithm of the ratio of legs to trunk, relative to that of someone upright in the same clip."""
+IN_LINE = float(np.cos(np.radians(15.0)))  # cosine of the largest angle between trunk and legs
+MOST_UNLIKE = 0.2  # logarithm of the ratio of legs to trunk, relative to that of someone upright
 
 
 def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights:
     """Moments in which the performer is upright, from the middle of the ankles to that of the head.
 
-    Args:
-        keypoints: The performer's.
-        body: The performer's body, or an average one of their height.
-        fps: Frames per second.
+    The body is the performer's, or an average one of their height.
     """
     principal = principal_keypoints(keypoints)
-    pixel = np.where((principal.score >= SURE)[..., None], principal.pixel, np.nan)
+    pixel = np.where((principal.score >= 0.3)[..., None], principal.pixel, np.nan)
     ankle, hip, shoulder = (_middle(pixel, part) for part in ("ankle", "hip", "shoulder"))
     head = pixel[:, HUMAN.point_names.index("head")]
     height = _heights(body)
     legs, trunk = hip - ankle, shoulder - hip
     usual = (height["hip"] - height["ankle"]) / (height["shoulder"] - height["hip"])
     straight = _along(legs, trunk, IN_LINE) & _along(trunk, head - shoulder, IN_LINE)
-    upright = straight & _along(head - ankle, np.array([0.0, -1.0]), PLUMB)
+    # Whoever lies is in line as well.
+    upright = straight & _along(head - ankle, np.array([0.0, -1.0]), float(np.cos(np.radians(30.0))))
     feet = pixel[:, [HUMAN.point_names.index(f"ankle.{side}") for side in SIDES], 1]
     with np.errstate(invalid="ignore"):
-        upright &= np.abs(feet[:, 0] - feet[:, 1]) < LEVEL_SHARE * np.linalg.norm(head - ankle, axis=-1)
+        # Ankles are level to a decimeter.
+        upright &= np.abs(feet[:, 0] - feet[:, 1]) < 0.06 * np.linalg.norm(head - ankle, axis=-1)
     upright &= _on_floor(ankle[:, 1], np.linalg.norm(head - ankle, axis=-1), fps)
     chosen = _apart(upright & _as_long(legs, trunk, usual), fps)
     size = np.linalg.norm(head - ankle, axis=-1)[chosen]
@@ -69,10 +49,10 @@ def standing_keypoints(keypoints: Keypoints, body: Body, fps: float) -> Uprights
         upper_px=head[chosen],
         lower_m=height["ankle"] * ones,
         length_m=(height["head"] - height["ankle"]) * ones,
-        pixel_std=PIXEL_SHARE * size,
-        length_std=LENGTH_STD * ones,
-        lean_std_rad=LEAN_STD_RAD * ones,
-        common_std=float(np.hypot(STATURE_STD, DETECTOR_STD)),
+        pixel_std=0.025 * size,  # a detector's point, a rising heel
+        length_std=0.025 * ones,  # knees bend, and the trunk leans
+        lean_std_rad=float(np.radians(3.0)) * ones,
+        common_std=float(np.hypot(STATURE_STD, 0.02)),  # detectors put ankles or heads too high throughout
         common_lean_rad=COMMON_LEAN_RAD,
         doubtful=True,
     )
@@ -98,19 +78,15 @@ def _along(first: Array, second: Array, least: float) -> BoolArray:
 
 
 def _on_floor(row: Array, size: Array, fps: float) -> BoolArray:
-    """(F,) whether the feet's row (F,) in the picture hardly changes about each frame.
-
-    Args:
-        row: Their rows [px].
-        size: (F,) length of the body in the picture [px].
-        fps: Frames per second.
-    """
-    reach = max(1, round(FLIGHT_S * fps))
+    """(F,) whether the feet's row (F,) hardly changes about each frame, beside the body's size (F,) [px]."""
+    # Who leaves the floor falls by 0.3 m in a quarter second, a fifth of the length from ankles to head; who
+    # walks toward the camera comes down in the picture by less than an eighth of it.
+    reach = max(1, round(0.25 * fps))
     padded = np.pad(row, reach, constant_values=np.nan)
     near = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1)
     with np.errstate(invalid="ignore"):
         apart = np.nanmax(np.where(np.isfinite(near), np.abs(near - row[:, None]), 0.0), axis=1)
-        return np.asarray(apart < FLIGHT_SHARE * size)
+        return np.asarray(apart < 0.12 * size)
 
 
 def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:
@@ -129,8 +105,7 @@ def _as_long(legs: Array, trunk: Array, usual: float) -> BoolArray:
 
 
 def _apart(usable: BoolArray, fps: float) -> IndexArray:
-    """Indices of usable frames, as many as differ from each other."""
-    step = max(1, round(APART_S * fps))
+    step = max(1, round(0.3 * fps))  # seconds, half a step
     chosen: list[int] = []
     for index in np.flatnonzero(usable):
         if not chosen or index - chosen[-1] >= step:

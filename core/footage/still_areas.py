@@ -13,29 +13,19 @@ from .colors.color_model import BACKGROUND, ColorModel
 from .ignored_regions import IgnoredPixels, PixelBox, is_ignored
 from .segmentation.working_image import halvings, smooth
 
-FEW = 0.6
-"""Share of the sampled frames below which a marker is detected too seldom."""
-ENOUGH = 6
-"""Sampled frames needed to tell a marker that is seldom detected from one that was hidden by chance."""
-MUCH = 0.2
-"""Share of confused pixels from which a warning is due."""
-SMALL_PX = 40.0
-"""Pixels of the measuring grid below which a region is hardly more than its border."""
+MUCH = 0.2  # share of confused pixels from which a warning is due
+SMALL_PX = 40.0  # pixels of the measuring grid below which a region is hardly more than its border
 
 
 class Likeness(NamedTuple):
     """Other things that look like a marker."""
 
-    alike: Sequence[str]
-    """Names of the markers of the same color."""
+    alike: Sequence[str]  # names of the markers of the same color
     claimed: Sequence[tuple[str, float]]
     """Names of the other colors' markers, each with the share of the marker's pixels classified as theirs."""
-    background: float
-    """Share of the marker's pixels classified as background."""
-    clutter: float
-    """Share of the area of its color that is no marker's."""
-    rivals: float
-    """Share of the area of its color's markers that is another marker's."""
+    background: float  # share of the marker's pixels classified as background
+    clutter: float  # share of the area of its color that is no marker's
+    rivals: float  # share of the area of its color's markers that is another marker's
 
 
 def marker_warnings(
@@ -43,13 +33,7 @@ def marker_warnings(
 ) -> tuple[str, ...]:
     """Warnings of a marker that was detected, the gravest first.
 
-    Args:
-        name: The marker's name.
-        found: Number of frames in which it is detected.
-        sampled: Number of sampled frames.
-        grid_area: Its median area in pixels of the measuring grid.
-        likeness: Other things that look like it.
-        still: Where in the picture still areas have its color.
+    `grid_area` is its median area in pixels of the measuring grid; `still` says where its color stays still.
     """
     sentences = alike_warnings(name, likeness.alike)
     sentences += [
@@ -72,7 +56,7 @@ def marker_warnings(
             f"the color of {name} also stays still {' and '.join(still)} of the picture, which is "
             "surely no marker"
         )
-    if sampled >= ENOUGH and found < FEW * sampled:
+    if sampled >= 6 and found < 0.6 * sampled:  # fewer may miss a marker by chance
         sentences.append(
             f"{name} is found in only {found} of {sampled} frames; if it is visible in one of the "
             "others, pick its color there"
@@ -86,40 +70,13 @@ def marker_warnings(
 
 def alike_warnings(name: str, alike: Sequence[str]) -> list[str]:
     """A sentence on the markers of the same color as one, if there are any."""
-    if not alike:
-        return []
-    return [
-        (
-            f"{name} has almost the same color as {' and '.join(alike)}; only keyframes and paths tell "
-            "them apart"
-        )
-    ]
+    others = " and ".join(alike)
+    told = f"{name} has almost the same color as {others}; only keyframes and paths tell them apart"
+    return [told] if alike else []
 
 
-# --- Still areas
-
-
-NEARLY_ALWAYS = 0.9
-"""Share of the sampled frames in which a still pixel has the color; in others a passing limb may hide it."""
-FEWEST_SAMPLES = 8
-"""Sampled frames from which on that is no chance."""
-ELSEWHERE = 0.5
-"""Share of the sampled frames in which the marker must be seen elsewhere."""
-SELDOM = 0.25
-"""Share of the sampled frames below which a pixel has the color by the marker that passes."""
-MOVES_PX = 2.0 * STILL_STEP_PX
-"""Median distance of a moving marker from its usual place, in pixels of the measuring grid."""
-MOST_UNSURE = 1.5
-"""Most pixels about a still area that have its color now and then, relative to its outline: the ring that
-blends into what is behind it may flicker with the noise, a second ring shows that it moves."""
-LEAST_SHARE = 0.1
-"""Least area of a still area that is worth a word, relative to the marker's."""
-MARGIN = 2
-"""Pixels of the measuring grid around a still area that lens and encoding blend its color into."""
-WELL_FILLED = 0.75
-"""Share of a box from which on one box does for an area; others are cut in two."""
-SMALLEST_SIDE = 8
-"""Side in px of the measuring grid of boxes that are not cut further."""
+NEARLY_ALWAYS = 0.9  # share of the samples in which a still pixel has the color; limbs pass before it
+MARGIN = 2  # pixels of the measuring grid around a still area that lens and encoding blend its color into
 SIDE = cv2.getStructuringElement(cv2.MORPH_RECT, (3, 3))
 THIRDS = (
     ("top left", "top", "top right"),
@@ -135,21 +92,14 @@ def still_areas(
     found: Sequence[Candidates],
     ignored: IgnoredPixels,
 ) -> dict[int, tuple[PixelBox, ...]]:
-    """Boxes around the still areas of each marker's color, by the marker's index.
+    """Boxes around the still areas of each marker's color, by its index, the largest's first, in px.
 
-    Args:
-        samples: Frames spread over the clip.
-        model: The colors learned from them.
-        groups: The markers of each color; where several share one, either may be the one at rest.
-        found: The regions of each color in the sampled frames.
-        ignored: What is ignored already, by sample.
-
-    Returns:
-        Boxes in pixels of the clip, the largest area's first; none where it is not sure.
+    None where it is not sure, or where several markers share a color: either may be the one at rest. `found`
+    are the regions of each color in the samples.
     """
     boxes: dict[int, tuple[PixelBox, ...]] = {marker: () for group in groups for marker in group}
     count = len(samples.images)
-    if count < FEWEST_SAMPLES:
+    if count < 8:
         return boxes
     labels = np.stack([model.labels(smooth(image)) for image in samples.images])
     for index in range(count):
@@ -176,14 +126,11 @@ def places(boxes: Sequence[PixelBox], size: tuple[int, int]) -> tuple[str, ...]:
 def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[PixelBox, ...]:
     """Boxes around the still areas that are no marker, in px of a clip of (width, height).
 
-    Args:
-        share: (rows, columns) share of the sampled frames in which each pixel has the color.
-        found: The regions of the color in the sampled frames.
-        size: Width and height of the clip.
+    `share` (rows, columns) is that of the sampled frames in which each pixel has the color.
     """
     scale, still = 1 << halvings(size), share >= NEARLY_ALWAYS
     grown = np.asarray(cv2.dilate(still.view(np.uint8), SIDE, iterations=MARGIN), dtype=np.uint8)
-    least = LEAST_SHARE * _moving_area(grown, found, scale)
+    least = 0.1 * _moving_area(grown, found, scale)  # less is not worth a word
     if not least:
         return ()
     count, number, stats, _ = cv2.connectedComponentsWithStats(grown, connectivity=8)
@@ -200,26 +147,18 @@ def _boxes(share: Array, found: Candidates, size: tuple[int, int]) -> tuple[Pixe
 
 
 def _rests(area: BoolArray, share: Array) -> bool:
-    """Whether the outline of a still area rests: few pixels about it have the color now and then.
-
-    Args:
-        area: (rows, columns) the still area.
-        share: (rows, columns) share of the sampled frames in which each pixel has the color.
-    """
+    """Whether the outline of a still area rests: few pixels about it have the color now and then."""
     mask = area.view(np.uint8)
     around = cv2.dilate(mask, SIDE, iterations=2 * MARGIN).view(np.bool_)
-    now_and_then = around & (share >= SELDOM) & (share < NEARLY_ALWAYS)
+    now_and_then = around & (share >= 0.25) & (share < NEARLY_ALWAYS)  # by the marker that passes
     outline = np.count_nonzero(mask) - np.count_nonzero(cv2.erode(mask, SIDE))
-    return bool(np.count_nonzero(now_and_then) <= MOST_UNSURE * outline)
+    return bool(np.count_nonzero(now_and_then) <= 1.5 * outline)  # a second ring shows that it moves
 
 
 def _moving_area(still: Image, found: Candidates, scale: int) -> float:
     """Usual area of what moves beside the still areas, in pixels of the measuring grid; 0 if it is not sure.
 
-    Args:
-        still: (rows, columns) 1 in the still areas and around them.
-        found: The regions of the color in N sampled frames.
-        scale: Pixels of the clip to one of the grid.
+    `still` (rows, columns) is 1 in and around them, `scale` pixels of the clip to one of the grid.
     """
     place, area = found.centroid / scale, found.area / scale**2
     total = cv2.integral(still)
@@ -228,12 +167,12 @@ def _moving_area(still: Image, found: Candidates, scale: int) -> float:
     beside = np.flatnonzero((within < 0.5 * area) & (area >= SMALL_PX))
     # A frame's regions begin with the largest.
     frames, first = np.unique(found.frame[beside], return_index=True)
-    if len(frames) < ELSEWHERE * (len(found.start) - 1):
+    if len(frames) < 0.5 * (len(found.start) - 1):
         return 0.0
     largest = beside[first]
     usual = float(np.median(area[largest]))
     away = np.linalg.norm(place[largest] - np.median(place[largest], axis=0), axis=1)
-    return usual if float(np.median(away)) >= MOVES_PX else 0.0
+    return usual if float(np.median(away)) >= (2.0 * STILL_STEP_PX) else 0.0
 
 
 def _covering(mask: Image, left: int, top: int) -> list[tuple[int, int, int, int]]:
@@ -244,7 +183,7 @@ def _covering(mask: Image, left: int, top: int) -> list[tuple[int, int, int, int
     part = np.ascontiguousarray(mask[y : y + rows, x : x + columns])
     left, top = left + x, top + y
     filled = cv2.countNonZero(part) / part.size
-    if filled >= WELL_FILLED or max(columns, rows) <= SMALLEST_SIDE:
+    if filled >= 0.75 or max(columns, rows) <= 8:
         return [(left, top, left + columns, top + rows)]
     if columns >= rows:
         half = columns // 2

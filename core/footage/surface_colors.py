@@ -12,25 +12,9 @@ from .appearance import CELL_VOLUME, LEVELS, NO_PART, UNSEEN, UNSEEN_LOG_DENSITY
 from .clips.album import Album
 from .segmentation.unmixing import Surface, contrast, mixed, surface_of
 
-LEARNED_FRAMES = 8
-WHOLE = 0.6
-"""Least quality of regions that a marker's color is learned from, where there are any."""
-INNER = 1.0
-"""Squared distance from a region's center, in its deviations, within which a pixel is clear of the edge."""
-FEWEST_INNER = 3
-LEAST_MASS = 0.07
-"""Least share of a part's pixels that have a color of its own."""
-MOST_COLORS = 4
-"""Of a part."""
-NEAR_CELLS = 2
-"""Cells around a common one that belong to its color."""
+NEAR_CELLS = 2  # cells around a common one that belong to its color
 PART_DEVIATION = 5.0
-APART = 12.0
-"""Distance of colors that are two surfaces', in levels of `contrast`."""
-OWN_SHARE = 0.1
-"""Share of a marker's color from which another is a mixture with it: of a sleeve's shaded side, or edge."""
-GRAY = np.array([60.0, 0.0, 0.0])
-"""Middle gray: what markers' edges are mixed with in front of most walls."""
+APART = 12.0  # distance of colors that are two surfaces', in levels of `contrast`
 
 
 def marker_surfaces(
@@ -38,11 +22,7 @@ def marker_surfaces(
 ) -> list[Surface | None]:
     """The color of each of M markers in an album; None where it is never seen well enough.
 
-    Args:
-        album: Pictures of the frames.
-        centroid: (F, M, 2) of the markers' regions [px of the clip]; NaN where hidden.
-        second_moment: (F, M, 2, 2).
-        quality: (F, M).
+    Arrays (F, M, ...) are those of `RegionTracks`.
     """
     return [
         _marker_surface(album, centroid[:, m], second_moment[:, m], quality[:, m])
@@ -55,8 +35,9 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
     usual = np.where(there & np.isfinite(centroid[:, 0]), quality, 0.0)
     if not usual.any():
         return None
-    good = np.flatnonzero(usual >= min(WHOLE, float(np.median(usual[usual > 0.0]))))
-    chosen = good[np.unique(np.linspace(0, len(good) - 1, LEARNED_FRAMES).round().astype(np.intp))]
+    # Well seen regions, where there are any.
+    good = np.flatnonzero(usual >= min(0.6, float(np.median(usual[usual > 0.0]))))
+    chosen = good[np.unique(np.linspace(0, len(good) - 1, 8).round().astype(np.intp))]
     inside = []
     for frame in chosen.tolist():
         picture = album.picture(frame)
@@ -67,28 +48,24 @@ def _marker_surface(album: Album, centroid: Array, second_moment: Array, quality
         row, column = np.indices((max(bottom - top, 0), max(right - left, 0)))
         offset = (np.stack([column + left, row + top], axis=-1) + 0.5) * album.factor - centroid[frame]
         away = np.einsum("rci,ij,rcj->rc", offset, np.linalg.pinv(second_moment[frame]), offset)
-        pixels = picture[top:bottom, left:right][away < INNER]
-        if len(pixels) >= FEWEST_INNER:
+        pixels = picture[top:bottom, left:right][away < 1.0]  # clear of the edge
+        if len(pixels) >= 3:
             inside.append(pixels)
     return surface_of(np.concatenate(inside)) if inside else None
 
 
 def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
-    """Colors that the body's parts commonly have, the commonest first.
-
-    Returns:
-        Colors (K, 3) as `contrast` gives them, and the part (K,) that each was seen on.
-    """
+    """Common colors (K, 3), as of `contrast`, of parts, the commonest first, and those parts (K,)."""
     found: list[tuple[float, int, Array]] = []
     for part, log_density in enumerate(appearance.parts[:-1]):
         share = np.exp(log_density.astype(np.float64)) - 1.01 * np.exp(UNSEEN_LOG_DENSITY)
         share = np.maximum(share, 0.0).reshape(LEVELS, LEVELS, LEVELS) * CELL_VOLUME
         whole = share.sum()
-        for _ in range(MOST_COLORS):
+        for _ in range(4):
             peak = np.unravel_index(int(share.argmax()), share.shape)
             near = tuple(slice(max(int(at) - NEAR_CELLS, 0), int(at) + NEAR_CELLS + 1) for at in peak)
             mass = float(share[near].sum())
-            if mass < LEAST_MASS * whole or mass == 0.0:
+            if mass < 0.07 * whole or mass == 0.0:  # of a part with at most four colors of its own
                 break
             cells = np.moveaxis(np.indices(share[near].shape), 0, -1) + [one.start for one in near]
             color = (share[near][..., None] * (cells + 0.5)).sum(axis=(0, 1, 2)) * (256.0 / LEVELS) / mass
@@ -102,10 +79,7 @@ def common_colors(appearance: Appearance) -> tuple[Array, IndexArray]:
 def bare_surfaces(common: Array, markers: Sequence[Surface | None], beside: BoolArray) -> list[Surface]:
     """The body's surfaces that no marker covers: its common colors without the markers' own and their edges'.
 
-    Args:
-        common: (K, 3) colors of the body as `common_colors` gives them.
-        markers: The M markers' colors.
-        beside: (K, M) whether a color was seen on the limb that a marker is worn on.
+    `beside` (K, M) says whether a color was seen on the limb that a marker is worn on.
     """
     worn = [one for one in markers if one is not None]
     bare: list[Surface] = []
@@ -126,10 +100,12 @@ def _is_near(color: Array, known: Array) -> bool:
 
 def _is_blend(color: Array, marker: Surface, known: Array) -> bool:
     """Whether a color is a mixture of a marker's with black, gray or a known one (K, 3)."""
-    ends = np.concatenate([np.zeros((1, 3)), GRAY[None], known])
+    # What markers' edges are mixed with in front of most walls.
+    ends = np.concatenate([np.zeros((1, 3)), np.array([60.0, 0.0, 0.0])[None], known])
     share, _ = mixed(color, ends, PART_DEVIATION, marker.color, PART_DEVIATION)
     at = ends + share[:, None] * (marker.color - ends)
-    return bool(((share > OWN_SHARE) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
+    # Of a sleeve's shaded side, or edge.
+    return bool(((share > 0.1) & (np.linalg.norm(at - color, axis=-1) < APART)).any())
 
 
 def is_alike(one: Surface, other: Surface) -> bool:
@@ -143,44 +119,29 @@ def usual_background(appearance: Appearance) -> SingleArray:
     return np.where(known, appearance.color, np.nan).astype(np.float32)
 
 
-# --- Colors along limbs
-
-
-BANDS = 6
-"""Bands of a part's length."""
-BITS = 4
-"""Coarser than whole parts' colors: a band has a sixth of their pixels."""
-LEVELS_BAND_COLORS = 1 << BITS
-CELLS = LEVELS_BAND_COLORS**3
-BLUR = np.array([0.16, 0.68, 0.16])
-"""Smoothing of a histogram along each of its axes: noise of a few levels."""
-SHARED = 0.25
-"""Share of a band's colors that are the whole part's: folds and shadows wander."""
+BANDS = 6  # bands of a part's length
+BITS = 4  # coarser than whole parts' colors: a band has a sixth of their pixels
+BAND_LEVELS = 1 << BITS
+CELLS = BAND_LEVELS**3
+SHARED = 0.25  # share of a band's colors that are the whole part's: folds and shadows wander
 
 
 @dataclass(frozen=True, eq=False)
 class BandColors:
     """Log likelihoods of colors, as densities per cell."""
 
-    bands: Array
-    """(O, BANDS, cells) of each part's bands."""
-    parts: Array
-    """(O, cells) of whole parts."""
-    anything: Array
-    """(cells,) of performer and background together."""
+    bands: Array  # (O, BANDS, cells) of each part's bands
+    parts: Array  # (O, cells) of whole parts
+    anything: Array  # (cells,) of performer and background together
 
 
 def learn_band_colors(
     images: list[Image], labels: list[NDArray[np.int8]], shares: list[Array], count: int
 ) -> BandColors:
-    """Learn the colors along all parts.
+    """Learn the colors along all O parts, from frames and labels as in `learn_appearance`.
 
-    Args:
-        images: Frames (rows, columns, 3).
-        labels: For each, (rows, columns) the visible part of the body, `NO_PART` for none.
-        shares: For each, (rows, columns) the place along that part, from 0 to 1 between its ends; NaN where
-            the part is seen end on.
-        count: Number of parts, O.
+    `shares` are (rows, columns) the place along the visible part, from 0 to 1 between its ends; NaN where it
+    is seen end on.
     """
     size = count * BANDS * CELLS
     counts, background = np.zeros(size), np.zeros(CELLS)
@@ -205,9 +166,10 @@ def band_cells(pixels: Image) -> IndexArray:
 
 def _densities(counts: Array) -> Array:
     """Densities per cell of smoothed histograms (..., cells); an empty one is even."""
-    grid = counts.reshape(*counts.shape[:-1], LEVELS_BAND_COLORS, LEVELS_BAND_COLORS, LEVELS_BAND_COLORS)
+    grid = counts.reshape(*counts.shape[:-1], BAND_LEVELS, BAND_LEVELS, BAND_LEVELS)
     for axis in (-3, -2, -1):
-        grid = correlate1d(grid, BLUR, axis=axis, mode="nearest")
+        # Noise of a few levels.
+        grid = correlate1d(grid, np.array([0.16, 0.68, 0.16]), axis=axis, mode="nearest")
     smoothed = grid.reshape(counts.shape)
     total = smoothed.sum(axis=-1, keepdims=True)
     share = np.where(total > 0.0, smoothed / np.maximum(total, 1.0), 1.0 / CELLS)

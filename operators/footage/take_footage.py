@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 
 from ...core.errors import InputError
-from ...core.footage.clips.clip_timing import is_variable_frame_rate
+from ...core.footage.region_tracks import is_variable_frame_rate
 from ..bridge.footage import attach_footage, clip_path, is_guess
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
 from ..shell.results import clear_review

@@ -14,29 +14,25 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, BoolArray, Image, IndexArray
 from ..segmentation.working_image import halvings, learning_image, measuring_image, smooth
-from .clip import Clip, FrameSource
+from .clip import Clip
 from .frame_checks import FrameChecks
-
-QUALITY = 90
-"""JPEG quality; its error stays below that of the video's compression."""
 
 
 @dataclass(eq=False)
 class Album:
     """Small pictures of the frames read so far, on the grid that colors are learned on."""
 
-    factor: int = 1
-    """Pixels of the clip to a pixel of the pictures, along either axis."""
+    factor: int = 1  # pixels of the clip to a pixel of the pictures, along either axis
     _pictures: dict[int, Image] = field(default_factory=dict)
-    _room: int = 0
-    """Bytes of pictures that may be kept as they are."""
+    _room: int = 0  # bytes of pictures that may be kept as they are
     _opened: dict[int, Image] = field(default_factory=dict)
 
     def add(self, index: int, image: Image) -> None:
         """Keep a frame (rows, columns, 3)."""
         small = learning_image(measuring_image(image, halvings((image.shape[1], image.shape[0]))))
         self.factor = image.shape[1] // small.shape[1]
-        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])
+        # Errs less than the video's compression.
+        _, packed = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, 90])
         self._pictures[index] = packed
 
     def every(self, step: int) -> "Album":
@@ -67,13 +63,10 @@ class Album:
         return cls(int(arrays["factor"]), kept)
 
     def __contains__(self, index: int) -> bool:
-        """Whether there is a picture of a frame."""
         return index in self._pictures
 
     def pictures(self, indices: Sequence[int] | IndexArray) -> tuple[Image, BoolArray]:
-        """The small pictures of F frames (F, rows, columns, 3), and (F,) which of them exist.
-
-        Missing ones are black.
+        """The small pictures (F, rows, columns, 3) of F frames, and (F,) which exist; others are black.
 
         Raises:
             KeyError: The album is empty.
@@ -103,70 +96,33 @@ class Album:
         return image
 
 
-# --- A clip whose frames are checked and kept in an album while they are read, to decode it only once
+@dataclass(frozen=True, kw_only=True)
+class _WatchedClip(Clip):
+    """A clip that passes every frame to checks and album before yielding it."""
 
-
-@dataclass(eq=False)
-class _WatchedSource:
-    """A source of frames that passes every frame to checks and album before yielding it."""
-
-    size: tuple[int, int]
-    fps: float
-    frame_count: int
-    source: FrameSource
     checks: FrameChecks
     album: Album | None
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Yield every frame after checking it; blank ones are not kept in the album."""
+        """See `Clip.frames`; blank ones are not kept in the album."""
         for index, time_s, image in self.source.frames():
             if self.checks.add(index, image) and self.album is not None:
                 self.album.add(index, image)
             yield index, time_s, image
 
-    def time_stamps(self) -> Iterator[float]:
-        """Yield the time of every frame."""
-        return self.source.time_stamps()
-
-    def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
-        """Yield the frames of ascending indices."""
-        return self.source.at(indices)
-
-    def onward(self, first: int) -> Iterator[tuple[float, Image]]:
-        """Yield the frames from about `first` on."""
-        return self.source.onward(first)
-
 
 def watch_clip(clip: Clip, checks: FrameChecks, album: Album | None) -> Clip:
     """The clip with checks, and an album to fill, that run while its frames are read in order."""
-    source = _WatchedSource(clip.size, clip.fps, clip.frame_count, clip.source, checks, album)
-    return Clip(clip.path, source)
+    return _WatchedClip(clip.path, clip.source, checks=checks, album=album)
 
 
-# --- How much a clip's pictures change from frame to frame
-
-
-NOISE_FACTOR = 4.0
-"""A pixel changes where its difference exceeds the picture's usual one this many times ..."""
-LEAST_LEVELS = 6.0
-"""... and this many of 256 levels."""
-MAD_TO_STD = 1.4826
-TAIL_PERCENT = 2.0
-"""Share of the changes at either edge that are not the performer's."""
+TAIL_PERCENT = 2.0  # share of the changes at either edge that are not the performer's
 
 
 def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
-    """Roughly the speed of whatever moves in front of a camera that stands still.
+    """Roughly the speed (F,) [px per frame] of whatever moves in front of a camera that stands still.
 
-    Args:
-        album: The pictures; missing ones repeat the one before.
-        frames: Number of frames F of the clip.
-
-    Yields:
-        The fraction done.
-
-    Returns:
-        (F,) [px per frame], zero where nothing changes.
+    Zero where nothing changes. Missing pictures repeat the one before. Yields the fraction done.
     """
     swept = np.zeros(max(frames - 1, 0))
     rows: Array | None = None
@@ -192,5 +148,5 @@ def picture_motion(album: Album, frames: int) -> Generator[float, None, Array]:
 def _changed(difference: Array) -> BoolArray:
     """Pixels that change, beside noise and the light of the whole picture."""
     difference = np.abs(difference - np.median(difference))
-    usual = MAD_TO_STD * float(np.median(difference))
-    return np.asarray(difference > max(NOISE_FACTOR * usual, LEAST_LEVELS))
+    usual = 1.4826 * float(np.median(difference))
+    return np.asarray(difference > max(4.0 * usual, 6.0))

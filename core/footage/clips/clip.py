@@ -7,16 +7,12 @@ from typing import Protocol
 
 import numpy as np
 
-from ...arrays import Array, Image
+from ...arrays import Image
 from ...errors import InputError
 from ..segmentation.working_image import halvings, measuring_image
-from .clip_timing import is_variable_frame_rate
 from .container import quickly_found
 from .image_sequence import ImageSequence, find_images, left_out
 from .video_file import VideoFile
-
-DEFAULT_SEQUENCE_FPS = 24.0
-"""Default frame rate of an image sequence, that of a new Blender scene."""
 
 
 class FrameSource(Protocol):
@@ -28,41 +24,31 @@ class FrameSource(Protocol):
 
     def frames(self) -> Iterator[tuple[int, float, Image]]:
         """Yield index, time in seconds and image of every frame."""
-        ...
 
     def time_stamps(self) -> Iterator[float]:
         """Yield the time in seconds of every frame without converting its picture."""
-        ...
 
     def at(self, indices: Sequence[int]) -> Iterator[tuple[int, Image]]:
         """Yield the frames of ascending indices, as far as they exist."""
-        ...
 
     def onward(self, first: int) -> Iterator[tuple[float, Image]]:
         """Yield time in seconds and image of the frames from about `first` on."""
-        ...
 
 
 @dataclass(frozen=True)
 class Clip:
     """A readable clip; opening it has decoded its first frame."""
 
-    path: Path
-    """The file, folder or pattern it was opened from."""
-    source: FrameSource
-    """Decoder of the frames."""
-    notes: tuple[str, ...] = ()
-    """Sentences on faults of the file itself."""
+    path: Path  # the file, folder or pattern it was opened from
+    source: FrameSource  # decoder of the frames
+    notes: tuple[str, ...] = ()  # sentences on faults of the file itself
 
     @classmethod
     def open(cls, path: str | Path, fps: float | None = None) -> "Clip":
         """Open a video, a folder of images, or a numbered sequence by one of its files or a pattern.
 
-        Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10).
-
-        Args:
-            path: The video, folder, numbered image or pattern.
-            fps: Frames per second of an image sequence; a video has its own.
+        Patterns are `img_####.png` and `img_%04d.png`. Images follow their numbers (img_2 before img_10);
+        `fps` is theirs, a video has its own.
 
         Raises:
             InputError: The path does not exist, or cannot be decoded.
@@ -70,7 +56,7 @@ class Clip:
         path = Path(path)
         images = find_images(path)
         if images is not None:
-            sequence = ImageSequence(images, fps or DEFAULT_SEQUENCE_FPS)
+            sequence = ImageSequence(images, fps or 24.0)  # that of a new Blender scene
             return cls(path, sequence, left_out(path, images) + sequence.notes)
         if not path.exists():
             raise InputError(f"{path}: no such file; name a video, a folder of images or a numbered image")
@@ -108,15 +94,6 @@ class Clip:
         """
         return self.source.frames()
 
-    def time_stamps(self) -> Array:
-        """The time of every frame in seconds, (F,), by a pass that converts no picture."""
-        return np.fromiter(self.source.time_stamps(), dtype=np.float64)
-
-    @property
-    def variable_frame_rate(self) -> bool:
-        """Whether the frames are unevenly spaced in time; takes a pass over the clip."""
-        return is_variable_frame_rate(self.time_stamps())
-
     def sample(self, count: int) -> Iterator[tuple[int, Image]]:
         """Yield about `count` frames spread evenly over the clip, each with its index.
 
@@ -130,17 +107,9 @@ class Clip:
         return self.source.at(sorted({int(index) for index in middles}))
 
 
-# --- Frame reader for playback
-
-
 Stamped = tuple[float, Image]
 
-EARLY = 0.1
-"""Share of a frame's interval by which its time stamp may be rounded up."""
-LONGEST_STEP = 12.0
-"""Intervals up to which frames are decoded on the way instead of seeking."""
-BEFORE = 2
-"""Frames before the wanted one at which a seek begins."""
+EARLY = 0.1  # share of a frame's interval by which its time stamp may be rounded up
 
 
 class FrameReader:
@@ -150,29 +119,23 @@ class FrameReader:
     """
 
     def __init__(self, clip: Clip) -> None:
-        """Take a clip; nothing is decoded yet."""
         self._clip = clip
         self._onward: Iterator[Stamped] = iter(())
         self._shown: Stamped | None = None
         self._coming: Stamped | None = None
 
     def image_at(self, time_s: float) -> Image | None:
-        """The last frame that begins no later than a time, (rows, columns, 3) blue, green, red.
+        """The last frame (rows, columns, 3) that begins no later than a time from the first frame.
 
         None before the first frame, and once the last has been shown for an interval.
-
-        Args:
-            time_s: Seconds from the first frame.
-
-        Raises:
-            InputError: The clip is gone, or an image of a sequence cannot be read.
         """
         interval = 1.0 / self._clip.fps
         limit = time_s + EARLY * interval
         if limit < 0.0:
             return None
-        if self._shown is None or not 0.0 <= limit - self._shown[0] < LONGEST_STEP * interval:
-            self._begin(max(int(limit / interval) - BEFORE, 0))
+        # More are not decoded on the way.
+        if self._shown is None or not 0.0 <= limit - self._shown[0] < 12.0 * interval:
+            self._begin(max(int(limit / interval) - 2, 0))
             if self._shown is None or self._shown[0] > limit:
                 self._begin(0)
         while self._coming is not None and self._coming[0] <= limit:
@@ -184,12 +147,8 @@ class FrameReader:
         return self._shown[1]
 
     def _begin(self, first: int) -> None:
-        """Restart the decoder at about frame `first`."""
         self._onward = self._clip.source.onward(first)
         self._shown, self._coming = next(self._onward, None), next(self._onward, None)
-
-
-# --- Clip samples
 
 
 SAMPLED_FRAMES = 24
@@ -200,75 +159,35 @@ SAMPLED_FRAMES = 24
 class ClipSamples:
     """N sampled frames of a clip."""
 
-    path: Path
-    """The clip, for messages."""
-    size: tuple[int, int]
-    """Width and height of its frames in px."""
-    indices: tuple[int, ...]
-    """(N,) their frame indices."""
+    path: Path  # the clip, for messages
+    size: tuple[int, int]  # width and height of its frames in px
+    indices: tuple[int, ...]  # (N,) their frame indices
     images: tuple[Image, ...]
     """Their pictures, (rows, columns, 3) uint8 blue, green, red on the measuring grid."""
 
 
 def sample_clip(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Sample frames evenly over a clip.
-
-    Args:
-        clip: The footage.
-        count: Number of samples; fewer for a shorter clip.
-
-    Yields:
-        The fraction done, from 0 to 1.
+    """Sample up to `count` frames evenly over a clip; yields the fraction done.
 
     Raises:
         InputError: None of them can be read.
     """
-    times = halvings(clip.size)
-    indices: list[int] = []
-    images: list[Image] = []
-    yield 0.0
-    for index, image in clip.sample(count):
-        indices.append(index)
-        images.append(measuring_image(image, times))
-        yield min(len(indices) / min(count, clip.frame_count), 1.0)
-    if not images:
-        raise InputError(f"{clip.path}: none of the sampled frames can be read; the file is damaged")
-    return ClipSamples(clip.path, clip.size, tuple(indices), tuple(images))
+    return _kept(clip, clip.sample(count), min(count, clip.frame_count))
 
 
-# --- Sampling spread frames on a budget
-
-
-MOST_DECODED_PX = 90_000_000
-"""Budget of decoded pixels: about half a second of a processor, at any size."""
-FRAMES_PER_SEARCH = 18
-"""Frames decoded for each seek."""
-MOST_SEARCHES = 12
-IMAGE_COST = 4
-"""Cost of opening an image, in decoded video frames."""
-FEWEST = 3
+MOST_DECODED_PX = 90_000_000  # budget of decoded pixels: about half a second of a processor, at any size
+FRAMES_PER_SEARCH = 18  # frames decoded for each seek
 
 
 def sample_spread_frames(clip: Clip, count: int = SAMPLED_FRAMES) -> Generator[float, None, ClipSamples]:
-    """Sample frames evenly over a clip like `sample_clip`, within a budget of decoded pixels.
-
-    Args:
-        clip: The footage.
-        count: Most samples.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Raises:
-        InputError: None of them can be read.
-    """
+    """Sample frames like `sample_clip`, within a budget of decoded pixels."""
     pixels = clip.size[0] * clip.size[1]
     if not isinstance(clip.source, VideoFile):
-        affordable = max(MOST_DECODED_PX // (IMAGE_COST * pixels), FEWEST)
+        affordable = max(MOST_DECODED_PX // (4 * pixels), 3)  # an image costs as much as four video frames
         return (yield from sample_clip(clip, min(count, affordable)))
     if clip.frame_count * pixels <= MOST_DECODED_PX:
         return (yield from sample_clip(clip, count))
-    most = min(count, MOST_SEARCHES, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), FEWEST))
+    most = min(count, 12, max(MOST_DECODED_PX // (FRAMES_PER_SEARCH * pixels), 3))
     middles = (np.arange(most) + 0.5) * clip.frame_count / most
     indices = quickly_found(clip.path, [int(index) for index in middles])
     if indices:

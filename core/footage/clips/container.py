@@ -14,10 +14,7 @@ from ...arrays import Array, Image
 from ...errors import InputError
 from ...files.control_characters import regular_file_size
 
-DEEP_YUV420 = b"Y3\x0b"
-"""FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows."""
-BLOCK = 16
-"""Coded pictures have a multiple of this many rows."""
+DEEP_YUV420 = b"Y3\x0b"  # FFmpeg's code for planar 4:2:0 YCbCr of more than eight bits; the bit depth follows
 ROWS = 3
 
 
@@ -33,14 +30,11 @@ def opencv_silence() -> Iterator[None]:
 
 
 def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
-    """Repeat the last written row in the uninitialized rows below it.
+    """Repeat the last written row in the uninitialized rows below it, in place.
 
     OpenCV 4.11 does not write the last three rows of pictures of more than eight bits in 4:2:0 whose height
-    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run.
-
-    Args:
-        capture: Source of the image.
-        image: (rows, columns, 3), rotated as the file asks for; changed in place.
+    is no multiple of 16, such as phones' 1080 rows: their content differs from run to run. The image is
+    rotated as the file asks for.
     """
     code = int(capture.get(cv2.CAP_PROP_CODEC_PIXEL_FORMAT)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little")
@@ -48,14 +42,10 @@ def fill_last_rows(capture: cv2.VideoCapture, image: Image) -> None:
         return
     turned = int(capture.get(cv2.CAP_PROP_ORIENTATION_META)) // 90
     coded = np.rot90(image, turned)
-    if coded.shape[0] % BLOCK and coded.shape[0] > ROWS:
+    if coded.shape[0] % 16 and coded.shape[0] > ROWS:  # coded rows are a multiple
         coded[-ROWS:] = coded[-ROWS - 1]
 
 
-# --- Magic numbers of video containers
-
-
-HEAD_BYTES = 4096
 VALID = "a video that OpenCV can read"
 
 BOXES = (
@@ -88,19 +78,12 @@ TRANSPORT = ((188, 0), (192, 4), (204, 0))
 
 
 def check_container(path: Path) -> None:
-    """Refuse files that are no video container.
-
-    Args:
-        path: A supposed video file.
-
-    Raises:
-        InputError: It is missing, no regular file, empty, or does not begin like a video.
-    """
+    """Refuse files that are missing, irregular, empty, or do not begin like a video container."""
     if regular_file_size(path, VALID) == 0:
         raise InputError(f"{path}: the file is empty; it must be a video")
     try:
         with path.open("rb") as file:
-            beginning = file.read(HEAD_BYTES)
+            beginning = file.read(4096)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); it must be {VALID}") from error
     if not _begins_as_video(beginning):
@@ -111,11 +94,7 @@ def check_container(path: Path) -> None:
 
 
 def check_pixels(path: Path, width: float, height: float) -> None:
-    """Refuse pictures larger than `MOST_PIXELS`.
-
-    Raises:
-        InputError: The picture is too large.
-    """
+    """Refuse pictures larger than `MOST_PIXELS`."""
     if width * height > MOST_PIXELS:
         raise InputError(
             f"{path}: its pictures have {width:.0f} x {height:.0f} pixels; at most {MOST_PIXELS} pixels, as "
@@ -147,25 +126,16 @@ def _is_text(data: bytes) -> bool:
     return all(letter.isprintable() or letter.isspace() for letter in text)
 
 
-# --- Packets of a video file, undecoded
-
-
-MOST_PACKETS = 20_000
-"""Packets read of a longer file: ten minutes tell whether the frame rate varies."""
-SEARCH_BEGINS = 16
-"""Frames before a wanted one from which OpenCV seeks backwards for a video keyframe."""
-MORE = 2
-"""Packets that must follow a wanted frame, so that seeking never meets the end."""
+MOST_PACKETS = 20_000  # packets read of a longer file: ten minutes tell whether the frame rate varies
+SEARCH_BEGINS = 16  # frames before a wanted one from which OpenCV seeks backwards for a video keyframe
 
 
 @dataclass(frozen=True, eq=False)
 class Packets:
     """Presentation times of a video file's first pictures."""
 
-    time_s: Array
-    """(N,) time of each picture, ascending."""
-    complete: bool
-    """Whether these are all of the file's pictures."""
+    time_s: Array  # (N,) time of each picture, ascending
+    complete: bool  # whether these are all of the file's pictures
 
 
 def read_packets(path: Path, most: int = MOST_PACKETS) -> Packets | None:
@@ -190,7 +160,8 @@ def quickly_found(path: Path, wanted: Sequence[int]) -> list[int]:
             if not capture.set(cv2.CAP_PROP_POS_FRAMES, index):
                 continue
             begins = int(capture.get(cv2.CAP_PROP_POS_FRAMES))
-            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + MORE)):
+            # So that seeking never meets the end.
+            if 0 <= begins <= index and all(capture.grab() for _ in range(SEARCH_BEGINS + 2)):
                 found.add(begins + SEARCH_BEGINS)
     return sorted(found)
 

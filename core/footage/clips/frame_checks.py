@@ -1,4 +1,4 @@
-"""Interlacing: detection of combed pictures, whose even and odd rows are two fields from two moments."""
+"""Checks of a video's header and of its frames while they are read: blank ones, cuts, and interlacing."""
 
 import re
 from collections.abc import Sequence
@@ -11,26 +11,14 @@ from numpy.typing import NDArray
 
 from ...arrays import Image
 
-STEP = 8
-"""Difference of neighboring rows where a moving edge is combed, in levels."""
-TEETH = 5
-"""Alternating steps that make a comb; noise and textures seldom have as many."""
-COLUMNS = 320
-"""Fewest sampled columns."""
+STEP = 8  # difference of neighboring rows where a moving edge is combed, in levels
+TEETH = 5  # alternating steps that make a comb; noise and textures seldom have as many
 
 
 def combed_shares(image: Image) -> tuple[float, float]:
-    """Combed shares of a picture: by rows, as interlacing makes them, and by columns for comparison.
-
-    Args:
-        image: (rows, columns, 3) as decoded: scaling removes combs.
-
-    Returns:
-        Two shares of the sampled pixels.
-    """
+    """Combed shares of a picture as decoded: by rows, as of interlacing, and by columns, to compare."""
     green = image[..., 1].astype(np.int16)
-    across = max(image.shape[1] // COLUMNS, 1)
-    down = max(image.shape[0] // COLUMNS, 1)
+    down, across = (max(length // 320, 1) for length in image.shape[:2])
     return _teeth(green[:, ::across]), _teeth(green[::down].T)
 
 
@@ -46,62 +34,39 @@ def _teeth(levels: NDArray[np.int16]) -> float:
     return float(np.mean(rising | falling))
 
 
-# --- Notes on a video file's header
-
-
-NOTICEABLE_SHAPE = 0.01
-"""Difference from square pixels that is worth a note."""
-HDR_TRANSFERS = {16: "PQ", 18: "HLG"}
-"""Transfer characteristics of ITU-T H.273."""
+HDR_TRANSFERS = {16: "PQ", 18: "HLG"}  # transfer characteristics of ITU-T H.273
 MP4 = re.compile(rb"colrncl[xc].{2}\x00(.)", re.DOTALL)
 """The color box of MP4 and QuickTime: primaries, then transfer characteristics, two bytes each."""
 MATROSKA = re.compile(rb"\x55\xba\x81(.)", re.DOTALL)
-MATROSKA_BEGINS = b"\x1a\x45\xdf\xa3"
-HEAD = 2**16
-"""Bytes read of a Matroska file, within which it describes its tracks."""
-LARGEST_INDEX = 2**26
 
 
 def video_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
     """Sentences on faults of an open video."""
-    return (*_shape_notes(path, capture), *_range_notes(path))
-
-
-def _shape_notes(path: Path, capture: cv2.VideoCapture) -> tuple[str, ...]:
+    notes = []
     across, down = capture.get(cv2.CAP_PROP_SAR_NUM), capture.get(cv2.CAP_PROP_SAR_DEN)
-    if not (across > 0.0 and down > 0.0) or abs(across / down - 1.0) < NOTICEABLE_SHAPE:
-        return ()
-    return (
-        (
+    if across > 0.0 and down > 0.0 and abs(across / down - 1.0) >= 0.01:
+        notes.append(
             f"the pixels of {path.name} are {across / down:.3g} times as wide as high, and Keymark and "
             "Blender take them for square: the motion is out of shape; convert the clip first, as with "
             "ffmpeg -i CLIP -vf scale=iw*sar:ih,setsar=1"
-        ),
-    )
-
-
-def _range_notes(path: Path) -> tuple[str, ...]:
+        )
     transfer = dynamic_range(path)
-    if transfer is None:
-        return ()
-    return (
-        (
+    if transfer is not None:
+        notes.append(
             f"{path.name} is of high dynamic range ({transfer}): read as it is, its colors are pale and "
             "markers harder to tell apart; film in standard range or convert it, and pick the markers' "
             "colors anew"
-        ),
-    )
+        )
+    return tuple(notes)
 
 
 def dynamic_range(path: Path) -> str | None:
     """Name of a video's high dynamic range transfer function, PQ or HLG; None for standard range."""
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD)
-            if head.startswith(MATROSKA_BEGINS):
-                found = MATROSKA.search(head)
-            else:
-                found = MP4.search(_movie_box(path))
+            head = file.read(2**16)  # it describes its tracks within these
+        is_matroska = head.startswith(b"\x1a\x45\xdf\xa3")
+        found = MATROSKA.search(head) if is_matroska else MP4.search(_movie_box(path))
     except OSError:
         return None
     return None if found is None else HDR_TRANSFERS.get(found[1][0])
@@ -116,53 +81,21 @@ def _movie_box(path: Path) -> bytes:
             if size == 1:
                 size = int.from_bytes(file.read(8), "big") - 8
             if head[4:] == b"moov":
-                return file.read(min(max(size - 8, 0), LARGEST_INDEX))
+                return file.read(min(max(size - 8, 0), 2**26))
             if not 8 <= size <= whole:
                 break
             file.seek(size - 8, 1)
     return b""
 
 
-# --- Frame checks while a clip is read
-
-
-SIDE = 64
-"""Rows and columns, about, of the pictures that are compared."""
-COMBED_EVERY = 15
-"""Frames between two that are checked for combing."""
-COMBED, COMBED_MORE = 5e-4, 10.0
-"""Combed share of an interlaced picture by rows, and its ratio to that by columns. Sixteen progressive clips
-stay below 1.2e-4 and a ratio of three; three interlaced ones have 1e-2 and more."""
-COLORLESS = 10
-"""Difference of the channels of a gray pixel after compression, in levels."""
-CUT = 10.0
-"""Change of the median pixel at a cut, in levels."""
-CUT_MORE = 5.0
-"""Ratio of that change to the clip's usual one."""
-FEW_PIXELS = 4
-"""Pixels of a small picture that may have colors by accident."""
-NAMED = 3
-"""Ranges of frames that a note lists."""
-BLANK_SAMPLES = 64
-"""Sampled rows and columns, about, in the test for a blank frame."""
-BLANK_CONTRAST = 12
-"""Levels between the darkest and the brightest pixel of a blank frame, but for stray pixels."""
-BLANK_STRAY_SHARE = 0.005
-"""Share of pixels that noise or a clock in a corner may make brighter or darker."""
-
-
 @dataclass(frozen=True)
 class FrameFindings:
     """Findings of the frame checks of a clip."""
 
-    frames: int = 0
-    """Number of checked frames."""
-    blank: tuple[int, ...] = ()
-    """Indices of blank frames, in order."""
-    cuts: tuple[int, ...] = ()
-    """Indices of frames after a cut."""
-    interlaced: bool = False
-    """Whether each picture consists of two fields."""
+    frames: int = 0  # number of checked frames
+    blank: tuple[int, ...] = ()  # indices of blank frames, in order
+    cuts: tuple[int, ...] = ()  # indices of frames after a cut
+    interlaced: bool = False  # whether each picture consists of two fields
 
     def notes(self, first: int) -> tuple[str, ...]:
         """The findings as sentences; the clip's first frame has the number `first`."""
@@ -193,7 +126,6 @@ class FrameChecks:
     """Checks every frame once, in order."""
 
     def __init__(self) -> None:
-        """Begin without frames."""
         self._frames = 0
         self._blank: list[int] = []
         self._color = 0
@@ -207,10 +139,10 @@ class FrameChecks:
         if is_blank(image):
             self._blank.append(index)
             return False
-        step = max(min(image.shape[:2]) // SIDE, 1)
+        step = max(min(image.shape[:2]) // 64, 1)
         small = image[step // 2 :: step, step // 2 :: step].copy()
         self._color = max(self._color, _colorfulness(small))
-        if index % COMBED_EVERY == 0:
+        if index % 15 == 0:
             self._combed.append(combed_shares(image))
         if self._last is not None:
             self._changes[index] = float(np.median(cv2.absdiff(small, self._last)))
@@ -219,25 +151,21 @@ class FrameChecks:
 
     def findings(self) -> FrameFindings:
         """The findings so far."""
-        return FrameFindings(self._frames, tuple(self._blank), self._cuts(), self._interlaced())
+        usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
+        # Levels, and several times the usual change.
+        cuts = tuple(index for index, one in self._changes.items() if one > max(10.0, 5.0 * usual))
+        rows, columns = np.mean(self._combed, axis=0) if self._combed else (0.0, 0.0)
+        # Sixteen progressive clips stay below 1.2e-4 and a ratio of three, three interlaced ones have 1e-2.
+        interlaced = bool(rows > 5e-4 and rows > 10.0 * columns)
+        return FrameFindings(self._frames, tuple(self._blank), cuts, interlaced)
 
     def nothing_seen(self) -> str | None:
         """The reason why no marker can be found in the clip; None without one."""
         if len(self._blank) == self._frames:
             return "all frames are blank: black, or of one color"
-        if self._color < COLORLESS:
+        if self._color < 10:  # levels, after compression
             return "the clip has no colors, by which markers are found; it must be filmed in color"
         return None
-
-    def _interlaced(self) -> bool:
-        if not self._combed:
-            return False
-        rows, columns = np.mean(self._combed, axis=0)
-        return bool(rows > COMBED and rows > COMBED_MORE * columns)
-
-    def _cuts(self) -> tuple[int, ...]:
-        usual = float(np.median(list(self._changes.values()))) if self._changes else 0.0
-        return tuple(index for index, one in self._changes.items() if one > max(CUT, CUT_MORE * usual))
 
 
 def _colorfulness(image: Image) -> int:
@@ -245,7 +173,7 @@ def _colorfulness(image: Image) -> int:
     blue, green, red = cv2.split(image)
     brightest, darkest = cv2.max(cv2.max(blue, green), red), cv2.min(cv2.min(blue, green), red)
     spread = (brightest - darkest).ravel()
-    last = spread.size - min(FEW_PIXELS, spread.size)
+    last = spread.size - min(4, spread.size)  # pixels that may have colors by accident
     return int(np.partition(spread, last)[last])
 
 
@@ -257,19 +185,19 @@ def _ranges(frames: Sequence[int], first: int) -> str:
             runs[-1][1] = frame
         else:
             runs.append([frame, frame])
-    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:NAMED]]
-    return ", ".join(named) + (f" and {len(runs) - NAMED} more times" if len(runs) > NAMED else "")
+    named = [f"{a + first}" if a == b else f"{a + first} to {b + first}" for a, b in runs[:3]]
+    return ", ".join(named) + (f" and {len(runs) - 3} more times" if len(runs) > 3 else "")
 
 
 def is_blank(image: Image) -> bool:
     """Whether a picture (rows, columns, 3) shows one even color and nothing else."""
-    step = max(min(image.shape[:2]) // BLANK_SAMPLES, 1)
+    step = max(min(image.shape[:2]) // 64, 1)
     sampled = image[step // 2 :: step, step // 2 :: step]
     # Channel by channel: the first tells of almost every picture, and partitions along an axis are slow.
     return not any(_has_contrast(sampled[..., channel].ravel()) for channel in range(3))
 
 
 def _has_contrast(levels: Image) -> bool:
-    stray = int(BLANK_STRAY_SHARE * len(levels))
+    stray = int(0.005 * len(levels))  # noise, or a clock in a corner
     ordered = np.partition(levels, (stray, len(levels) - 1 - stray))
-    return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > BLANK_CONTRAST)
+    return bool(int(ordered[len(levels) - 1 - stray]) - int(ordered[stray]) > 12)  # levels

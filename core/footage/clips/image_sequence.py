@@ -19,8 +19,7 @@ from ...files.control_characters import regular_file_size
 from ...files.fields import listed
 from .container import opencv_silence
 
-LARGEST_BYTES = 2**31
-"""Size limit of an image file: four channels of the largest image at sixteen bits."""
+LARGEST_BYTES = 2**31  # size limit of an image file: four channels of the largest image at sixteen bits
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -82,11 +81,7 @@ def _is_whole(data: bytes) -> bool:
     return False
 
 
-# --- Frames of a numbered image sequence
-
-
-MOST_IMAGES = 10**6
-"""Images of one folder at most; eleven hours of film."""
+MOST_IMAGES = 10**6  # images of one folder at most; eleven hours of film
 EXTENSIONS = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp", ".jp2", ".ppm", ".pgm"})
 PATTERN = re.compile(r"(#+|%0?\d*d)")
 LAST_NUMBER = re.compile(r"(\d+)(?!.*\d)")
@@ -98,23 +93,13 @@ class ImageSequence:
     A missing number, as of a lost image, keeps its frame, which is black.
     """
 
-    paths: tuple[Path | None, ...]
-    """The file of every frame, in order; None where it is missing."""
-    size: tuple[int, int]
-    """Width and height of every image in pixels."""
-    fps: float
-    """Frames per second."""
-    frame_count: int
-    """Number of frames."""
-    notes: tuple[str, ...]
-    """Sentences on missing images."""
+    paths: tuple[Path | None, ...]  # the file of every frame, in order; None where it is missing
+    size: tuple[int, int]  # width and height of every image in pixels
+    fps: float  # frames per second
+    frame_count: int  # number of frames
+    notes: tuple[str, ...]  # sentences on missing images
 
     def __init__(self, paths: Sequence[Path], fps: float) -> None:
-        """Take the files in order and read the first.
-
-        Raises:
-            InputError: The first image cannot be read, or the rate is not above 0.
-        """
         if not (np.isfinite(fps) and fps > 0.0):
             raise InputError(f"{paths[0].parent}: fps is {fps!r}; it must be a number above 0")
         self.paths, self.notes = _placed(paths)
@@ -184,10 +169,7 @@ def _placed(paths: Sequence[Path]) -> tuple[tuple[Path | None, ...], tuple[str, 
 
 
 def find_images(path: Path) -> list[Path] | None:
-    """The images that a path names, in natural order, or None where it names something else.
-
-    Args:
-        path: A folder, a pattern (`img_####.png`, `img_%04d.png`), or one image of a numbered sequence.
+    """The images of a folder, a pattern or a numbered image, in natural order; None of anything else.
 
     Raises:
         InputError: A folder or pattern without an image, or a folder with several sequences.
@@ -195,12 +177,14 @@ def find_images(path: Path) -> list[Path] | None:
     if path.is_dir():
         found = sorted(_limited(path, (f for f in path.iterdir() if is_image(f))), key=_natural_key)
         if not found:
-            raise InputError(f"{path}: the folder holds no image; it must hold {_names()} files")
+            kinds = ", ".join(sorted(extension[1:] for extension in EXTENSIONS))
+            raise InputError(f"{path}: the folder holds no image; it must hold {kinds} files")
         return _only_sequence(path, found)
     if path.suffix.lower() not in EXTENSIONS:
         return None
     if path.is_file():
-        return _siblings(path)
+        around = stem_of_number(path)
+        return [path] if around is None else _numbered(path.parent, *around)
     if not PATTERN.search(path.name):
         return None
     head, _, tail = PATTERN.split(path.name, maxsplit=1)
@@ -249,12 +233,6 @@ def stem_of_number(path: Path) -> tuple[str, str] | None:
     return None if number is None else (path.stem[: number.start()], path.stem[number.end() :] + path.suffix)
 
 
-def _siblings(path: Path) -> list[Path]:
-    """The sequence a numbered image belongs to; an image without a number stands alone."""
-    around = stem_of_number(path)
-    return [path] if around is None else _numbered(path.parent, *around)
-
-
 def _numbered(folder: Path, head: str, tail: str) -> list[Path]:
     name = re.compile(re.escape(head) + r"\d+" + re.escape(tail) + "$")
     if not folder.is_dir():
@@ -273,7 +251,3 @@ def _natural_key(path: Path) -> list[tuple[int, int, str]]:
     """Sort key of natural order: digits by value, the rest as text."""
     parts = re.split(r"(\d+)", path.name.lower())
     return [(1, int(part), part) if part.isdecimal() else (0, 0, part) for part in parts]
-
-
-def _names() -> str:
-    return ", ".join(sorted(extension[1:] for extension in EXTENSIONS))

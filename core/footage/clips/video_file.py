@@ -13,16 +13,8 @@ from ...errors import InputError
 from .container import check_container, check_pixels, fill_last_rows, opencv_silence
 from .frame_checks import video_notes
 
-FALLBACK_FPS = 24.0
-HIGHEST_PLAUSIBLE_FPS = 2000.0
-FRAMES_PER_SEEK = 125
-"""Mean cost of seeking, which decodes from the last video keyframe on: half of the usual 250 frames."""
-PATIENCE = 500
-"""Failures in a row that end a file: the distance of two video keyframes."""
-LONGEST_PAUSE_S = 3600.0
-"""Longest step between valid time stamps."""
-SMALLEST_FRAME_BYTES = 8
-"""Least bytes of a frame in a container; bounds the frame count that a header may claim."""
+FRAMES_PER_SEEK = 125  # mean cost of seeking: half of the usual 250 frames between video keyframes
+LONGEST_PAUSE_S = 3600.0  # longest step between valid time stamps
 
 CONVERT = "convert it, as with ffmpeg -i CLIP -c:v libx264 -crf 12 -pix_fmt yuv420p converted.mp4"
 
@@ -34,21 +26,12 @@ class VideoFile:
     """A video file that OpenCV can decode."""
 
     path: Path
-    size: tuple[int, int]
-    """Width and height in pixels, after the rotation that the file asks for."""
-    fps: float
-    """Nominal frames per second."""
-    frame_count: int
-    """Number of frames according to the file, at least 1."""
-    notes: tuple[str, ...]
-    """Sentences on faults of the file."""
+    size: tuple[int, int]  # width and height in pixels, after the rotation that the file asks for
+    fps: float  # nominal frames per second
+    frame_count: int  # number of frames according to the file, at least 1
+    notes: tuple[str, ...]  # sentences on faults of the file
 
     def __init__(self, path: Path) -> None:
-        """Open the file and decode its first frame.
-
-        Raises:
-            InputError: It is empty, not a video, too large, or broken before the first frame.
-        """
         self.path = path
         check_container(path)
         with self._capture() as capture:
@@ -62,10 +45,10 @@ class VideoFile:
                 )
             self.size = (int(image.shape[1]), int(image.shape[0]))
             fps = float(capture.get(cv2.CAP_PROP_FPS))
-            self.fps = fps if 0.0 < fps < HIGHEST_PLAUSIBLE_FPS else FALLBACK_FPS
+            self.fps = fps if 0.0 < fps < 2000.0 else 24.0
             claimed = capture.get(cv2.CAP_PROP_FRAME_COUNT)
             self.notes = video_notes(path, capture)
-        most = path.stat().st_size // SMALLEST_FRAME_BYTES
+        most = path.stat().st_size // 8  # bytes a frame bound what a header may claim
         self.frame_count = int(min(claimed, most)) if np.isfinite(claimed) else 0
         if self.frame_count < 2:  # it claims nothing
             self.frame_count = sum(1 for _ in self.time_stamps())
@@ -184,7 +167,10 @@ class VideoFile:
 
     @contextmanager
     def _capture(self) -> Iterator[cv2.VideoCapture]:
-        capture = _open_quietly(self.path)
+        name = os.path.abspath(self.path)  # a name of a word and a colon begins like FFmpeg's protocols
+        with opencv_silence():
+            capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
+            capture = capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
         try:
             if not capture.isOpened():
                 raise InputError(
@@ -198,17 +184,10 @@ class VideoFile:
             capture.release()
 
 
-def _open_quietly(path: Path) -> cv2.VideoCapture:
-    name = os.path.abspath(path)  # where a name begins with a word and a colon, that is a protocol to FFmpeg
-    with opencv_silence():
-        capture = cv2.VideoCapture(name, cv2.CAP_FFMPEG)
-        return capture if capture.isOpened() else cv2.VideoCapture(name, cv2.CAP_ANY)
-
-
 def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
     """Step from frame to frame; yield the number of decoder failures before each."""
     failures = 0
-    while failures <= PATIENCE:
+    while failures <= 500:  # the distance of two video keyframes
         if capture.grab():
             yield failures
             failures = 0
@@ -217,7 +196,6 @@ def _steps(capture: cv2.VideoCapture) -> Iterator[int]:
 
 
 def _codec(capture: cv2.VideoCapture) -> str:
-    """Name of the codec, such as h264."""
     code = int(capture.get(cv2.CAP_PROP_FOURCC)) & 0xFFFFFFFF
     name = code.to_bytes(4, "little").decode("ascii", "replace").strip("\0 ")
     return name if name.isalnum() and name.isascii() else "unknown"

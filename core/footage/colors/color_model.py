@@ -14,14 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Array, Image, IndexArray, Int32Array, SingleArray
 
-CELL_BITS = 6
-"""Bits kept of each channel: 64³ cells hold a color to within two levels, less than compression noise."""
+CELL_BITS = 6  # of each channel: 64³ cells hold a color to two levels, less than compression noise
 CELLS_PER_CHANNEL = 1 << CELL_BITS
 CELL_COUNT = CELLS_PER_CHANNEL**3
 CELL_WIDTH = 256 // CELLS_PER_CHANNEL
 
-LUMA_OFFSET = 16.0
-"""Levels added to luma before dividing by it: about five times the noise of a compressed dark pixel."""
+LUMA_OFFSET = 16.0  # levels added before dividing by luma: five times the noise of a dark pixel
 
 # Recommendation ITU-R BT.601, full range, as video decoders' 4:2:0 chroma is split.
 LUMA_BGR = np.array([0.114, 0.587, 0.299])
@@ -30,14 +28,9 @@ RED_SCALE = 0.713
 
 
 def chromaticity(bgr: ArrayLike) -> tuple[Array, Array]:
-    """Split colors into chromaticity and luma.
+    """Split gamma-encoded colors (..., 3), blue, green, red in 0..255, into chromaticity and luma.
 
-    Args:
-        bgr: (..., 3) in 0..255, blue, green, red, gamma-encoded.
-
-    Returns:
-        Chromaticity (..., 2), blue and red difference over offset luma, without unit; offset luma (...) in
-        levels.
+    Returns blue and red difference over offset luma (..., 2), without unit, and offset luma (...) in levels.
     """
     color = np.asarray(bgr, dtype=np.float64)
     # Written out: for so short a product, linear algebra libraries start threads that only wait.
@@ -90,19 +83,11 @@ def cell_chromaticity(cells: Int32Array) -> tuple[SingleArray, SingleArray]:
     return chroma, offset_luma
 
 
-# --- The color model
-
-
 ColorArray = Array | SingleArray
 
-NOISE_LEVELS = 5.0
-"""Standard deviation of a decoded, lightly smoothed color difference in levels: sensor and compression."""
-OUTLIER_DISTANCE = 16.0
-"""Squared distance past which no color is a marker's, even one that the background lacks: 99.9 % of χ²."""
-GROUP_MARGIN = 2.0
-"""Ratio of squared distances between a group's center and its cells, at most."""
-BACKGROUND = 255
-"""Label of pixels that are no marker's."""
+NOISE_LEVELS = 5.0  # deviation of a decoded, smoothed color difference: sensor and compression
+OUTLIER_DISTANCE = 16.0  # squared distance past which no color is a marker's: 99.9 % of χ²
+BACKGROUND = 255  # label of pixels that are no marker's
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,30 +98,16 @@ class ColorDistribution:
     it.
     """
 
-    log_luma: float
-    """Mean logarithm of offset luma."""
-    log_luma_deviation: float
-    """Its standard deviation."""
-    mean: Array
-    """(2,) chromaticity at the mean luma."""
-    slope: Array
-    """(2,) change of chromaticity per unit of log luma."""
-    covariance: Array
-    """(2, 2) of the chromaticity, without the pixel noise of dark colors."""
+    log_luma: float  # mean logarithm of offset luma
+    log_luma_deviation: float  # its standard deviation
+    mean: Array  # (2,) chromaticity at the mean luma
+    slope: Array  # (2,) change of chromaticity per unit of log luma
+    covariance: Array  # (2, 2) of the chromaticity, without the pixel noise of dark colors
 
     def distance(
         self, chroma: ColorArray, luma: ColorArray, noise_levels: float = NOISE_LEVELS
     ) -> tuple[Array, Array]:
-        """The squared Mahalanobis distance and the log density of colors.
-
-        Args:
-            chroma: (..., 2) chromaticity.
-            luma: (...) offset luma in levels, as `chromaticity` gives it.
-            noise_levels: Standard deviation of a pixel's color difference in levels.
-
-        Returns:
-            Squared distance (...), and natural logarithm of the density over (chromaticity, log luma), (...).
-        """
+        """The squared Mahalanobis distance and log density over (chromaticity, log luma), (...) each."""
         light = np.log(luma) - self.log_luma
         noise = (noise_levels / luma) ** 2
         first = float(self.covariance[0, 0]) + noise
@@ -166,12 +137,9 @@ class ColorDistribution:
 class ColorModel:
     """Classifier of colors as markers or background, learned for one clip."""
 
-    distributions: tuple[ColorDistribution, ...]
-    """One a color."""
-    label: Image
-    """(CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND."""
-    probability: Image
-    """(CELL_COUNT,) uint8, posterior probability in 1/255."""
+    distributions: tuple[ColorDistribution, ...]  # one a color
+    label: Image  # (CELL_COUNT,) uint8, index of the likeliest color of each cell, or BACKGROUND
+    probability: Image  # (CELL_COUNT,) uint8, posterior probability in 1/255
 
     def classify(self, image: Image) -> tuple[Image, Image]:
         """Label and probability in 1/255, (rows, columns), of every pixel of an image."""
@@ -188,10 +156,8 @@ def color_model(
 ) -> ColorModel:
     """Classify every color cell as a marker's, the background's or unknown, by posterior probability.
 
-    Args:
-        distributions: The markers' colors.
-        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
-        background_counts: (CELL_COUNT,) pixels of the background, smoothed over neighboring cells.
+    `pixel_counts` (M,) are the markers' in the frames in which `background_counts` (CELL_COUNT,) were
+    counted.
     """
     near = _cells_near(distributions)
     chroma, luma = cell_chromaticity(near)
@@ -216,7 +182,7 @@ def _cells_near(distributions: Sequence[ColorDistribution]) -> NDArray[np.int32]
     chroma, luma = chroma.astype(np.float32), luma.astype(np.float32)
     near = np.zeros((side, side, side), dtype=np.bool_)
     for distribution in distributions:
-        near |= (distribution.distance(chroma, luma)[0] < GROUP_MARGIN * OUTLIER_DISTANCE).reshape(near.shape)
+        near |= (distribution.distance(chroma, luma)[0] < 2.0 * OUTLIER_DISTANCE).reshape(near.shape)
     cells = near.repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
     return np.flatnonzero(cells).astype(np.int32)
 
@@ -230,12 +196,7 @@ def weigh(
 ) -> tuple[IndexArray, Array]:
     """The likeliest marker of each of N color cells, (N,), and its posterior probability, (N,).
 
-    Args:
-        distributions: The markers' colors.
-        pixel_counts: (M,) pixels of each marker in the frames that the background was counted in.
-        background_counts: (N,) background pixels in each cell.
-        chroma: (N, 2) chromaticity of the cells' middles.
-        luma: (N,) their offset luma in levels.
+    Counts are as in `color_model`, those of the background by cell (N,), like chromaticity and luma.
     """
     counts = np.asarray(pixel_counts, dtype=np.float64)
     best, total = np.zeros(len(luma)), np.asarray(background_counts, dtype=np.float64).copy()
@@ -254,27 +215,13 @@ def weigh(
         return label, np.nan_to_num(best / (total + unknown))
 
 
-# --- The colors of a clip nearest to a sample, as suggestions where the sample matches nothing
-
-
-HOW_MANY = 3
-APART = 0.08
-"""Least difference in chromaticity of two suggested colors."""
-LIKE_LOG_LUMA = 0.25
-"""Difference in the logarithm of luma up to which two grays look alike."""
-SHARE = 2e-5
-"""Least share of the clip's pixels of a color that is no noise."""
+APART = 0.08  # least difference in chromaticity of two suggested colors
 
 
 def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list[tuple[int, int, int]]:
-    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first.
-
-    Args:
-        counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: The sought color in 0..255.
-    """
+    """Up to three colors (red, green, blue) found in the clip, the nearest to the sample first."""
     count = np.asarray(counts, dtype=np.float64)
-    common = np.flatnonzero(count > max(SHARE * count.sum(), 0.5))
+    common = np.flatnonzero(count > max(2e-5 * count.sum(), 0.5))  # fewer are noise
     colors = cell_colors()[common]
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(colors)
@@ -283,23 +230,18 @@ def nearest_colors(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> list
     for index in np.argsort(distance):
         if all(np.linalg.norm(chroma[index] - chroma[other]) >= APART for other in chosen):
             chosen.append(int(index))
-        if len(chosen) == HOW_MANY:
+        if len(chosen) == 3:
             break
     return [(int(red), int(green), int(blue)) for blue, green, red in np.round(colors[chosen])]
 
 
 def share_of_color(counts: ArrayLike, sample_srgb: tuple[int, int, int]) -> float:
-    """The share of the clip's pixels that look like a color.
-
-    Args:
-        counts: (CELL_COUNT,) pixels of each color cell.
-        sample_srgb: The color, (red, green, blue) in 0..255.
-    """
+    """The share of the clip's pixels, counted by color cell, that look like a color."""
     count = np.asarray(counts, dtype=np.float64)
     present = np.flatnonzero(count)
     wanted, wanted_luma = chromaticity(np.asarray(sample_srgb, dtype=np.float64)[::-1])
     chroma, luma = chromaticity(cell_colors(present.astype(np.int32)))
     like = (np.linalg.norm(chroma - wanted, axis=1) < APART / 2.0) & (
-        np.abs(np.log(luma / wanted_luma)) < LIKE_LOG_LUMA
+        np.abs(np.log(luma / wanted_luma)) < 0.25
     )
     return float(count[present[like]].sum() / max(count.sum(), 1.0))

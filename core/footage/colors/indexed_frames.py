@@ -21,14 +21,8 @@ from .color_model import (
 
 _Number = TypeVar("_Number", bound=np.generic)
 
-CORE_DISTANCE = 7.8
-"""Squared distance of the colors at a distribution's core: 95 % of χ² with 3 degrees of freedom."""
-LEARNING_NOISE_LEVELS = 2.5
-"""Noise assumed in learning, lower than in classification: pixels explained by noise alone teach nothing."""
+LEARNING_NOISE_LEVELS = 2.5  # less than in classification: pixels explained by noise alone teach nothing
 NO_MARKER = 255
-LARGEST_SHARE = 0.25
-"""Largest share of the image of a marker's region: larger ones are walls or floors."""
-BACKGROUND_MARGIN = 3
 KERNEL = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (3, 3))
 # A Gaussian kernel of one cell's deviation, cut off after two.
 SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2))
@@ -37,14 +31,10 @@ SPREAD = np.exp(-0.5 * np.arange(-2.0, 3.0) ** 2) / np.sum(np.exp(-0.5 * np.aran
 class CroppedMask(NamedTuple):
     """A mask of an image, cropped to its bounding box."""
 
-    left: int
-    """First column of the box."""
-    top: int
-    """Its first row."""
-    mask: Image
-    """(rows, columns) uint8, 0 or 1."""
-    area: int
-    """Pixels that are 1."""
+    left: int  # first column of the box
+    top: int  # its first row
+    mask: Image  # (rows, columns) uint8, 0 or 1
+    area: int  # pixels that are 1
 
     def within(self, whole: Image) -> "CroppedMask":
         """The intersection with a mask of the whole image."""
@@ -87,7 +77,8 @@ class IndexedFrames:
         ]
         nearest = np.argmax([density for _, density in pairs], axis=0)
         distance = np.array([squared for squared, _ in pairs])[nearest, np.arange(len(nearest))]
-        return np.where(distance < CORE_DISTANCE, nearest, NO_MARKER).astype(np.uint8)
+        # 95 % of χ² with 3 degrees of freedom.
+        return np.where(distance < 7.8, nearest, NO_MARKER).astype(np.uint8)
 
     def weighed(
         self, distributions: Sequence[ColorDistribution], pixels: IntArray, background: Array
@@ -125,7 +116,7 @@ class IndexedFrames:
                 covered[ignored] = 1
             for mask in placed:
                 mask.crop(covered)[:] |= mask.mask
-            near = cv2.dilate(covered, KERNEL, iterations=BACKGROUND_MARGIN)
+            near = cv2.dilate(covered, KERNEL, iterations=3)
             total += np.bincount(image.ravel(), weights=1.0 - near.ravel(), minlength=len(self._table))
         counts = np.zeros(CELL_COUNT)
         counts[self._table] = total
@@ -156,7 +147,7 @@ def _core_regions(label: Image, image: IndexArray, core: Image, marker: int) -> 
     color = image[top : top + rows, left : left + columns].take(pixel)
     strong = np.bincount(np.asarray(number).take(pixel[core.take(color) == marker]), minlength=count)
     area = stats[:, cv2.CC_STAT_AREA]
-    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= LARGEST_SHARE * label.size)
+    good = (strong >= np.maximum(4, 0.25 * area)) & (area <= 0.25 * label.size)
     good[0] = False
     return _cropped(left, top, good.astype(np.uint8).take(np.asarray(number)))
 

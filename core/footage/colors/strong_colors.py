@@ -20,17 +20,7 @@ from .color_model import (
     chromaticity,
 )
 
-MOST = 12
-"""Most listed colors: five markers, skin, and things in the room."""
-LEAST_STRENGTH = 0.2
-"""Chromaticity below which a color is a dull one: wood and pale skin."""
-DARKEST = 25.0
-"""Luma in levels below which a color is too uncertain to name."""
-APART = 0.10
-"""Chromaticity within which colors are those of one surface."""
-STEP = 0.04
-LEAST_SHARE = 2e-4
-"""Least share of the picture of a listed color."""
+LEAST_SHARE = 2e-4  # least share of the picture of a listed color
 HUES = (
     (15, "red"),
     (42, "orange"),
@@ -49,10 +39,8 @@ HUES = (
 class StrongColor:
     """A salient color."""
 
-    color_srgb: tuple[int, int, int]
-    """(red, green, blue) in 0..255, the median of its pixels."""
-    share: float
-    """Share of the pixels that have it."""
+    color_srgb: tuple[int, int, int]  # (red, green, blue) in 0..255, the median of its pixels
+    share: float  # share of the pixels that have it
 
     @property
     def hue(self) -> str:
@@ -71,42 +59,30 @@ def strong_colors(images: Iterable[Image]) -> tuple[StrongColor, ...]:
     present = np.flatnonzero(counts).astype(np.int32)
     colors = cell_colors(present)
     chroma, luma = chromaticity(colors)
-    strong = (np.linalg.norm(chroma, axis=1) > LEAST_STRENGTH) & (luma > DARKEST + LUMA_OFFSET)
+    strong = (np.linalg.norm(chroma, axis=1) > 0.2) & (luma > 25.0 + LUMA_OFFSET)
     colors, chroma = colors[strong], chroma[strong]
     left, least = counts[present][strong], LEAST_SHARE * counts.sum()
     found: list[tuple[float, StrongColor]] = []
     while left.sum() > least:
         center = _densest(chroma, left)
-        near = np.linalg.norm(chroma - center, axis=1) < APART
+        near = np.linalg.norm(chroma - center, axis=1) < 0.10
         share = float(left[near].sum() / counts.sum())
         if share > LEAST_SHARE:
-            blue, green, red = _median(colors[near], left[near])
+            blue, green, red = (round(weighted_median(channel, left[near])) for channel in colors[near].T)
             # Blends at borders are many and dull; a marker is small and strong.
             standing_out = float(np.linalg.norm(center)) * share**0.25
             found.append((standing_out, StrongColor((red, green, blue), share)))
         left[near] = 0.0
     found.sort(key=lambda one: -one[0])
-    return tuple(color for _, color in found[:MOST])
+    return tuple(color for _, color in found[:12])  # markers, skin, and things in the room
 
 
 def _densest(chroma: Array, weight: Array) -> Array:
     """The mode (2,) of the chromaticities."""
-    square = np.round(chroma / STEP).astype(np.int64)
+    square = np.round(chroma / 0.04).astype(np.int64)
     _, index = np.unique(square[:, 0] * 10_000 + square[:, 1], return_inverse=True)
     inside = index == int(np.bincount(index, weight).argmax())
     return np.asarray(np.average(chroma[inside], axis=0, weights=weight[inside]))
-
-
-def _median(colors: Array, weight: Array) -> list[int]:
-    """The weighted median of each channel, three whole numbers."""
-    return [round(weighted_median(channel, weight)) for channel in colors.T]
-
-
-# --- Confusion matrix of the learned colors
-
-
-LEAST = 1e-300
-"""A density that vanishes everywhere stays zero."""
 
 
 def color_confusion(model: ColorModel) -> Array:
@@ -114,9 +90,6 @@ def color_confusion(model: ColorModel) -> Array:
 
     Pixels drawn from a color's learned density count by the posterior probability of their cells, as in
     tracking; rows sum to 1.
-
-    Args:
-        model: C colors learned for a clip.
     """
     cells = np.arange(len(model.label), dtype=np.int32)
     chroma, luma = cell_chromaticity(cells)
@@ -126,7 +99,7 @@ def color_confusion(model: ColorModel) -> Array:
         near = distribution.within_reach(chroma, luma)
         _, log_density = distribution.distance(chroma.take(near, axis=0), luma.take(near))
         share = np.exp(log_density) * cell_volume(luma.take(near))
-        share = share / max(float(share.sum()), LEAST)
+        share = share / max(float(share.sum()), 1e-300)
         sureness = model.probability.take(near) / 255.0
         label = np.minimum(model.label.take(near), count)
         claims[color] = np.bincount(label, share * sureness, minlength=count + 1)

@@ -10,15 +10,6 @@ from .detected_frames import DetectedFrames, DetectedPerson, check_points
 from .frame_folder import MOST_FRAMES, Alignment, align_listed, align_numbered
 from .keypoints import People, SeenPeople, confidences
 
-RATE_TOLERANCE = 0.01
-"""Frame rates closer than this share are one: 29.97 and 30."""
-MOST_OUTSIDE = 0.5
-"""Share of the points outside the picture, above which the detector saw another one."""
-LARGEST_SHARE = 2.0
-"""Shares of a picture lie about 0 to 1; guesses outside it are the exception."""
-SMALLEST_EXTENT_PX = 2.5
-"""Everyone's coordinates within so few pixels of the corner are no pixels."""
-
 
 def held_against_clip(
     detected: DetectedFrames,
@@ -27,17 +18,10 @@ def held_against_clip(
     fps: float | None,
     frame_start: int,
 ) -> People:
-    """The people of each frame of the clip, in its pixels.
+    """The people of each frame of the clip, in its pixels; `frame_count` and `fps` are None where unknown.
 
     A point is not seen where its score is 0, where it lies at exactly (0, 0), which stands for nothing found,
     and outside the picture, where a network can only guess.
-
-    Args:
-        detected: What a file holds.
-        frame_count: Frames of the clip; None where it is not known.
-        size: Width and height of the clip's pictures [px].
-        fps: Frames per second of the clip; None where it is not known.
-        frame_start: Scene frame of the clip's first frame.
 
     Raises:
         InputError: It is of another clip, or nobody is seen in it.
@@ -49,7 +33,9 @@ def held_against_clip(
         )
     aligned = _aligned(detected, frame_count, fps, frame_start)
     everyone, notes = _everyone(detected, size)
-    frames, first = [_nobody(len(detected.layout.numbers))] * aligned.frame_count, 0
+    points, first = len(detected.layout.numbers), 0
+    nobody = SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
+    frames = [nobody] * aligned.frame_count
     for number, people in detected.people.items():
         rows = np.arange(first, first + len(people))
         first += len(people)
@@ -59,19 +45,11 @@ def held_against_clip(
             frames[index] = SeenPeople(everyone.pixel[rows], everyone.score[rows], everyone.hint_m[rows])
     if not any(len(frame.pixel) for frame in frames):
         raise InputError(f"{detected.where}: nobody is seen in any frame of the clip; it must show a person")
-    return People(
-        detected.layout.names,
-        detected.source,
-        size,
-        tuple(frames),
-        file=detected.where,
-        by_hand=detected.by_hand,
-        # The file's name alone: notes go into results, which are the same in any folder.
-        notes=tuple(
-            note.replace(detected.where, Path(detected.where).name or detected.where)
-            for note in aligned.notes + notes
-        ),
-    )
+    # The file's name alone: notes go into results, which are the same in any folder.
+    name = Path(detected.where).name or detected.where
+    notes = tuple(note.replace(detected.where, name) for note in aligned.notes + notes)
+    seen = (detected.layout.names, detected.source, size, tuple(frames))
+    return People(*seen, file=detected.where, by_hand=detected.by_hand, notes=notes)
 
 
 def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeople, tuple[str, ...]]:
@@ -94,10 +72,6 @@ def _everyone(detected: DetectedFrames, size: tuple[int, int]) -> tuple[SeenPeop
     return SeenPeople(place, score, _hints(persons, numbers, seen)), notes + score_notes
 
 
-def _nobody(points: int) -> SeenPeople:
-    return SeenPeople(np.zeros((0, points, 2)), np.zeros((0, points)), np.zeros((0, points, 3)))
-
-
 def _aligned(
     detected: DetectedFrames, frame_count: int | None, fps: float | None, frame_start: int
 ) -> Alignment:
@@ -105,8 +79,10 @@ def _aligned(
     if detected.numbered:
         aligned = align_numbered(detected.people, frame_count, frame_start, where, detected.complete)
     else:
-        rates = _other_rate(detected, fps)
-        why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}" if rates else ""
+        rates, why = None, ""
+        if fps is not None and detected.fps is not None and abs(detected.fps - fps) > 0.01 * fps:
+            rates = (detected.fps, fps)  # 29.97 and 30 are one
+            why = f"; it was made at {rates[0]:g} frames per second, the clip has {rates[1]:g}"
         count = len(detected.people)
         aligned = align_listed(count, frame_count, where, why)
         notes = aligned.notes
@@ -117,36 +93,28 @@ def _aligned(
                     f"{where}: frame_start is {start} and its {count} entries are not the clip's "
                     f"{frame_count} frames, which begin with {frame_start}; it must have one for every frame"
                 )
-            notes += (
-                (
-                    f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
-                    "entry was taken for the clip's first frame"
-                ),
+            note = (
+                f"{where}: frame_start is {start}, that of the clip is {frame_start}; the first "
+                "entry was taken for the clip's first frame"
             )
+            notes += (note,)
         if rates and aligned.frame_count == count:
-            notes += (
-                (
-                    f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
-                    "taken frame by frame"
-                ),
+            note = (
+                f"{where}: says {rates[0]:g} frames per second, the clip has {rates[1]:g}; it was "
+                "taken frame by frame"
             )
+            notes += (note,)
         aligned = Alignment(aligned.first, aligned.frame_count, notes)
     if aligned.frame_count > MOST_FRAMES:
         raise InputError(f"{where}: has {aligned.frame_count} frames; at most {MOST_FRAMES} are read")
     return aligned
 
 
-def _other_rate(detected: DetectedFrames, fps: float | None) -> tuple[float, float] | None:
-    """The file's frame rate and the clip's, where they differ."""
-    if fps is None or detected.fps is None or abs(detected.fps - fps) <= RATE_TOLERANCE * fps:
-        return None
-    return detected.fps, fps
-
-
 def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tuple[Array, tuple[str, ...]]:
     """(2,) clip pixels per unit of the places; only whole pictures are scaled."""
     known = place[np.isfinite(place)]
-    if detected.shares and (not len(known) or np.median(np.abs(known)) <= LARGEST_SHARE):
+    # Guesses outside 0 to 1 are the exception.
+    if detected.shares and (not len(known) or np.median(np.abs(known)) <= 2.0):
         return np.array(size, dtype=np.float64), ()
     if detected.size in (None, size):
         return np.ones(2), ()
@@ -160,31 +128,26 @@ def _scale(detected: DetectedFrames, place: Array, size: tuple[int, int]) -> tup
             f"{detected.where}: size is {[width, height]}, that of the clip is {list(size)}{turned}; the "
             "proportions must be the same, so the keypoints must be found again in this clip"
         )
-    scale = np.array([clip_width / width, clip_height / height])
     note = (
         f"{detected.where}: was found in pictures of {width} x {height}; scaled to the clip's "
         f"{clip_width} x {clip_height}"
     )
-    return scale, (note,)
+    return np.array([clip_width / width, clip_height / height]), (note,)
 
 
 def _check_places(
     detected: DetectedFrames, place: Array, seen: BoolArray, inside: BoolArray, size: tuple[int, int]
 ) -> None:
-    """Refuse coordinates that are not those of the clip's pixels.
-
-    Raises:
-        InputError: Most are outside the picture, or all in its corner, as shares of it would be.
-    """
+    """Refuse places most of which are outside the picture, or all in its corner, as shares of it would be."""
     if not seen.any():
         raise InputError(f"{detected.where}: no point has a score above 0; it must show a person")
     reach = float(np.abs(place[seen]).max())
-    if reach <= SMALLEST_EXTENT_PX < min(size) / 2:
+    if reach <= 2.5 < min(size) / 2:
         raise InputError(
             f"{detected.where}: all coordinates lie within {reach:.3g} of 0, as shares of a picture do; they "
             "must be pixels of the clip (OpenPose writes them with --keypoint_scale 0)"
         )
-    if (seen & ~inside).sum() > MOST_OUTSIDE * seen.sum():
+    if (seen & ~inside).sum() > 0.5 * seen.sum():
         x, y = np.median(place[seen], axis=0)
         raise InputError(
             f"{detected.where}: most points lie outside the clip's picture, around ({x:.0f}, {y:.0f}); "

@@ -1,4 +1,4 @@
-"""One frame of the JSON of OpenPose, rtmlib, Pose2Sim and Sports2D: people with flat lists of numbers."""
+"""Detectors' JSON: frames of OpenPose (rtmlib, Pose2Sim, Sports2D), files of COCO, MMPose and MediaPipe."""
 
 import re
 from collections.abc import Mapping
@@ -33,35 +33,24 @@ def openpose_people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
     """The people of a frame, each with the number of its body's points.
 
     Where a hand was found, the 21 points of the left hand and those of the right follow the body's.
-
-    Args:
-        value: The frame.
-        where: The file.
-
-    Raises:
-        InputError: A list is no list of x, y and score of every point.
     """
     people = []
     for index, entry in enumerate(value["people"]):
         spot = f"{where}: people[{index}]"
-        body = _points(entry.get(BODY), f"{spot}.{BODY}")
+        lists = {name: [] if entry.get(name) is None else entry[name] for name in (BODY, *HANDS)}
+        body = points = _points(lists[BODY], f"{spot}.{BODY}")
         if not len(body):  # only a hand or a face was found
             continue
-        hands = [_points(entry.get(name), f"{spot}.{name}") for name in HANDS]
-        points = body
+        hands = [_points(lists[name], f"{spot}.{name}") for name in HANDS]
         if any(len(hand) == HAND_POINTS for hand in hands):
             missing = np.zeros((HAND_POINTS, 3))
-            points = np.concatenate(
-                [body, *(hand if len(hand) == HAND_POINTS else missing for hand in hands)]
-            )
+            points = np.concatenate([body, *(x if len(x) == HAND_POINTS else missing for x in hands)])
         people.append((DetectedPerson(points[:, :2], points[:, 2]), len(body)))
     return people
 
 
 def _points(numbers: Any, spot: str) -> Array:
-    """(N, 3) x, y and score of every point, N = 0 where there is no list."""
-    if numbers in (None, []):
-        return np.zeros((0, 3))
+    """(N, 3) x, y and score of every point, from one list of all numbers."""
     flat = person_array(numbers, (-1,), FARTHEST_PX, spot)
     if len(flat) % 3:
         raise InputError(f"{spot} has {len(flat)} numbers; it must have x, y and score of every point")
@@ -71,11 +60,7 @@ def _points(numbers: Any, spot: str) -> Array:
 # --- COCO's result files, as AlphaPose and others write them
 
 
-_NUMBER = re.compile(r"(\d{1,15})(?:\.[A-Za-z]{1,5})?$")
-
-
-def is_coco(value: Any) -> bool:
-    """Whether a JSON value is of this format."""
+def _is_coco(value: Any) -> bool:
     return (
         isinstance(value, list)
         and bool(value)
@@ -84,19 +69,11 @@ def is_coco(value: Any) -> bool:
     )
 
 
-def read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
+def _read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
     """Read a list of `{"image_id", "keypoints": [x, y, score, ...], "score"}`.
 
     An image is numbered by its identifier, or by the number with which its name ends. Images in which nobody
     was seen are not listed.
-
-    Args:
-        entries: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: An entry is something else.
     """
     layout: Layout | None = None
     people: dict[int, list[DetectedPerson]] = {}
@@ -105,12 +82,7 @@ def read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
         if not isinstance(entry, dict):
             raise InputError(f"{spot} is {shown(entry)}; it must be an object with image_id and keypoints")
         number = _number(entry.get("image_id"), spot)
-        flat = person_array(entry.get("keypoints"), (-1,), FARTHEST_PX, f"{spot}.keypoints")
-        if len(flat) % 3:
-            raise InputError(
-                f"{spot}.keypoints has {len(flat)} numbers; it must have x, y and score of every point"
-            )
-        points = flat.reshape(-1, 3)
+        points = _points(entry.get("keypoints"), f"{spot}.keypoints")
         layout = same_layout(layout, len(points), f"{spot}.keypoints")
         people.setdefault(number, []).append(DetectedPerson(points[:, :2], points[:, 2]))
         check_people(len(people[number]), f"{where}: image {number}")
@@ -122,7 +94,7 @@ def read_coco(entries: list[Any], where: str, source: str) -> DetectedFrames:
 def _number(image: Any, spot: str) -> int:
     if isinstance(image, int) and not isinstance(image, bool) and image >= 0:
         return image
-    found = _NUMBER.search(image[-100:]) if isinstance(image, str) else None
+    found = re.search(r"(\d{1,15})(?:\.[A-Za-z]{1,5})?$", image[-100:]) if isinstance(image, str) else None
     if found is None:
         raise InputError(
             f"{spot}.image_id is {shown(image)}; it must be the frame's number, or an image's name that ends "
@@ -137,8 +109,7 @@ def _number(image: Any, spot: str) -> int:
 INFO = "instance_info"
 
 
-def is_mmpose(value: Any) -> bool:
-    """Whether a JSON value is of this format."""
+def _is_mmpose(value: Any) -> bool:
     if isinstance(value, dict):
         return isinstance(value.get(INFO), list)
     return isinstance(value, list) and bool(value) and isinstance(value[0], dict) and "instances" in value[0]
@@ -151,26 +122,8 @@ def is_instances(value: Any) -> bool:
     )
 
 
-def instance_people(instances: list[Any], where: str) -> list[DetectedPerson]:
-    """The people of one frame.
-
-    Raises:
-        InputError: An entry has no points in the picture.
-    """
-    return [_person(instance, f"{where}[{index}]") for index, instance in enumerate(instances)]
-
-
-def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
-    """Read MMPose's results of a video.
-
-    Args:
-        value: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: An entry is something else, or the file has one picture's people only.
-    """
+def _read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
+    """Read MMPose's results of a video; a file of one picture is refused."""
     entries = value[INFO] if isinstance(value, dict) else value
     place = f"{where}: {INFO}" if isinstance(value, dict) else f"{where}: "
     if not entries:
@@ -183,7 +136,9 @@ def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
         instances = entry.get("instances") if isinstance(entry, dict) else None
         if not isinstance(instances, list):
             raise InputError(f"{spot} is {shown(entry)}; it must be an object with a list of instances")
-        number = _number_mmpose_results(entry, spot) if numbered else index
+        number = entry.get("frame_id") if numbered else index
+        if not isinstance(number, int) or isinstance(number, bool) or number < 0:
+            raise InputError(f"{spot}.frame_id is {shown(number)}; it must be the frame's number")
         if number in people:
             raise InputError(f"{spot}.frame_id is {number}, which stands twice; each frame must stand once")
         check_people(len(instances), f"{spot}.instances")
@@ -198,14 +153,12 @@ def read_mmpose(value: Any, where: str, source: str) -> DetectedFrames:
     return DetectedFrames(where, source, layout, people, numbered=numbered)
 
 
-def _number_mmpose_results(entry: dict[str, Any], spot: str) -> int:
-    number = entry.get("frame_id")
-    if not isinstance(number, int) or isinstance(number, bool) or number < 0:
-        raise InputError(f"{spot}.frame_id is {shown(number)}; it must be the frame's number")
-    return number
+def instance_people(instances: list[Any], where: str) -> list[DetectedPerson]:
+    """The people of one frame."""
+    return [_instance(instance, f"{where}[{index}]") for index, instance in enumerate(instances)]
 
 
-def _person(instance: Any, spot: str) -> DetectedPerson:
+def _instance(instance: Any, spot: str) -> DetectedPerson:
     if not isinstance(instance, dict):
         raise InputError(
             f"{spot} is {shown(instance)}; it must be an object with keypoints and keypoint_scores"
@@ -226,13 +179,12 @@ def _person(instance: Any, spot: str) -> DetectedPerson:
 
 
 LAYOUT = LAYOUTS["blazepose33"]
-IMAGE = ("landmarks", "poselandmarks")
-WORLD = ("worldlandmarks", "poseworldlandmarks")
-"""Names of the two lists, without capitals and underscores."""
+# Names of the two lists, without capitals and underscores.
+IMAGE, WORLD = ("landmarks", "poselandmarks"), ("worldlandmarks", "poseworldlandmarks")
 
 
-def is_mediapipe(value: Any) -> bool:
-    """Whether a JSON value is of this format: its first frame that is not empty has landmarks."""
+def _is_mediapipe(value: Any) -> bool:
+    """Whether the first frame that is not empty has landmarks."""
     frames = value.get("frames") if isinstance(value, dict) else value
     if not isinstance(frames, list):
         return False
@@ -244,21 +196,10 @@ def is_mediapipe(value: Any) -> bool:
     return isinstance(first, Mapping) and {"x", "y"} <= set(first)
 
 
-def read_mediapipe(value: Any, where: str, source: str) -> DetectedFrames:
-    """Read a list of frames, or an object with one as `frames`.
-
-    Args:
-        value: The file's value.
-        where: The file.
-        source: Name of what saw them.
-
-    Raises:
-        InputError: A frame is something else.
-    """
+def _read_mediapipe(value: Any, where: str, source: str) -> DetectedFrames:
+    """Read a list of frames, or an object with one as `frames`."""
     frames = value["frames"] if isinstance(value, dict) else value
-    people = {}
-    for index, frame in enumerate(frames):
-        people[index] = _people(frame, f"{where}: [{index}]")
+    people = {index: _people(frame, f"{where}: [{index}]") for index, frame in enumerate(frames)}
     return DetectedFrames(where, source, LAYOUT, people, numbered=False, shares=True)
 
 
@@ -299,8 +240,9 @@ def _lists(value: Any, spot: str) -> list[list[Any]]:
         return []
     if not isinstance(value, list):
         raise InputError(f"{spot} is {shown(value)}; it must be a list of landmarks or null")
-    single = isinstance(value[0], Mapping) and "landmark" not in value[0]
-    people = [value] if single else [one["landmark"] if _is_message(one) else one for one in value]
+    people = [one.get("landmark", one) if isinstance(one, Mapping) else one for one in value]
+    if isinstance(value[0], Mapping) and "landmark" not in value[0]:
+        people = [value]
     for landmarks in people:
         points = isinstance(landmarks, list) and all(isinstance(point, Mapping) for point in landmarks)
         if not points or len(landmarks) != LAYOUT.count:
@@ -309,10 +251,6 @@ def _lists(value: Any, spot: str) -> list[list[Any]]:
                 "MediaPipe's Pose, {x, y, z, visibility} each"
             )
     return people
-
-
-def _is_message(value: Any) -> bool:
-    return isinstance(value, Mapping) and "landmark" in value
 
 
 def _numbers(landmarks: list[Any], axes: tuple[str, ...], farthest: float, spot: str) -> Array:
@@ -326,3 +264,7 @@ def _scores(landmarks: list[Any], spot: str) -> Array:
         return np.ones(LAYOUT.count)
     rows = [point.get("visibility", 0.0) for point in landmarks]
     return person_array(rows, (LAYOUT.count,), FARTHEST_PX, f"{spot} (visibility)")
+
+
+FORMATS = ((_is_mmpose, _read_mmpose), (_is_coco, _read_coco), (_is_mediapipe, _read_mediapipe))
+"""How a file of all frames is known, and its reader of (value, where, source), the name of what saw them."""

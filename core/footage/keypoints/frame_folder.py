@@ -17,39 +17,24 @@ from .detector_formats import BODY, instance_people, is_instances, is_openpose_f
 from .layouts import Layout, with_hands
 
 MOST_FRAMES = 10**6
-FEW_FRAMES, FEW_SHARE = 2, 0.01
-"""Decoders disagree by so many frames at a clip's end, or by this share of them; more is another clip."""
 
 
 @dataclass(frozen=True)
 class Alignment:
     """How a result's frames lie in the clip."""
 
-    first: int
-    """Number of the clip's first frame in the result."""
-    frame_count: int
-    """Frames of the clip."""
-    notes: tuple[str, ...] = ()
-    """Sentences on what was taken for granted."""
+    first: int  # number of the clip's first frame in the result
+    frame_count: int  # frames of the clip
+    notes: tuple[str, ...] = ()  # sentences on what was taken for granted
 
 
 def tolerance(frame_count: int) -> int:
     """By how many frames a result may be longer or shorter than the clip."""
-    return max(FEW_FRAMES, round(FEW_SHARE * frame_count))
+    return max(2, round(0.01 * frame_count))
 
 
 def align_listed(count: int, frame_count: int | None, where: str, why: str = "") -> Alignment:
-    """Align a list with one entry a frame, the first of which is the clip's first frame.
-
-    Args:
-        count: Number of entries.
-        frame_count: Frames of the clip; None where it is not known.
-        where: The file.
-        why: What is known of the reason for a difference, to end the sentence.
-
-    Raises:
-        InputError: The list is of another clip.
-    """
+    """Align a list with one entry a frame, beginning with the clip's first; `why` may end its refusal."""
     if frame_count is None or count == frame_count:
         return Alignment(0, count)
     difference = count - frame_count
@@ -68,15 +53,7 @@ def align_numbered(
 ) -> Alignment:
     """Align frames that carry numbers, which count from 0, from 1, from the scene's first frame or otherwise.
 
-    Args:
-        numbers: The numbers that are there, at least one.
-        frame_count: Frames of the clip; None where it is not known.
-        frame_start: Scene frame of the clip's first frame.
-        where: The file or folder.
-        complete: Whether frames in which nobody was seen have a number too.
-
-    Raises:
-        InputError: The numbers do not fit the clip.
+    `complete` says whether frames in which nobody was seen have a number too.
     """
     lowest, highest = min(numbers), max(numbers)
     bases = sorted({0, 1, frame_start})
@@ -88,12 +65,10 @@ def align_numbered(
     fitting = [base for base in bases if base <= lowest and highest < base + frame_count]
     notes: tuple[str, ...] = ()
     if not fitting and lowest in bases and length <= frame_count + tolerance(frame_count):
-        notes = (
-            (
-                f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are "
-                "left out"
-            ),
+        note = (
+            f"{where}: goes on to frame {highest}, beyond the clip's {frame_count} frames; they are left out"
         )
+        notes = (note,)
         fitting = [lowest]
     if not fitting:
         raise InputError(
@@ -110,12 +85,11 @@ def align_numbered(
             f"frame must be there, also where nobody was seen{_rate_words(length, frame_count)}"
         )
     if len(touching or fitting) > 1 and missing:
-        notes += (
-            (
-                f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
-                "check that they lie on the performer"
-            ),
+        note = (
+            f"{where}: its frames were taken to count from {first}; no frame tells for certain, so "
+            "check that they lie on the performer"
         )
+        notes += (note,)
     return Alignment(first, frame_count, notes + _hole_notes(numbers, first, frame_count, where, complete))
 
 
@@ -149,11 +123,7 @@ def _rate_words(count: int, frame_count: int) -> str:
     return ""
 
 
-# --- A folder of JSON files, one a frame
-
-
-LARGEST_FILE_BYTES = 4 * 2**20
-"""A hundred people with hands and face."""
+LARGEST_FILE_BYTES = 4 * 2**20  # a hundred people with hands and face
 _NUMBER = re.compile(r"(\d{1,15})(?:_keypoints)?\.json$", re.IGNORECASE)
 
 
@@ -185,9 +155,7 @@ def read_frame_folder(folder: Path) -> DetectedFrames:
         raise InputError(f"{folder}: nobody is seen in any of its {len(files)} files; one must show a person")
     if longest > layout.count:
         layout = with_hands(layout)
-        people = {
-            number: tuple(_as_long(person, longest) for person in there) for number, there in people.items()
-        }
+        people = {at: tuple(_as_long(person, longest) for person in there) for at, there in people.items()}
     return DetectedFrames(str(folder), folder.name or str(folder), layout, people, numbered=True)
 
 
@@ -207,9 +175,8 @@ def _people(value: Any, where: str) -> list[tuple[DetectedPerson, int]]:
 
 def _as_long(person: DetectedPerson, points: int) -> DetectedPerson:
     """A person with so many points, of which those that are added are not seen."""
-    added = points - len(person.place)
-    place = np.concatenate([person.place, np.zeros((added, 2))])
-    return DetectedPerson(place, np.concatenate([person.score, np.zeros(added)]))
+    added = (0, points - len(person.place))
+    return DetectedPerson(np.pad(person.place, (added, (0, 0))), np.pad(person.score, added))
 
 
 def _numbered_files(folder: Path) -> dict[int, Path]:

@@ -23,28 +23,16 @@ from .detected_frames import (
     check_people,
     person_array,
 )
-from .detector_formats import (
-    is_coco,
-    is_instances,
-    is_mediapipe,
-    is_mmpose,
-    is_openpose_frame,
-    read_coco,
-    read_mediapipe,
-    read_mmpose,
-)
+from .detector_formats import FORMATS, is_instances, is_openpose_frame
 from .frame_folder import MOST_FRAMES, read_frame_folder
 from .keypoints import BODY_POINTS, People, SeenPeople
 from .layouts import LAYOUTS, OWN, Layout, own_layout
 
 LARGEST_SIDE_PX = 65536
-LONGEST_DETECTOR = 200
-"""Characters."""
-PIXEL_DIGITS, SCORE_DIGITS, HINT_DIGITS = 3, 4, 4
-"""Decimals that are written: a thousandth of a pixel, a tenth of a millimeter."""
-
-
+LONGEST_DETECTOR = 200  # characters
 NAMES = Items("body points", 1, len(BODY_POINTS), unique="point", item=Choice(BODY_POINTS))
+VISIBLE = f"one line of at most {LONGEST_DETECTOR} visible characters"
+Detector = Annotated[str, Text(LONGEST_DETECTOR, VISIBLE, one_line=True)]
 Rows = Annotated[tuple[Any, ...], Items("entries, one a frame", 1, MOST_FRAMES, item=Anything("an entry"))]
 
 
@@ -64,17 +52,7 @@ class OwnFile(Record):
     proportions."""
     names: Annotated[Any, Anything("a list of body points")] = None
     """Body points of the layout own, each once; other layouts ignore it."""
-    detector: (
-        Annotated[
-            str,
-            Text(
-                LONGEST_DETECTOR,
-                f"one line of at most {LONGEST_DETECTOR} visible characters",
-                one_line=True,
-            ),
-        ]
-        | None
-    ) = None
+    detector: Detector | None = None
     """What saw the points; shown to people."""
     frame_start: Annotated[int, Whole(-(10**6), 10**6)] | None = None
     """Scene frame of the first entry, which is the clip's first frame."""
@@ -92,15 +70,7 @@ class OwnFile(Record):
 
 
 def read_own(fields: Fields, name: str) -> DetectedFrames:
-    """Read a file of our own.
-
-    Args:
-        fields: The file's fields.
-        name: The file's name, which stands for a detector that is not named.
-
-    Raises:
-        InputError: A field is missing or not what it must be.
-    """
+    """Read a file of our own, whose name stands for a detector that is not named."""
     said = read_record(OwnFile, fields)
     layout = _layout(said, fields)
     several = said.people is not None
@@ -120,10 +90,9 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
     field = "people" if several else "frames"
     people = {}
     for index, (row, hints) in enumerate(zip(rows, world, strict=True)):
-        where = f"{fields.where}: {field}[{index}]"
-        hint_where = f"{fields.where}: world[{index}]"
+        where, hint_where = f"{fields.where}: {field}[{index}]", f"{fields.where}: world[{index}]"
         if not several:
-            row, hints = _alone(row), _alone(hints)
+            row, hints = (None if entry is None else [entry] for entry in (row, hints))
         people[index] = _frame(row, hints, layout, where, hint_where)
     return DetectedFrames(
         where=fields.where,
@@ -141,12 +110,6 @@ def read_own(fields: Fields, name: str) -> DetectedFrames:
 def write_keypoints(path: Path, people: People, frame_start: int, fps: float | None = None) -> None:
     """Write a file of our own, atomically; `read_keypoints` reads it back.
 
-    Args:
-        path: The file; an older one is replaced.
-        people: Whom a source saw, in every frame of the clip.
-        frame_start: Scene frame of the clip's first frame.
-        fps: Frames per second of the clip.
-
     Raises:
         ConversionError: The file cannot be written.
     """
@@ -162,10 +125,6 @@ def write_keypoints(path: Path, people: People, frame_start: int, fps: float | N
     if any(hint is not None for _, hint in rows):
         fields["world"] = [hint for _, hint in rows]
     write_json(path, fields)
-
-
-def _alone(entry: Any) -> Any:
-    return None if entry is None else [entry]
 
 
 def _layout(said: OwnFile, fields: Fields) -> Layout:
@@ -209,8 +168,8 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
         return None, None
     seen = np.isfinite(frame.pixel).all(axis=-1) & (frame.score > 0.0)
     # A score that is rounded to 0 would say that the point is not seen.
-    score = np.where(seen, np.maximum(np.round(frame.score, SCORE_DIGITS), 10.0**-SCORE_DIGITS), 0.0)
-    pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), PIXEL_DIGITS)
+    score = np.where(seen, np.maximum(np.round(frame.score, 4), 1e-4), 0.0)
+    pixel = np.round(np.where(seen[..., None], frame.pixel, 0.0), 3)  # a thousandth of a pixel
     rows = np.concatenate([pixel, score[..., None]], axis=-1).tolist()
     hints = [_written_hints(hint) for hint in frame.hint_m]
     if all(hint is None for hint in hints):
@@ -221,30 +180,15 @@ def _written(frame: SeenPeople, several: bool) -> tuple[Any, Any]:
 def _written_hints(hint: Array) -> Sequence[Any] | None:
     if not np.isfinite(hint).any():
         return None
-    rounded = np.round(hint, HINT_DIGITS)
+    rounded = np.round(hint, 4)  # a tenth of a millimeter
     return [[float(x) if np.isfinite(x) else None for x in row] for row in rounded]
 
 
-# --- Files of keypoints
-
-
-__all__ = ["LARGEST_BYTES", "read_keypoints", "write_keypoints"]
-
-LARGEST_BYTES = 128 * 2**20
-"""Twenty minutes of two people with their hints of depth."""
-LONGEST_SOURCE = 200
-FORMATS = (
-    "Keymark's own file (with layout and frames), a folder of OpenPose's files, or a result file of MMPose, "
-    "COCO or MediaPipe"
-)
+LARGEST_BYTES = 128 * 2**20  # twenty minutes of two people with their hints of depth
 
 
 def read_keypoints(
-    path: Path,
-    frame_count: int | None,
-    size: tuple[int, int],
-    fps: float | None = None,
-    frame_start: int = 1,
+    path: Path, frame_count: int | None, size: tuple[int, int], fps: float | None = None, frame_start: int = 1
 ) -> People:
     """Read keypoints of a clip, whatever wrote them; `notes` says what was taken for granted.
 
@@ -262,20 +206,20 @@ def read_keypoints(
 
 
 def _read(path: Path) -> DetectedFrames:
-    source = "".join("?" if is_control_character(char) else char for char in path.name)[:LONGEST_SOURCE]
+    source = "".join("?" if is_control_character(char) else char for char in path.name)[:200]
     if path.is_dir():
         return read_frame_folder(path)
     value = read_json_value(path, LARGEST_BYTES)
     where = str(path)
     if isinstance(value, dict) and "layout" in value:
         return read_own(Fields(value, where), source)
-    if is_mmpose(value):
-        return read_mmpose(value, where, source)
-    if is_coco(value):
-        return read_coco(value, where, source)
-    if is_mediapipe(value):
-        return read_mediapipe(value, where, source)
-    raise InputError(f"{path}: {_seen(value)}; it must be {FORMATS}")
+    for recognizes, read in FORMATS:
+        if recognizes(value):
+            return read(value, where, source)
+    raise InputError(
+        f"{path}: {_seen(value)}; it must be Keymark's own file (with layout and frames), a folder of "
+        "OpenPose's files, or a result file of MMPose, COCO or MediaPipe"
+    )
 
 
 def _seen(value: Any) -> str:

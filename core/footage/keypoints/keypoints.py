@@ -39,24 +39,13 @@ def mirror_images(names: Sequence[str], sources: Sequence[str]) -> list[int]:
     ]
 
 
-# --- Detectors' scores as confidences from 0 to 1, whatever they are
-
-
-HIGH_SHARE = 0.95
-"""Share of all scores that lie below the one that counts as certain: a few outliers set no scale."""
-
-
 def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
-    """Scores as confidences, and a sentence where they had to be changed.
+    """Scores (S,) of all placed points as confidences, and a sentence where they had to be changed.
 
     Probabilities stay as they are; a negative one among them stands for nothing found. Negative scores beside
     such above 1 are logits, the logarithm of the odds. Responses of networks that exceed 1 (SimCC's heat
     maps, percentages) are divided by the one that most stay below: only their order and proportion mean
     anything. A file without any score vouches for all of its points.
-
-    Args:
-        scores: (S,) all scores of points that have a place; NaN where there is none.
-        where: The file.
     """
     known = scores[np.isfinite(scores)]
     if not len(known) or not known.any():
@@ -68,26 +57,19 @@ def confidences(scores: Array, where: str) -> tuple[Array, tuple[str, ...]]:
     if low < 0.0:
         note = f"{where}: its scores, {low:.3g} to {high:.3g}, were taken for logits and made confidences"
         return 1.0 / (1.0 + np.exp(-np.clip(scores, -50.0, 50.0))), (note,)
-    certain = max(1.0, float(np.quantile(known, HIGH_SHARE)))
+    certain = max(1.0, float(np.quantile(known, 0.95)))  # a few outliers set no scale
     note = f"{where}: its scores reach {high:.3g}; {certain:.3g} and more count as certain"
     return np.minimum(scores / certain, 1.0), (note,)
-
-
-# --- Keypoints of the performer
 
 
 @dataclass(frozen=True, eq=False)
 class Keypoints:
     """N keypoints of one person in F frames; NaN where one is not seen."""
 
-    names: tuple[str, ...]
-    """(N,) the body point each shows; two sources may show the same one."""
-    sources: tuple[str, ...]
-    """(N,) what saw each: a detector, Blender's tracks, a person."""
-    pixel: Array
-    """(F, N, 2) [px] of the clip, origin at the outer corner of the top left pixel."""
-    score: Array
-    """(F, N) the source's confidence, 0 to 1; 0 where not seen."""
+    names: tuple[str, ...]  # (N,) the body point each shows; two sources may show the same one
+    sources: tuple[str, ...]  # (N,) what saw each: a detector, Blender's tracks, a person
+    pixel: Array  # (F, N, 2) [px] of the clip, origin at the outer corner of the top left pixel
+    score: Array  # (F, N) the source's confidence, 0 to 1; 0 where not seen
     hint_m: Array
     """(F, N, 3) a network's guess of the points in space [m]: x right, y down, z away from the camera, origin
     between the hips; NaN where there is none."""
@@ -95,11 +77,6 @@ class Keypoints:
     """Sentences on who of several people was taken, and on what the sources' files leave open."""
 
     def __post_init__(self) -> None:
-        """Check names and shapes and keep own, read-only copies.
-
-        Raises:
-            ValueError: A name is unknown, or shapes disagree.
-        """
         unknown = set(self.names) - set(BODY_POINTS)
         if unknown:
             raise ValueError(f"unknown body points {sorted(unknown)}")
@@ -159,39 +136,27 @@ class Keypoints:
         return replace(self, hint_m=np.full(self.hint_m.shape, np.nan))
 
 
-# --- People
-
-
 @dataclass(frozen=True, eq=False)
 class SeenPeople:
     """One source's people of one frame, H of them; a person may be missing in any frame."""
 
-    pixel: Array
-    """(H, N, 2) [px] of the clip, NaN where not seen."""
-    score: Array
-    """(H, N) 0 to 1, 0 where not seen."""
-    hint_m: Array
-    """(H, N, 3) as in `Keypoints`."""
+    pixel: Array  # (H, N, 2) [px] of the clip, NaN where not seen
+    score: Array  # (H, N) 0 to 1, 0 where not seen
+    hint_m: Array  # (H, N, 3) as in `Keypoints`
 
 
 @dataclass(frozen=True, eq=False)
 class People:
     """Everyone whom a source saw in F frames, with N body points each."""
 
-    names: tuple[str, ...]
-    """(N,) the body points."""
-    source: str
-    """What saw them: the name of the detector, or of the file."""
-    size: tuple[int, int]
-    """Width and height of the pictures they were seen in [px]."""
-    frames: tuple[SeenPeople, ...]
-    """Those of each frame of the clip, none or several."""
-    file: str = ""
-    """The file they were read from, for sentences; empty where there is none."""
+    names: tuple[str, ...]  # (N,) the body points
+    source: str  # what saw them: the name of the detector, or of the file
+    size: tuple[int, int]  # width and height of the pictures they were seen in [px]
+    frames: tuple[SeenPeople, ...]  # those of each frame of the clip, none or several
+    file: str = ""  # the file they were read from, for sentences; empty where there is none
     by_hand: bool = False
     """Whether a person placed the points: clicks and Blender's tracks, which are all the performer's."""
-    notes: tuple[str, ...] = ()
-    """Sentences on what was taken for granted or mended."""
+    notes: tuple[str, ...] = ()  # sentences on what was taken for granted or mended
 
     @property
     def most_people(self) -> int:

@@ -16,11 +16,8 @@ from types import MappingProxyType
 from ...body.skeleton import SIDES
 from .keypoints import BODY_POINTS
 
-OWN = "own"
-"""Name of a layout whose file lists the names itself."""
+OWN = "own"  # name of a layout whose file lists the names itself
 HAND_POINTS = 21
-INDEX_KNUCKLE, THUMB_KNUCKLE, PINKY_KNUCKLE = 5, 2, 17
-"""In the points of a hand, counted from the wrist along thumb, index, middle, ring and little finger."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +25,8 @@ class Layout:
     """An order of points."""
 
     name: str
-    count: int
-    """Number of points of a person in the file."""
-    points: Mapping[int, str]
-    """The body point by number; numbers that are missing show nothing that is used."""
+    count: int  # number of points of a person in the file
+    points: Mapping[int, str]  # the body point by number; numbers that are missing show nothing that is used
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -45,7 +40,6 @@ class Layout:
 
 
 def _both(*parts: str) -> list[str]:
-    """Left and right of each part, one after the other."""
     return [f"{part}.{side}" for part in parts for side in SIDES]
 
 
@@ -62,7 +56,7 @@ def _layout(
 
 def _hands(left: int, right: int) -> dict[int, str]:
     """Knuckles of the two hands, whose 21 points begin at these numbers."""
-    knuckles = {"index": INDEX_KNUCKLE, "thumb": THUMB_KNUCKLE, "pinky": PINKY_KNUCKLE}
+    knuckles = {"index": 5, "thumb": 2, "pinky": 17}
     return {
         first + knuckle: f"{finger}.{side}"
         for side, first in zip(SIDES, (left, right), strict=True)
@@ -70,43 +64,26 @@ def _hands(left: int, right: int) -> dict[int, str]:
     }
 
 
-_ARM, _LEG = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")
+_ARM, _LEG, _FOOT = ("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle"), ("toe", "small_toe", "heel")
 _COCO = ["nose", *_both("eye", "ear", *_ARM, *_LEG)]
+_FEET = [*_limb("L", *_FOOT), *_limb("R", *_FOOT)]
+_HALPE = [*_COCO, "crown", "neck", "pelvis", *_both(*_FOOT)]
 _OPENPOSE_ARMS = ["nose", "neck", *_limb("R", *_ARM), *_limb("L", *_ARM)]
-_OPENPOSE_FACE = ["eye.R", "eye.L", "ear.R", "ear.L"]
-_HALPE = [*_COCO, "crown", "neck", "pelvis", *_both("toe", "small_toe", "heel")]
-_FOOT = ("toe", "small_toe", "heel")
+_OPENPOSE_LEGS = [*_limb("R", *_LEG), *_limb("L", *_LEG), "eye.R", "eye.L", "ear.R", "ear.L"]  # and the face
 _BLAZEPOSE = [
     *("nose", None, "eye.L", None, None, "eye.R", None, "ear.L", "ear.R", None, None),
     *_both(*_ARM, "pinky", "index", "thumb", *_LEG, "heel", "toe"),
 ]
-
-LAYOUTS: Mapping[str, Layout] = MappingProxyType(
-    {
-        layout.name: layout
-        for layout in (
-            _layout("coco17", 17, _COCO),
-            _layout("coco18", 18, [*_OPENPOSE_ARMS, *_limb("R", *_LEG), *_limb("L", *_LEG), *_OPENPOSE_FACE]),
-            _layout(
-                "body25",
-                25,
-                [
-                    *_OPENPOSE_ARMS,
-                    "pelvis",
-                    *_limb("R", *_LEG),
-                    *_limb("L", *_LEG),
-                    *_OPENPOSE_FACE,
-                    *_limb("L", *_FOOT),
-                    *_limb("R", *_FOOT),
-                ],
-            ),
-            _layout("halpe26", 26, _HALPE),
-            _layout("blazepose33", 33, _BLAZEPOSE),
-            _layout("wholebody133", 133, [*_COCO, *_limb("L", *_FOOT), *_limb("R", *_FOOT)], _hands(91, 112)),
-            _layout("halpe136", 136, _HALPE, _hands(94, 115)),
-        )
-    }
+_KNOWN = (
+    _layout("coco17", 17, _COCO),
+    _layout("coco18", 18, [*_OPENPOSE_ARMS, *_OPENPOSE_LEGS]),
+    _layout("body25", 25, [*_OPENPOSE_ARMS, "pelvis", *_OPENPOSE_LEGS, *_FEET]),
+    _layout("halpe26", 26, _HALPE),
+    _layout("blazepose33", 33, _BLAZEPOSE),
+    _layout("wholebody133", 133, [*_COCO, *_FEET], _hands(91, 112)),
+    _layout("halpe136", 136, _HALPE, _hands(94, 115)),
 )
+LAYOUTS: Mapping[str, Layout] = MappingProxyType({layout.name: layout for layout in _KNOWN})
 """All that detectors use; no two have the same number of points."""
 
 
@@ -132,9 +109,6 @@ def layout_words() -> str:
     return ", ".join(f"{layout.name} ({layout.count})" for layout in LAYOUTS.values())
 
 
-# --- Which body point a track is meant to follow, by the name that a person gave it
-
-
 SIDE_WORDS = {"l": "L", "left": "L", "r": "R", "right": "R"}
 SYNONYMS = {
     "skull": "head",
@@ -158,11 +132,8 @@ SYNONYMS = {
 WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 """Words of a name, whatever separates them, as in `LeftWrist`, `left_wrist` and `wrist.L`; no numbers."""
 
-MOST_NAMES = 4096
-"""Names that are remembered: panels ask for those of all tracks of a clip whenever they are drawn."""
 
-
-@lru_cache(maxsize=MOST_NAMES)
+@lru_cache(maxsize=4096)  # panels ask for all tracks of a clip whenever they are drawn
 def named_point(name: str) -> str | None:
     """Body point that a track is named after, as `wrist.L`, `Left Wrist` or `l_wrist.001`; None if none."""
     words = [word.lower() for word in WORDS.findall(name)]

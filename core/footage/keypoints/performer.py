@@ -7,7 +7,7 @@ heading and the change of its shape, both of which may grow with the time betwee
 deviations, each limited, so that one wrong point or frame decides nothing.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,69 +16,37 @@ from ...body.human import HUMAN
 from .keypoints import Keypoints
 
 NOBODY = -1
-MOST_CANDIDATES = 8
-"""People a frame that are looked at: those nearest to the expected place, or the largest."""
-STEP_BACK_S = 1.0
-"""Time over which a sighting foretells another; after it a person may be anywhere."""
-FARTHEST_COST = 8.0
-"""Of a point: four standard deviations."""
-ABSENT_COST = 4.5
-"""Of taking nobody where the performer is expected: three standard deviations."""
-UNKNOWN_ABSENT_COST = 1.0
-"""The same where nobody says where the performer is; somebody who is there longer is preferred."""
-PREFERENCE = 0.25
-"""Where nothing is expected in the whole clip: of being small, and of scores near 0."""
-TIE = 0.01
-"""The same where it is expected in other frames."""
-JUMP_COST = 12.0
-"""Of a step to anywhere: five standard deviations."""
-NOISE, ACCELERATION_PER_S2 = 0.02, 3.0
-"""Of a person's place, as shares of its size: a detector's error, and half of what gravity does to a body."""
-UNKNOWN_SPEED_PER_S = 2.0
-"""Of somebody seen for the first time, in sizes a second: a run."""
-SHAPE_NOISE, SHAPE_PER_S, MOST_SHAPE = 0.05, 1.2, 0.4
-"""Of the points about their middle: a detector's error, limbs at 2 m/s, any two postures."""
+MOST_CANDIDATES = 8  # people a frame that are looked at: those nearest to the expected place, or the largest
+ABSENT_COST = 4.5  # of taking nobody where the performer is expected: three standard deviations
+JUMP_COST = 12.0  # of a step to anywhere: five standard deviations
 
 
 @dataclass(frozen=True, eq=False)
 class Sightings:
     """People of every frame, H of them in each with K points, which need not be a detector's."""
 
-    pixel: tuple[Array, ...]
-    """(H, K, 2) [px] a frame, NaN where not seen."""
-    score: tuple[Array, ...]
-    """(H, K) 0 to 1 a frame."""
+    pixel: tuple[Array, ...]  # (H, K, 2) [px] a frame, NaN where not seen
+    score: tuple[Array, ...]  # (H, K) 0 to 1 a frame
 
 
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Where the performer's points are expected."""
 
-    pixel: Array
-    """(F, K, 2) [px], NaN where nothing is known."""
-    std_px: Array
-    """(F, K) standard deviation in each direction [px]."""
-    weight: Array
-    """(F,) how much a frame counts: more than 1 where a person has said where the performer is."""
+    pixel: Array  # (F, K, 2) [px], NaN where nothing is known
+    std_px: Array  # (F, K) standard deviation in each direction [px]
+    weight: Array  # (F,) how much a frame counts: more than 1 where a person has said where the performer is
 
 
 def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> IndexArray:
-    """The performer's index among the people of each frame, `NOBODY` where it is none of them.
-
-    Args:
-        seen: The people of F frames.
-        expected: Where the performer is expected; None where nothing is known.
-        fps: Frames per second.
-    """
+    """The performer's index among the people of each of F frames, `NOBODY` where it is none of them."""
     frames = len(seen.pixel)
     costs, absent = _costs(seen, expected)
     before = np.concatenate([[0.0], np.cumsum(absent)])  # of all frames before each
-    window = max(1, round(STEP_BACK_S * fps))
+    window = max(1, round(1.0 * fps))  # seconds; after them a person may be anywhere
     kept: list[_Reached] = []
-    best_far = (
-        np.inf
-    )  # least cost of a path that ended before the window, without the frames passed over since
-    far = (0, 0)
+    # Least cost of a path that ended before the window, without the frames passed over since, and its end.
+    best_far, far = np.inf, (0, 0)
     end, last = before[-1], (NOBODY, 0)
     for frame in range(frames):
         if frame > window and len(kept[frame - window - 1].cost):
@@ -98,22 +66,24 @@ def choose_performer(seen: Sightings, expected: Expected | None, fps: float) -> 
             if value.min() < end:
                 end, last = float(value.min()), (frame, int(value.argmin()))
         kept.append(reached)
-    return _path(kept, last, frames)
+    chosen = np.full(frames, NOBODY, dtype=np.intp)
+    frame, row = last
+    while frame != NOBODY:
+        chosen[frame] = kept[frame].rows[row]
+        frame, row = (int(value) for value in kept[frame].previous[row])
+    return chosen
 
 
 @dataclass(eq=False)
 class _Reached:
     """The best path to each candidate of a frame."""
 
-    pixel: Array
-    """(H, K, 2)"""
-    rows: IndexArray
-    """(H,) their indices among the frame's people."""
+    pixel: Array  # (H, K, 2)
+    rows: IndexArray  # (H,) their indices among the frame's people
     cost: Array
     previous: IndexArray
     """(H, 2) frame and candidate from which the path comes; frame `NOBODY` where it begins."""
-    velocity: Array
-    """(H, 2) px a second along the path; NaN where it begins."""
+    velocity: Array  # (H, 2) px a second along the path; NaN where it begins
 
     @classmethod
     def start(cls, pixel: Array, rows: IndexArray, cost: float) -> "_Reached":
@@ -160,9 +130,11 @@ def _step_cost(pixel: Array, velocity: Array, time_s: Array, now: Array) -> tupl
     size = np.maximum(person_size(now)[:, None], person_size(pixel)[None])
     known = np.isfinite(velocity).all(axis=-1)
     ahead = np.where(known[:, None], np.nan_to_num(velocity), 0.0) * time_s[:, None]
-    spread = NOISE + ACCELERATION_PER_S2 * time_s**2 + np.where(known, 0.0, UNKNOWN_SPEED_PER_S * time_s)
+    # Shares of a person's size: a detector's error, half of what gravity does to a body, and a run of whom no
+    # speed is known of. The points about their middle: a detector's error, limbs at 2 m/s, any two postures.
+    spread = 0.02 + 3.0 * time_s**2 + np.where(known, 0.0, 2.0 * time_s)
     shift2 = ((moved - ahead) ** 2).sum(axis=-1) / (size * spread) ** 2
-    shape = np.minimum(SHAPE_NOISE + SHAPE_PER_S * time_s, MOST_SHAPE)
+    shape = np.minimum(0.05 + 1.2 * time_s, 0.4)
     cost = 0.5 * (shift2 + shape2 / (size * shape) ** 2)
     return np.where(shared.any(axis=-1), np.minimum(cost, JUMP_COST), JUMP_COST), moved
 
@@ -180,11 +152,13 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
     """Cost of each person of each frame, infinite for those not looked at, and of taking nobody (F,)."""
     sizes = [person_size(pixel) for pixel in seen.pixel]
     largest = max((float(size.max()) for size in sizes if len(size)), default=1.0)
-    preference = PREFERENCE if expected is None else TIE
+    preference = 0.25 if expected is None else 0.01  # of being large and sure; elsewhere it breaks ties alone
     costs, absent = [], np.zeros(len(seen.pixel))
     for frame, (pixel, score) in enumerate(zip(seen.pixel, seen.score, strict=True)):
-        cost = preference * (2.0 - sizes[frame] / largest - _mean_score(pixel, score))
-        absent[frame] = UNKNOWN_ABSENT_COST if len(pixel) else 0.0
+        there = np.isfinite(pixel).all(axis=-1)
+        mean_score = (score * there).sum(axis=1) / np.maximum(there.sum(axis=1), 1)
+        cost = preference * (2.0 - sizes[frame] / largest - mean_score)
+        absent[frame] = 1.0 if len(pixel) else 0.0  # somebody who is there longer is preferred
         if expected is not None and len(pixel):
             known = np.isfinite(expected.pixel[frame]).all(axis=-1)
             if known.any():
@@ -197,40 +171,14 @@ def _costs(seen: Sightings, expected: Expected | None) -> tuple[list[Array], Arr
     return costs, absent
 
 
-def _mean_score(pixel: Array, score: Array) -> Array:
-    """(H,) mean score of everyone's seen points."""
-    seen = np.isfinite(pixel).all(axis=-1)
-    return np.asarray((score * seen).sum(axis=1) / np.maximum(seen.sum(axis=1), 1))
-
-
 def _distance_cost(pixel: Array, score: Array, expected: Expected, frame: int, known: BoolArray) -> Array:
     """(H,) mean over the points of half the squared distance, each limited, weighted by the scores."""
     weight = np.where(np.isfinite(pixel).all(axis=-1) & known, score, 0.0)
     distance2 = ((pixel - expected.pixel[frame]) ** 2).sum(axis=-1) / expected.std_px[frame] ** 2
-    cost = np.minimum(0.5 * np.where(weight > 0.0, distance2, 0.0), FARTHEST_COST)
+    cost = np.minimum(0.5 * np.where(weight > 0.0, distance2, 0.0), 8.0)  # four deviations
     total = weight.sum(axis=1)
     # Somebody of whom no expected point is seen is as good as nobody.
     return np.where(total > 0.0, (weight * cost).sum(axis=1) / np.where(total > 0.0, total, 1.0), ABSENT_COST)
-
-
-def _path(kept: list[_Reached], last: tuple[int, int], frames: int) -> IndexArray:
-    chosen = np.full(frames, NOBODY, dtype=np.intp)
-    frame, row = last
-    while frame != NOBODY:
-        chosen[frame] = kept[frame].rows[row]
-        frame, row = (int(value) for value in kept[frame].previous[row])
-    return chosen
-
-
-# --- The principal points of the performer as keypoints of any layout and of several sources show them
-
-
-HEAD, EARS, NOSE = "head", ("ear.L", "ear.R"), "nose"
-NOSE_SHARE = 0.3
-"""Confidence in the head's center where only the nose shows it, a decimeter in front of it."""
-ALIKE_SHARE = 0.1
-"""Distance of two sources' points, relative to the performer's size in the picture, within which both are
-believed."""
 
 
 def principal_keypoints(keypoints: Keypoints) -> Keypoints:
@@ -240,9 +188,10 @@ def principal_keypoints(keypoints: Keypoints) -> Keypoints:
     """
     size = performer_size_px(keypoints)
     found = [_agreed(keypoints, name, size) for name in HUMAN.point_names]
-    head = HUMAN.point_names.index(HEAD)
-    found[head] = found[head].or_else(_middle(*(_agreed(keypoints, name, size) for name in EARS)))
-    found[head] = found[head].or_else(_agreed(keypoints, NOSE, size).doubted(NOSE_SHARE))
+    head = HUMAN.point_names.index("head")
+    left, right, nose = (_agreed(keypoints, name, size) for name in ("ear.L", "ear.R", "nose"))
+    doubted = replace(nose, score=0.3 * nose.score)  # it lies a decimeter before the head's middle
+    found[head] = found[head].or_else(_middle(left, right)).or_else(doubted)
     return Keypoints(
         HUMAN.point_names,
         ("",) * len(found),
@@ -267,16 +216,9 @@ def performer_size_px(keypoints: Keypoints) -> Array:
 class _Point:
     """One point of the body over F frames."""
 
-    pixel: Array
-    """(F, 2) [px], NaN where not seen."""
-    score: Array
-    """(F,) 0 where not seen."""
-    hint_m: Array
-    """(F, 3) NaN where there is none."""
-
-    def doubted(self, share: float) -> "_Point":
-        """The same point with less confidence."""
-        return _Point(self.pixel, share * self.score, self.hint_m)
+    pixel: Array  # (F, 2) [px], NaN where not seen
+    score: Array  # (F,) 0 where not seen
+    hint_m: Array  # (F, 3) NaN where there is none
 
     def or_else(self, other: "_Point") -> "_Point":
         """This point where it is seen, the other elsewhere."""
@@ -307,7 +249,7 @@ def _agreed(keypoints: Keypoints, name: str, size_px: Array) -> _Point:
     score = np.where(keypoints.seen[:, own], keypoints.score[:, own], -1.0)
     best = (np.arange(len(score)), score.argmax(axis=1))
     apart = np.linalg.norm(pixel - pixel[best][:, None], axis=-1)  # NaN where not seen
-    weight = np.where(apart <= ALIKE_SHARE * size_px[:, None], np.maximum(score, 1e-6), 0.0)
+    weight = np.where(apart <= 0.1 * size_px[:, None], np.maximum(score, 1e-6), 0.0)
     hinted = weight * np.isfinite(hint).all(axis=-1)
     return _Point(_mean(pixel, weight), np.maximum(score[best], 0.0), _mean(hint, hinted))
 

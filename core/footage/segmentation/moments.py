@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 
 from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
 
-PIXEL_VARIANCE = 1.0 / 12.0
-"""Variance along each axis of a unit square of even weight, in px²."""
+PIXEL_VARIANCE = 1.0 / 12.0  # variance along each axis of a unit square of even weight, in px²
 
 MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
 """Of a length, that the raw moments m00, m10, m01, m20, m11, m02 grow with."""
@@ -24,25 +23,18 @@ MOMENT_POWERS = np.array([2, 3, 3, 4, 4, 4])
 class Characteristics(NamedTuple):
     """The characteristics of one or more regions; fields (...)."""
 
-    x: Array
-    """S_x, the centroid's column in pixels."""
-    y: Array
-    """S_y, the centroid's row in pixels, downwards."""
+    x: Array  # S_x, the centroid's column in pixels
+    y: Array  # S_y, the centroid's row in pixels, downwards
     angle_rad: Array
     """S_θ in (-π/2, π/2], from the image's x axis towards its y axis (downwards); meaningful modulo π."""
-    ratio: Array
-    """S_λ = λ1/λ2 >= 1, of the squared axes."""
+    ratio: Array  # S_λ = λ1/λ2 >= 1, of the squared axes
 
 
 def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) -> Array:
-    """Return m00, m10, m01, m20, m11, m02 (6,) of a weighted region (eq. 1).
+    """M00, m10, m01, m20, m11, m02 (6,) of a weighted region (rows, columns) at an origin (x, y) (eq. 1).
 
     Every pixel counts as a unit square of even weight, so a full rectangle has exactly the moments of the
     rectangle.
-
-    Args:
-        weights: Coverage of each pixel, (rows, columns), booleans or numbers >= 0.
-        origin: Image coordinates (x, y) of the window's top left corner, in pixels.
     """
     # OpenCV takes pixels for points and the first pixel's center for the origin.
     points = cv2.moments(np.asarray(weights, dtype=np.float64))
@@ -56,13 +48,9 @@ def raw_moments(weights: ArrayLike, origin: tuple[float, float] = (0.0, 0.0)) ->
 
 
 def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
-    """Centroids (..., 2) in px and second central moment matrices (..., 2, 2) in px² (eqs. 2 to 4).
+    """Centroids (..., 2) and A = [[μ20, μ11], [μ11, μ02]] / m00 (..., 2, 2) of raw moments (..., 6).
 
-    Args:
-        moments: Raw moments (..., 6) as `raw_moments` gives them; moments of disjoint regions add up.
-
-    Returns:
-        Centroid and A = [[μ20, μ11], [μ11, μ02]] / m00; NaN where m00 is zero.
+    Eqs. 2 to 4, in px; NaN where m00 is zero. Moments of disjoint regions add up.
     """
     m = np.asarray(moments, dtype=np.float64)
     area = np.where(m[..., 0] > 0.0, m[..., 0], np.nan)[..., None]
@@ -81,15 +69,11 @@ def centroid_and_second_moment(moments: ArrayLike) -> tuple[Array, Array]:
 
 
 def characteristics(centroid: ArrayLike, second_moment: ArrayLike) -> Characteristics:
-    """Return S_x, S_y, S_θ, S_λ of regions.
+    """S_x, S_y, S_θ, S_λ of regions with centroids (..., 2) [px] and A (..., 2, 2) [px²].
 
     S_θ is the direction of the eigenvector of the larger eigenvalue λ1: the printed eq. 5 names λ2, but the
     sentence after it says major axis, and that is λ1's. S_λ = λ1/λ2 (eq. 6) is the square of the ratio of the
     axes.
-
-    Args:
-        centroid: (..., 2) in px.
-        second_moment: A, (..., 2, 2) in px².
     """
     centroid = np.asarray(centroid, dtype=np.float64)
     matrix = np.asarray(second_moment, dtype=np.float64)
@@ -111,35 +95,25 @@ def axis_angle_difference(first: ArrayLike, second: ArrayLike) -> Array:
     return np.asarray((difference + np.pi / 2.0) % np.pi - np.pi / 2.0)
 
 
-# --- Alpha matting
-
-
 WEIGHT = np.diag([1.0 / 9.0, 1.0, 1.0]).astype(np.float32)
 """Luma varies within a surface by its shading, so it says less about coverage than chroma does."""
 SUM = np.ones((1, 3), dtype=np.float32)
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-REACH = (5, 5)
-"""Sides, in halved pixels, of the squares that local colors are averaged over."""
+REACH = (5, 5)  # sides, in halved pixels, of the squares that local colors are averaged over
 
 
 class Coverage(NamedTuple):
     """Coverage of pixels by regions (alpha)."""
 
-    pixel: IndexArray
-    """(N,) flat indices of all pixels that may be covered."""
-    share: SingleArray
-    """(N,) float32 covered share of each, in 0..1."""
+    pixel: IndexArray  # (N,) flat indices of all pixels that may be covered
+    share: SingleArray  # (N,) float32 covered share of each, in 0..1
 
 
 def coverage(image: Image, mask: Image) -> Coverage:
-    """The share of each pixel that the masked regions cover.
+    """The share of each pixel of an image, with even rows and columns, that the masked regions (1) cover.
 
     Computed in the band of two pixels to either side of a region's edge, in which optics and halved chroma
     blur edges; elsewhere the mask holds.
-
-    Args:
-        image: (rows, columns, 3) uint8 blue, green, red; rows and columns even.
-        mask: (rows, columns) uint8, 1 in the classified regions.
     """
     first = cv2.erode(mask, CROSS)
     second = cv2.erode(first, CROSS)

@@ -11,47 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from ...arrays import Array, BoolArray, Image, IntArray, SingleArray
 from ..colors.color_model import BACKGROUND, ColorModel
 from ..ignored_regions import without
+from ..region_tracks import NO_REGIONS, Regions
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE, Coverage, coverage
 from .search_windows import MARGIN, Atlas, Box, Window, boxes_to_measure, colored_boxes, pack_windows
 from .working_image import halvings, measuring_image, searching_factor, searching_image, smooth
 
-MOST_REGIONS = 8
-"""Most regions kept of each color in a frame, the largest ones; bounds the memory of a clip."""
-SURE = 230
-"""Probability (in 1/255) that some pixels of a region must reach; blends of other colors do not."""
 FEWEST_PIXELS = 6
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-
-
-class Regions(NamedTuple):
-    """R connected regions of the markers' colors in one image, by color and from large to small."""
-
-    color: IntArray
-    """(R,) index of the color of each."""
-    moments: Array
-    """(R, 6) raw moments m00, m10, m01, m20, m11, m02 in pixels of the measuring grid."""
-    box: IntArray
-    """(R, 4) left, top, right, bottom in its pixels."""
-    certainty: Array
-    """(R,) mean probability of the pixels' color in 0..1."""
-    clipped: BoolArray
-    """(R,) whether it touches the image's border."""
-
-    def part(self, first: int, end: int) -> "Regions":
-        """The regions from `first` to before `end`."""
-        some = slice(first, end)
-        return Regions(
-            self.color[some], self.moments[some], self.box[some], self.certainty[some], self.clipped[some]
-        )
-
-
-NO_REGIONS = Regions(
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, 6)),
-    np.zeros((0, 4), dtype=np.int64),
-    np.zeros(0),
-    np.zeros(0, dtype=np.bool_),
-)
 
 
 def find_regions(
@@ -61,17 +27,11 @@ def find_regions(
     before: Regions = NO_REGIONS,
     ignored: Sequence[Image | None] = (),
 ) -> list[Regions]:
-    """Detect the regions of the markers' colors in each of some successive images.
+    """Detect the regions of the markers' colors in each of some successive images of one size.
 
     A search on a coarse grid finds the windows to measure; those around the regions of the frame before are
-    added. Only these are segmented finely. Several images together take less time than one by one.
-
-    Args:
-        images: (rows, columns, 3), all of one size, to be halved `times` to become the measuring grid.
-        times: Number of halvings.
-        model: The markers' colors.
-        before: The regions of the frame before.
-        ignored: Of each image, the mask of its ignored pixels on the measuring grid, or None; empty for none.
+    added. Only these are segmented finely. Several images together take less time than one by one. Halved
+    `times`, the images become the measuring grid, on which are the masks of their ignored pixels, if any.
     """
     grid = (images[0].shape[0] >> times, images[0].shape[1] >> times)
     factor = searching_factor(grid)
@@ -99,11 +59,6 @@ def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -
     """Coverage of each pixel of the measuring grid by each color, (C, rows, columns) in 0..1.
 
     For previews: as tracking measures it, clutter of the markers' colors included.
-
-    Args:
-        image: (rows, columns, 3) of the clip's size.
-        model: The markers' colors, C of them.
-        ignored: Mask of the ignored pixels on the measuring grid; None for none.
     """
     grid = measuring_image(image, halvings((image.shape[1], image.shape[0])))
     label = model.labels(smooth(grid))
@@ -127,12 +82,9 @@ def color_masks(image: Image, model: ColorModel, ignored: Image | None = None) -
 class _Components(NamedTuple):
     """K connected components of an atlas that are measured."""
 
-    number: NDArray[np.uint16]
-    """(rows, columns) uint16, the component of each pixel, from 1; 0 for none."""
-    box: IntArray
-    """(K, 4) left, top, right, bottom on the atlas."""
-    certainty: Array
-    """(K,) mean probability of the pixels' color in 0..1."""
+    number: NDArray[np.uint16]  # (rows, columns) uint16, the component of each pixel, from 1; 0 for none
+    box: IntArray  # (K, 4) left, top, right, bottom on the atlas
+    certainty: Array  # (K,) mean probability of the pixels' color in 0..1
     cut: BoolArray
     """(K,) whether ignored pixels of its color touch it: it is seen in part, as at the image's border."""
 
@@ -152,7 +104,7 @@ def _components(atlas: Atlas, model: ColorModel) -> _Components:
     count, number, stats, _ = cv2.connectedComponentsWithStats(closed, connectivity=8, ltype=cv2.CV_16U)
     pixel = np.flatnonzero(closed.view(np.bool_))
     region, sureness = number.take(pixel), probability.take(pixel)
-    sure = np.bincount(region[sureness >= SURE], minlength=count)
+    sure = np.bincount(region[sureness >= 230], minlength=count)  # blends of other colors have less
     good = (stats[:, cv2.CC_STAT_AREA] >= FEWEST_PIXELS) & (sure >= 2)
     good[0] = False
     kept = np.flatnonzero(good)
@@ -200,7 +152,7 @@ def _measure(
     image, color = atlas.image[first], atlas.color[first].astype(np.int64)
     order = np.lexsort((-moments[:, 0], color, image))
     order = order[moments[order, 0] >= FEWEST_PIXELS]
-    order = order[_rank(256 * image[order] + color[order]) < MOST_REGIONS]
+    order = order[_rank(256 * image[order] + color[order]) < 8]  # bounds the memory of a clip
     every = Regions(color[order], moments[order], box[order], found.certainty[order], clipped[order])
     start = np.searchsorted(image[order], np.arange(images + 1)).tolist()
     return [every.part(a, b) for a, b in itertools.pairwise(start)]
@@ -221,25 +173,12 @@ def _rank(ascending: IntArray) -> IntArray:
     return np.arange(len(ascending)) - np.searchsorted(ascending, ascending)
 
 
-# --- Outlines of image regions, for drawing
-
-
 CORNERS = 32
-SUBSAMPLES = 2
-"""Sample points a pixel along either axis, on which the edge of half coverage is found."""
+SUBSAMPLES = 2  # sample points a pixel along either axis, on which the edge of half coverage is found
 
 
 def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int = CORNERS) -> Array:
-    """Closed outlines of the uniform ellipses with given moments.
-
-    Args:
-        centroid: (..., 2) [px].
-        second_moment: (..., 2, 2) second central moment matrices [px²].
-        corners: Corners K of each outline; the last joins the first.
-
-    Returns:
-        (..., K, 2) [px]; NaN where the moments are.
-    """
+    """Closed outlines (..., K, 2) [px] of the uniform ellipses with given moments; NaN where those are."""
     center = np.asarray(centroid, dtype=np.float64)
     moments = np.asarray(second_moment, dtype=np.float64)
     known = np.isfinite(center).all(-1) & np.isfinite(moments).all((-1, -2))
@@ -253,14 +192,9 @@ def ellipse_outline(centroid: ArrayLike, second_moment: ArrayLike, corners: int 
 
 
 def mask_outlines(mask: SingleArray, scale: float) -> list[Array]:
-    """Outlines of the area that a mask covers at least half, the longest first.
+    """Closed outlines (N, 2) [px] of the area that a mask covers at least half, the longest first.
 
-    Args:
-        mask: (rows, columns) coverage in 0..1.
-        scale: Pixels of the image to one of the mask.
-
-    Returns:
-        Closed outlines (N, 2) in pixels of the image.
+    `scale` are pixels of the image to one of the mask.
     """
     fine = cv2.resize(mask, None, fx=SUBSAMPLES, fy=SUBSAMPLES, interpolation=cv2.INTER_LINEAR)
     inside = (np.asarray(fine) >= 0.5).view(np.uint8)

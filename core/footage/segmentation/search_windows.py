@@ -12,20 +12,12 @@ from .working_image import measuring_image
 
 Box = tuple[int, int, int, int]
 
-MOST_BOXES = 12
-"""Most boxes kept of each color in a frame, those with most pixels of it."""
-MARGIN = 6
-"""Margin in px around a measured box: the border band, and enough background to know its color."""
+MOST_BOXES = 12  # most boxes kept of each color in a frame, those with most pixels of it
+MARGIN = 6  # margin in px around a measured box: the border band, and enough background to know its color
 
 
 def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
-    """Boxes (left, top, right, bottom) around the components of a color, in pixels of the measuring grid.
-
-    Args:
-        label: (rows, columns) color of each pixel of the coarse grid.
-        color: Index of the color.
-        factor: Pixels of the measuring grid to one of the coarse grid.
-    """
+    """Boxes around a color's components on a grid `factor` as coarse as the measuring one, in its pixels."""
     mask = np.equal(label, color).view(np.uint8)
     x, y, columns, rows = cv2.boundingRect(mask)
     if not columns:
@@ -42,13 +34,9 @@ def colored_boxes(label: Image, color: int, factor: int) -> list[Box]:
 
 
 def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
-    """Boxes to measure; those that overlap with their margins are merged.
+    """Boxes seen, and those of the frame before that none of them shows, too small for the coarse grid.
 
-    So no pixel is measured twice for a color.
-
-    Args:
-        seen: Boxes of the color on the coarse grid.
-        followed: Boxes in the frame before, for regions too small for the coarse grid.
+    Those that overlap with their margins are merged: no pixel is measured twice for a color.
     """
     pending = list(seen) + [box for box in followed if not any(_overlap(box, other, 0) for other in seen)]
     boxes = []
@@ -65,16 +53,11 @@ def boxes_to_measure(seen: Sequence[Box], followed: Sequence[Box]) -> list[Box]:
 
 
 def _overlap(first: Box, second: Box, gap: int) -> bool:
-    """Whether two boxes lie less than a gap apart."""
     across = first[0] - gap < second[2] and second[0] < first[2] + gap
     return across and first[1] - gap < second[3] and second[1] < first[3] + gap
 
 
-# --- Window atlas
-
-
-NO_COLOR = 254
-"""Color index of the columns between panels; no pixel has it."""
+NO_COLOR = 254  # color index of the columns between panels; no pixel has it
 
 
 class Window(NamedTuple):
@@ -92,31 +75,21 @@ class Window(NamedTuple):
 class Atlas(NamedTuple):
     """Windows side by side, their tops at the atlas's first row, with a column between them."""
 
-    picture: Image
-    """(rows, columns, 3) uint8, rows and columns even."""
-    image: IntArray
-    """(columns,) int64, index of each column's image."""
-    color: Image
-    """(columns,) uint8, index of the color to search for; NO_COLOR between panels."""
-    height: IntArray
-    """(columns,) rows in use."""
-    shift: IntArray
-    """(2, columns) offset of a column, and of its rows, to the halved image."""
-    scale: IntArray
-    """(columns,) pixels of the image to one of the atlas."""
-    ignored: BoolArray | None = None
-    """(rows, columns) pixels that are no region's; None where there are none."""
+    picture: Image  # (rows, columns, 3) uint8, rows and columns even
+    image: IntArray  # (columns,) int64, index of each column's image
+    color: Image  # (columns,) uint8, index of the color to search for; NO_COLOR between panels
+    height: IntArray  # (columns,) rows in use
+    shift: IntArray  # (2, columns) offset of a column, and of its rows, to the halved image
+    scale: IntArray  # (columns,) pixels of the image to one of the atlas
+    ignored: BoolArray | None = None  # (rows, columns) pixels that are no region's; None where there are none
 
 
 def pack_windows(
     images: Sequence[Image], windows: Sequence[Window], masks: Sequence[Image | None] = ()
 ) -> Atlas:
-    """Cut windows out of images and lay them side by side.
+    """Cut windows out of images of one size and of the masks of their ignored pixels; lay them side by side.
 
-    Args:
-        images: (rows, columns, 3), all of one size.
-        windows: What to cut out, at least one; each overlaps its image.
-        masks: Of each image, the ignored pixels of the image halved as its windows are; empty for none.
+    The masks are of images halved as the windows are; empty for none. Each window overlaps its image.
     """
     height = _even(max(window.bottom - window.top for window in windows))
     width = _even(sum(window.right - window.left + 1 for window in windows))

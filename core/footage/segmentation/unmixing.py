@@ -17,53 +17,32 @@ from ...arrays import Array, BoolArray, Image, IndexArray, SingleArray
 from ..colors.color_model import BLUE_SCALE, LUMA_BGR, RED_SCALE
 from .moments import MOMENT_POWERS, PIXEL_VARIANCE
 
-LUMA_WEIGHT = 1.0 / 3.0
-"""Luma varies within a surface and in shadows by its light, three times as much as chroma."""
 CONTRAST = np.array(
     [
-        LUMA_WEIGHT * LUMA_BGR,
+        (1.0 / 3.0) * LUMA_BGR,
         BLUE_SCALE * (np.array([1.0, 0.0, 0.0]) - LUMA_BGR),
         RED_SCALE * (np.array([0.0, 0.0, 1.0]) - LUMA_BGR),
     ]
 )
 """Turns blue, green, red into luma and chroma of like noise."""
-DARKEST, BRIGHTEST = 0.5, 1.15
-"""Range of the light on the background, relative to its usual light: shadows are no surface."""
-UNCHANGED = 5.0
-"""Difference of levels up to which no pixel can be odd: a fast bound."""
-ODD = 6.0
-"""Squared distance from a color, in its deviations, beyond which a pixel may show something else as well."""
-BESIDE = 3.0
-NEIGHBORS = np.ones((7, 7), dtype=np.uint8)
-"""Where another surface is seen beside a pixel: within blurred edges and halved chroma."""
-RIM = np.ones((9, 9), dtype=np.uint8)
-"""How far a region's rim reaches, where its color fits no worse than others: near it that is its blur."""
-SMALLEST_DEVIATION = 3.0
-"""Of a color, in levels: compression and the smoothing of what lies beside it."""
-MOST_GAIN = 12.0
-"""Largest gain of a pixel: models of color are wrong once in so many (e^12)."""
+DARKEST, BRIGHTEST = 0.5, 1.15  # light on the background, relative to usual: shadows are no surface
+ODD = 6.0  # squared distance from a color, in deviations, of what may be something else as well
+SMALLEST_DEVIATION = 3.0  # of a color, in levels: compression and the smoothing of what lies beside it
+MOST_GAIN = 12.0  # largest gain of a pixel: models of color are wrong once in so many (e^12)
 LEAST_GAIN = 2.0
-LEAST_SHARE = 0.05
-ALIKE_PIXELS = 9.0
-"""Pixels that err together: those of halved chroma, smoothed over one pixel to each side."""
-SMOOTHING_VARIANCE = 0.5
-"""Of a region's coordinates by that smoothing, a binomial one over three pixels [px²]."""
 
 
 class Surface(NamedTuple):
     """A surface's color."""
 
-    color: Array
-    """(3,) as `contrast` gives it."""
-    deviation: float
-    """Its standard deviation in each component."""
+    color: Array  # (3,) as `contrast` gives it
+    deviation: float  # its standard deviation in each component
 
 
 class Unmixed(NamedTuple):
     """What is known of the pixels of a window."""
 
-    share: Array
-    """(rows, columns) share of the surface, 0 to 1."""
+    share: Array  # (rows, columns) share of the surface, 0 to 1
     gain: Array
     """(rows, columns) log likelihood with the surface less that without it, within ±MOST_GAIN;
     zero where the pixel is clearly something else."""
@@ -72,14 +51,10 @@ class Unmixed(NamedTuple):
 class Traces(NamedTuple):
     """R connected regions in which a surface shows."""
 
-    moments: Array
-    """(R, 6) raw moments of its share, the smoothing taken out."""
-    gain: Array
-    """(R,) sum of the gains, by as many independent pixels."""
-    peak: Array
-    """(R,) largest share."""
-    certainty: Array
-    """(R,) mean gain where it shows, relative to the largest."""
+    moments: Array  # (R, 6) raw moments of its share, the smoothing taken out
+    gain: Array  # (R,) sum of the gains, by as many independent pixels
+    peak: Array  # (R,) largest share
+    certainty: Array  # (R,) mean gain where it shows, relative to the largest
 
     def scaled(self, factor: int) -> "Traces":
         """The same in pixels that are `factor` times as small."""
@@ -108,25 +83,19 @@ class Palette:
 
     @cached_property
     def _colors(self) -> Array:
-        """(K, 3)."""
         return np.array([other.color for other in self.others]).reshape(-1, 3)
 
     @cached_property
     def _deviations(self) -> Array:
-        """(K,)."""
         return np.array([other.deviation for other in self.others])
 
     def unmix(self, picture: Image, background: SingleArray, deviation: SingleArray) -> Unmixed:
-        """The share of the surface in the pixels of a window.
+        """The share of the surface in the pixels of a window (rows, columns, 3).
 
         It may lie before the background, and before another surface where that one is seen beside it.
-
-        Args:
-            picture: (rows, columns, 3) blue, green, red.
-            background: (rows, columns, 3) its usual colors; NaN where unknown, which tells nothing.
-            deviation: (rows, columns) theirs.
+        Background colors are NaN where unknown, which tells nothing.
         """
-        differs = np.abs(picture - background) > UNCHANGED
+        differs = np.abs(picture - background) > 5.0  # levels: a fast bound
         odd = differs[..., 0] | differs[..., 1] | differs[..., 2]
         seen, usual = contrast(picture[odd]), contrast(background[odd])
         spread = np.maximum(deviation[odd].astype(np.float64), SMALLEST_DEVIATION)
@@ -148,7 +117,7 @@ class Palette:
         if self.others:
             over, cost_over = self._before_others(seen, self._beside(away, odd, where))
             own, cost = np.where(cost_over < cost, over, own), np.minimum(cost_over, cost)
-        left = np.flatnonzero((own > LEAST_SHARE) & (without - cost > -2.0 * LEAST_GAIN))
+        left = np.flatnonzero((own > 0.05) & (without - cost > -2.0 * LEAST_GAIN))
         without = np.minimum(without[left], self._without(seen[left], behind[left], noise[left]))
         share, gain = np.zeros(odd.shape), np.zeros(odd.shape)
         share.ravel()[where[left]] = own[left]
@@ -162,19 +131,20 @@ class Palette:
 
     def _beside(self, away: Array, odd: BoolArray, where: IndexArray) -> BoolArray:
         """(N, K) whether other surfaces are seen beside pixels `where` (N,) of a window."""
-        near = away < (BESIDE * self._deviations) ** 2
+        near = away < (3.0 * self._deviations) ** 2
         beside = np.zeros((len(where), len(self.others)), dtype=np.bool_)
         mask = np.zeros(odd.shape, dtype=np.uint8)
         for other in np.flatnonzero(near.any(axis=0)).tolist():
             mask[odd] = near[:, other]
-            beside[:, other] = cv2.dilate(mask, NEIGHBORS).ravel()[where]
+            # Blurred edges and halved chroma.
+            beside[:, other] = cv2.dilate(mask, np.ones((7, 7), dtype=np.uint8)).ravel()[where]
         return beside
 
     def _before_others(self, seen: Array, beside: BoolArray) -> tuple[Array, Array]:
         """Share and cost (N,) of the surface before the likeliest other one that is seen beside a pixel."""
-        colors, deviations = self._colors, self._deviations
-        ends = np.broadcast_to(self.surface.color, colors.shape)
-        share, cost = _lines(seen, colors, deviations, ends, np.full(len(colors), self.surface.deviation))
+        ends = np.broadcast_to(self.surface.color, self._colors.shape)
+        deviation = np.full(len(ends), self.surface.deviation)
+        share, cost = _lines(seen, self._colors, self._deviations, ends, deviation)
         cost = np.where(beside, cost, np.inf)
         best = cost.argmin(axis=1)[:, None]
         return np.take_along_axis(share, best, 1)[:, 0], np.take_along_axis(cost, best, 1)[:, 0]
@@ -190,12 +160,11 @@ class Palette:
         return np.minimum(among.min(axis=1), before.min(axis=1))
 
 
+Deviation = Array | float
+
+
 def mixed(
-    pixels: Array,
-    first: Array,
-    first_deviation: Array | float,
-    second: Array,
-    second_deviation: Array | float,
+    pixels: Array, first: Array, first_deviation: Deviation, second: Array, second_deviation: Deviation
 ) -> tuple[Array, Array]:
     """Share of the second color in pixels (..., 3), and -2 log density of all mixtures, (...).
 
@@ -208,11 +177,7 @@ def mixed(
 
 
 def _weighed(
-    squared: Array,
-    along: Array,
-    length: Array,
-    first_deviation: Array | float,
-    second_deviation: Array | float,
+    squared: Array, along: Array, length: Array, first_deviation: Deviation, second_deviation: Deviation
 ) -> tuple[Array, Array]:
     """Share and cost by the products of a line's axis and a pixel's offset from its first end."""
     share = np.clip(along / np.maximum(squared, 1e-6), 0.0, 1.0)
@@ -240,14 +205,10 @@ def _dot(one: Array, other: Array) -> Array:
 
 
 def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
-    """Connected regions of a window in which a surface shows.
-
-    Args:
-        seen: The window's pixels.
-        origin: The window's left and top in the picture.
-    """
+    """Connected regions in which a surface shows, of a window with its left and top at `origin`."""
     core = (seen.gain > LEAST_GAIN).astype(np.uint8)
-    shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & (cv2.dilate(core, RIM) > 0)
+    rim = cv2.dilate(core, np.ones((9, 9), dtype=np.uint8)) > 0  # a color that fits no worse is the blur here
+    shown = (seen.gain > -LEAST_GAIN) & (seen.share > 0.0) & rim
     count, number = cv2.connectedComponents(shown.astype(np.uint8), connectivity=8)
     row, column = np.nonzero(shown)
     owner = number[row, column].astype(np.intp) - 1
@@ -256,8 +217,9 @@ def traces(seen: Unmixed, origin: tuple[int, int]) -> Traces:
     terms = (weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y, gain)
     sums = np.array([np.bincount(owner, term, minlength=count - 1) for term in terms], dtype=np.float64)
     moments = sums[:6].T.copy()
-    moments[:, [3, 5]] += (PIXEL_VARIANCE - SMOOTHING_VARIANCE) * moments[:, :1]
+    moments[:, [3, 5]] += (PIXEL_VARIANCE - 0.5) * moments[:, :1]  # a binomial one over three pixels [px²]
     peak = np.zeros(count - 1)
     np.maximum.at(peak, owner, weight)
     sure = np.bincount(owner, weight * np.maximum(gain, 0.0), minlength=count - 1)
-    return Traces(moments, sums[6] / ALIKE_PIXELS, peak, sure / (MOST_GAIN * sums[0]))
+    # Pixels of halved chroma, smoothed, err together.
+    return Traces(moments, sums[6] / 9.0, peak, sure / (MOST_GAIN * sums[0]))

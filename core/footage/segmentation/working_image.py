@@ -9,17 +9,10 @@ import numpy as np
 
 from ...arrays import Image
 
-MEASURING_COLUMNS = 320
-"""Fewest columns on which borders are measured more accurately than body models predict them."""
-LEARNING_COLUMNS = 240
-"""Fewest columns on which a forearm has pixels clear of its blurred border."""
-SEARCHING_COLUMNS = 160
-"""Fewest columns on which no marker of a measurable size is missed."""
-
 
 def halvings(size: tuple[int, int]) -> int:
     """How often an image of (width, height) is halved for measuring."""
-    return _halvings(max(size), MEASURING_COLUMNS)
+    return _halvings(max(size), 320)  # More accurate for borders than what body models predict
 
 
 def measuring_image(image: Image, times: int) -> Image:
@@ -33,12 +26,13 @@ def measuring_image(image: Image, times: int) -> Image:
 
 def learning_image(measuring: Image) -> Image:
     """Return a measuring image as colors are learned from it."""
-    return measuring_image(measuring, _halvings(max(measuring.shape[:2]), LEARNING_COLUMNS))
+    # A forearm has pixels clear of its blurred border.
+    return measuring_image(measuring, _halvings(max(measuring.shape[:2]), 240))
 
 
 def searching_factor(grid: tuple[int, int]) -> int:
     """By how much the grid of the search is coarser than the measuring one of (rows, columns)."""
-    return 1 << _halvings(max(grid), SEARCHING_COLUMNS)
+    return 1 << _halvings(max(grid), 160)  # No marker of a measurable size is missed
 
 
 def searching_image(image: Image, factor: int) -> Image:

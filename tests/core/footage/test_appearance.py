@@ -1,8 +1,12 @@
-"""How parts of the body and the background look."""
+"""How parts of the body, the background, and bands along limbs look; colors that stand out."""
 
 import numpy as np
 import pytest
+from _synthetic_take import COLORS, drawn_frames, true_postures
 from keymark.core.footage.appearance import NO_PART, Appearance, learn_appearance
+from keymark.core.footage.colors.color_model import chromaticity
+from keymark.core.footage.colors.strong_colors import StrongColor, strong_colors
+from keymark.core.footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
 
 PLACE = np.kron(np.random.default_rng(1).uniform(60, 220, size=(6, 8, 3)), np.ones((10, 10, 1)))
 RED = np.array([40.0, 40.0, 210.0])
@@ -33,7 +37,6 @@ def test_the_background_is_what_shows_when_nobody_is_before_it() -> None:
 
 
 def test_what_a_performer_who_stays_hides_is_not_known() -> None:
-    """Behind him nothing is claimed; elsewhere the background is known."""
     learned = walk_by(stays=True)
     assert not learned.known[25:40, 32:40].any()
     assert learned.known[:, :20].all()
@@ -41,7 +44,6 @@ def test_what_a_performer_who_stays_hides_is_not_known() -> None:
 
 @pytest.mark.parametrize("shake", [2, 6])
 def test_a_shaken_camera_has_no_steady_background(shake: int) -> None:
-    """Two pixels of shake make a camera that is not static."""
     assert not walk_by(shake).steady
 
 
@@ -58,7 +60,6 @@ def test_colors_are_likelier_as_what_they_are() -> None:
 
 @pytest.mark.parametrize("frames", [1, 2, 5, 12, 31, 32])
 def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> None:
-    """Of any number of pictures, as plain sorting finds it, pixel by pixel."""
     rng = np.random.default_rng(frames)
     images = rng.integers(0, 255, size=(frames, 8, 64, 3), dtype=np.uint8)
     labels = np.full((frames, 8, 64), NO_PART, dtype=np.int8)
@@ -71,6 +72,56 @@ def test_the_usual_color_is_the_lower_median_of_what_is_free(frames: int) -> Non
 
 
 def test_only_pixels_that_move_are_left_out() -> None:
-    """A shaken camera leaves the inside of plain blocks; what stands still stays."""
     assert walk_by().where_steady().known.mean() > 0.95
     assert walk_by(6).where_steady().known.mean() < 0.5
+
+
+SLEEVE, SKIN = np.array([180, 60, 40], dtype=np.uint8), np.array([120, 150, 210], dtype=np.uint8)
+
+
+def learn() -> BandColors:
+    image = np.full((40, 60, 3), 90, dtype=np.uint8)
+    label = np.full((40, 60), -1, dtype=np.int8)
+    share = np.full((40, 60), np.nan)
+    for part, top in enumerate((5, 22)):
+        label[top : top + 10] = part
+        share[top : top + 10] = np.linspace(-0.1, 1.1, 60)
+        image[top : top + 10] = np.where((share[top, :, None] < 2 / 3), SLEEVE, SKIN)
+    return learn_band_colors([image], [label], [share], 2)
+
+
+def test_each_band_has_the_colors_worn_there() -> None:
+    bands = learn().bands[0]
+    sleeve, skin = bands[:, band_cells(SLEEVE)], bands[:, band_cells(SKIN)]
+    assert (sleeve[: 2 * BANDS // 3] > skin[: 2 * BANDS // 3] + 0.5).all()
+    assert (skin[2 * BANDS // 3 :] > sleeve[2 * BANDS // 3 :] + 0.5).all()
+
+
+def test_densities_sum_to_one() -> None:
+    learned = learn()
+    for logs in (learned.bands, learned.parts, learned.anything):
+        np.testing.assert_allclose(np.exp(logs).sum(axis=-1), 1.0, rtol=1e-6)
+
+
+def test_the_markers_are_among_the_strong_colors() -> None:
+    found = strong_colors(drawn_frames(true_postures(6)))
+    assert len(COLORS) <= len(found) <= 12
+    colors = np.array([color.color_srgb for color in found], dtype=float)
+    chroma = chromaticity(colors[:, ::-1])[0]
+    for name, color in COLORS.items():
+        wanted = chromaticity(np.array(color, dtype=float)[::-1])[0]
+        assert np.linalg.norm(chroma - wanted, axis=1).min() < 0.08, name
+    apart = np.linalg.norm(chroma[:, None] - chroma[None], axis=-1)[np.triu_indices(len(found), 1)]
+    assert apart.min() > 0.03 and all(0.0 < color.share < 0.1 for color in found)
+
+
+def test_of_gray_pictures_there_is_nothing_to_say() -> None:
+    assert strong_colors([np.full((48, 64, 3), 90, dtype=np.uint8)]) == () == strong_colors([])
+
+
+def test_hues_have_names() -> None:
+    names = {(200, 30, 30): "red", (200, 30, 60): "red", (220, 190, 40): "yellow", (40, 150, 70): "green"}
+    names |= {(50, 80, 220): "blue", (190, 50, 150): "pink", (120, 50, 160): "purple"}
+    names |= {(220, 120, 50): "orange", (46, 98, 114): "cyan"}
+    for color, name in names.items():
+        assert StrongColor(color, 0.01).hue == name

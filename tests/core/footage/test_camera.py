@@ -39,7 +39,6 @@ def test_projection_agrees_with_a_computation_by_hand() -> None:
 
 
 def test_a_shift_to_the_right_and_up_moves_the_picture_left_and_down_in_image_widths() -> None:
-    """Both shifts count in widths, as in Blender, whatever the image's height."""
     point = [0.2, 0.0, 1.1]
     straight = Camera(40.0, 36.0, (320, 240), turned(0.0)).project(point)[0]
     shifted = Camera(40.0, 36.0, (320, 240), turned(0.0), 0.1, 0.05).project(point)[0]
@@ -47,7 +46,6 @@ def test_a_shift_to_the_right_and_up_moves_the_picture_left_and_down_in_image_wi
 
 
 def test_distortion_scales_normalized_coordinates_by_its_polynomial() -> None:
-    """A point at (0.5, 0.25) has r² = 0.3125."""
     camera = Camera(36.0, 36.0, (100, 100), turned(0.0, (0.0, -1.0, 0.0)), distortion=(0.1, -0.02, 0.003))
     factor = 1 + 0.1 * 0.3125 - 0.02 * 0.3125**2 + 0.003 * 0.3125**3
     np.testing.assert_allclose(camera.project([0.5, 0.0, 0.25])[0], [50 + 50 * factor, 50 - 25 * factor])
@@ -64,7 +62,6 @@ def test_points_behind_the_camera_have_no_pixel_but_a_negative_depth() -> None:
 
 @pytest.mark.parametrize("distortion", DISTORTIONS)
 def test_jacobians_agree_with_central_differences(distortion: tuple[float, float, float]) -> None:
-    """Pixels and depth, at points all over the view of a turned and shifted camera."""
     camera = Camera(35.0, 32.0, (640, 360), turned(0.4), 0.05, -0.03, distortion)
     points = np.random.default_rng(5).uniform(-0.8, 0.8, (20, 3)) + [-0.5, 0.0, 1.0]
     step = 1e-6
@@ -87,14 +84,12 @@ def test_rays_lead_back_through_the_pixels_they_came_from(distortion: tuple[floa
 
 
 def test_a_pixel_that_no_light_reaches_has_no_ray() -> None:
-    """Strong barrel distortion folds the picture; nothing lies beyond the fold."""
     camera = Camera(36.0, 36.0, (100, 100), turned(0.0), distortion=(-1.0, 0.0, 0.0))
     assert np.isnan(camera.rays([99.0, 50.0])[1]).all()
     assert np.isfinite(camera.rays([60.0, 50.0])[1]).all()
 
 
 def test_a_moving_camera_sees_each_point_from_its_own_frame() -> None:
-    """Batches of frames and points agree with one fixed camera a frame."""
     matrices = np.stack([turned(angle, (angle, -4.0, 1.0)) for angle in (0.0, 0.1, 0.2)])
     moving = Camera(40.0, 36.0, (320, 240), matrices)
     points = np.random.default_rng(1).uniform(-0.5, 0.5, (3, 4, 3)) + [0.0, 0.0, 1.0]
@@ -133,7 +128,6 @@ def test_poses_a_frame_are_read_and_written() -> None:
 
 
 def sheared() -> list[list[float]]:
-    """A pose whose axes are not orthogonal."""
     matrix = turned(0.0)
     matrix[0, 1] += 0.2
     return matrix.tolist()
@@ -165,14 +159,12 @@ def sheared() -> list[list[float]]:
     ],
 )
 def test_each_unusable_field_is_named_in_one_sentence(changes: dict[str, Any], word: str) -> None:
-    """The message says where, which field, and what would be valid."""
     with pytest.raises(InputError, match=f"take.json: camera.*{word}.*(must|its axes)") as caught:
         Camera.from_dict(fields(**changes), "take.json: camera")
     assert "\n" not in str(caught.value)
 
 
 def test_the_pose_cannot_be_changed_from_outside() -> None:
-    """The camera keeps an own copy that is read-only."""
     matrix = turned(0.0)
     camera = Camera(40.0, 36.0, (320, 240), matrix)
     matrix[0, 3] = 100.0
@@ -212,6 +204,5 @@ def test_height_tilt_and_roll_do_instead_of_a_matrix() -> None:
     ],
 )
 def test_a_wrong_placement_is_refused_in_a_sentence(change: dict[str, object], said: str) -> None:
-    """It names the field, its value and what would be valid."""
     with pytest.raises(InputError, match=said):
         Camera.from_dict({**PLACED, **change})

@@ -1,46 +1,38 @@
-"""Clips of every kind: their order, time stamps and sizes, and what is said of unusable ones."""
+"""Clips of every kind: order, time stamps, sizes, samples on a budget, and what is said of unusable ones."""
 
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
+from _drawn_clip import write_video
+from _footage import encode, write_numbered_take
 from keymark.core.errors import InputError
-from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.clips.clip_timing import is_variable_frame_rate
+from keymark.core.footage.clips import clip as glancing
+from keymark.core.footage.clips.clip import Clip, sample_spread_frames
+from keymark.core.footage.clips.container import quickly_found, read_packets
+from keymark.core.footage.region_tracks import is_variable_frame_rate
+from keymark.core.progress import run
 
 
 def picture(level: int, size: tuple[int, int] = (64, 48)) -> np.ndarray:
-    """An even image of one gray level."""
     return np.full((size[1], size[0], 3), level, dtype=np.uint8)
 
 
-def level(index: int) -> int:
-    """The gray level of a frame: so far from its neighbors' that the encoder cannot leave it out."""
-    return 30 + index * 67 % 200
-
-
-def write_video(path: Path, count: int, fps: float = 25.0, size: tuple[int, int] = (64, 48)) -> Path:
-    """A video whose frames all differ widely from the ones beside them; see `level`."""
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), fps, size)
-    assert writer.isOpened()
-    for index in range(count):
-        writer.write(picture(level(index), size))
-    writer.release()
-    return path
+LEVELS = [30 + index * 67 % 200 for index in range(600)]
+"""Gray levels so far from their neighbors' that the encoder cannot leave a frame out."""
 
 
 def test_a_video_yields_its_frames_in_order_with_their_times(tmp_path: Path) -> None:
-    """One pass gives every frame once, at index / fps."""
-    clip = Clip.open(write_video(tmp_path / "clip.mp4", 30))
+    clip = Clip.open(write_video(tmp_path / "clip.mp4", LEVELS[:30]))
     frames = list(clip.frames())
     assert [index for index, _, _ in frames] == list(range(30))
     np.testing.assert_allclose([time for _, time, _ in frames], np.arange(30) / 25.0, atol=1e-6)
     means = [image.mean() for _, _, image in frames]
-    np.testing.assert_allclose(means, [level(index) for index in range(30)], atol=8)
+    np.testing.assert_allclose(means, LEVELS[:30], atol=8)
     assert clip.size == (64, 48) and clip.fps == pytest.approx(25.0) and clip.frame_count == 30
-    assert not clip.variable_frame_rate
-    np.testing.assert_allclose(clip.time_stamps(), np.arange(30) / 25.0, atol=1e-6)
+    assert not is_variable_frame_rate(list(clip.source.time_stamps()))
+    np.testing.assert_allclose(list(clip.source.time_stamps()), np.arange(30) / 25.0, atol=1e-6)
 
 
 @pytest.mark.parametrize(("count", "frames"), [(5, 50), (2, 400), (80, 30)])
@@ -48,11 +40,11 @@ def test_samples_are_spread_over_the_clip_and_are_the_frames_they_say(
     tmp_path: Path, count: int, frames: int
 ) -> None:
     """Whether the file is run through or searched, and with more samples asked for than frames exist."""
-    path = write_video(tmp_path / "clip.mp4", frames, 30.0)
+    path = write_video(tmp_path / "clip.mp4", LEVELS[:frames], 30.0)
     sampled = list(Clip.open(path).sample(count))
     assert len(sampled) == min(count, frames)
     for index, image in sampled:
-        assert image.mean() == pytest.approx(level(index), abs=8)
+        assert image.mean() == pytest.approx(LEVELS[index], abs=8)
     spread = np.diff([index for index, _ in sampled])
     assert spread.min() >= 1 and spread.max() - spread.min() <= 1
 
@@ -72,7 +64,6 @@ def test_images_follow_their_numbers(tmp_path: Path) -> None:
 
 
 def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) -> None:
-    """Naming a file takes its own sequence only."""
     for number in (1, 2):
         cv2.imwrite(str(tmp_path / f"left{number}.png"), picture(10 + number))
         cv2.imwrite(str(tmp_path / f"right{number}.png"), picture(20 + number))
@@ -91,7 +82,6 @@ def test_one_of_two_sequences_in_a_folder_is_told_by_its_name(tmp_path: Path) ->
     ids=["gray", "16 bit", "alpha", "16 bit gray"],
 )
 def test_every_depth_and_channel_count_becomes_eight_bit_color(tmp_path: Path, image: np.ndarray) -> None:
-    """A level of 200 stays 200 in three channels."""
     cv2.imwrite(str(tmp_path / "a1.png"), image)
     _, _, frame = next(Clip.open(tmp_path).frames())
     assert frame.dtype == np.uint8 and frame.shape == (8, 9, 3)
@@ -104,7 +94,7 @@ def test_unusable_files_are_named_in_one_sentence(tmp_path: Path) -> None:
     empty.touch()
     text = tmp_path / "text.mp4"
     text.write_text("this is no video " * 100)
-    whole = write_video(tmp_path / "whole.mp4", 10).read_bytes()
+    whole = write_video(tmp_path / "whole.mp4", LEVELS[:10]).read_bytes()
     cut = tmp_path / "cut.mp4"
     cut.write_bytes(whole[:60])
     folder = tmp_path / "folder"
@@ -129,7 +119,6 @@ def test_unusable_files_are_named_in_one_sentence(tmp_path: Path) -> None:
 def test_the_decoder_does_not_complain_beside_our_sentence(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Standard error belongs to the one sentence that is raised."""
     text = tmp_path / "text.mp4"
     text.write_text("this is no video")
     with pytest.raises(InputError):
@@ -138,7 +127,6 @@ def test_the_decoder_does_not_complain_beside_our_sentence(
 
 
 def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None:
-    """The frames before it are still yielded."""
     cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
     cv2.imwrite(str(tmp_path / "a2.png"), picture(5, (32, 48)))
     frames = Clip.open(tmp_path).frames()
@@ -148,7 +136,6 @@ def test_an_image_of_another_size_is_named_when_it_comes(tmp_path: Path) -> None
 
 
 def test_rates_that_are_no_rates_are_refused(tmp_path: Path) -> None:
-    """An image sequence needs a positive rate."""
     cv2.imwrite(str(tmp_path / "a1.png"), picture(5))
     with pytest.raises(InputError, match="fps"):
         Clip.open(tmp_path, fps=-3.0)
@@ -168,5 +155,90 @@ def test_rates_that_are_no_rates_are_refused(tmp_path: Path) -> None:
     ids=["even", "milliseconds", "fast milliseconds", "dropped frame", "phone", "two frames", "none"],
 )
 def test_uneven_stamps_are_told_from_rounded_ones(time_s: np.ndarray, variable: bool) -> None:
-    """A dropped frame makes a clip uneven; rounding to milliseconds does not."""
     assert is_variable_frame_rate(time_s) is variable
+
+
+SIZE = (64, 48)
+
+
+@pytest.fixture(scope="module")
+def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A video of 600 frames that all differ, with a picture to begin decoding at every twelve frames."""
+    return write_video(tmp_path_factory.mktemp("glance") / "clip.mp4", LEVELS, 30.0)
+
+
+@pytest.fixture
+def thrifty(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(glancing, "MOST_DECODED_PX", 180 * SIZE[0] * SIZE[1])
+
+
+@pytest.mark.usefixtures("thrifty")
+def test_frames_are_from_all_over_and_what_they_say(video: Path) -> None:
+    samples = run(sample_spread_frames(Clip.open(video)))
+    assert len(samples.indices) == 11 and samples.size == SIZE
+    assert samples.indices[0] == 0 and samples.indices[-1] > 500 and max(np.diff(samples.indices)) < 90
+    for index, image in zip(samples.indices, samples.images, strict=True):
+        assert image.mean() == pytest.approx(LEVELS[index], abs=8)
+
+
+def test_what_can_be_gone_through_is(video: Path) -> None:
+    samples = run(sample_spread_frames(Clip.open(video), 6))
+    assert samples.indices == (50, 150, 250, 350, 450, 550)
+
+
+@pytest.mark.usefixtures("thrifty")
+def test_of_what_cannot_be_searched_the_beginning_is_looked_at(
+    video: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(glancing, "quickly_found", lambda path, wanted: [])
+    samples = run(sample_spread_frames(Clip.open(video)))
+    assert len(samples.indices) > 5 and samples.indices[-1] < 181
+
+
+@pytest.mark.usefixtures("thrifty")
+def test_a_cut_off_file_is_looked_at_as_far_as_it_goes(video: Path, tmp_path: Path) -> None:
+    whole = encode_with_index_first(video, tmp_path / "whole.mp4")
+    cut = tmp_path / "cut.mp4"
+    cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 2 // 3])
+    clip = Clip.open(cut)
+    packets = read_packets(cut)
+    assert packets is not None and packets.complete and 200 < len(packets.time_s) < clip.frame_count == 600
+    samples = run(sample_spread_frames(clip))
+    assert len(samples.indices) > 3 and samples.indices[-1] < len(packets.time_s)
+    assert quickly_found(cut, [590]) == []
+
+
+def encode_with_index_first(video: Path, path: Path) -> Path:
+    from _footage import ffmpeg
+
+    ffmpeg("-i", video, "-c", "copy", "-movflags", "+faststart", path)
+    return path
+
+
+def test_packets_tell_frames_and_times(video: Path, tmp_path: Path) -> None:
+    packets = read_packets(video)
+    assert packets is not None and packets.complete and len(packets.time_s) == 600
+    np.testing.assert_allclose(packets.time_s, np.arange(600) / 30.0, atol=1e-3)
+    some = read_packets(video, 100)
+    assert some is not None and not some.complete and len(some.time_s) == 100
+    (tmp_path / "text.mp4").write_text("no video", encoding="utf-8")
+    assert read_packets(tmp_path / "text.mp4") is None and quickly_found(tmp_path / "text.mp4", [3]) == []
+
+
+def test_packets_tell_an_uneven_rate(tmp_path: Path) -> None:
+    take = write_numbered_take(tmp_path / "take", 20)
+    uneven = encode(take, tmp_path / "uneven.mkv", "-vf", "select='not(eq(mod(n,7),3))'", "-fps_mode", "vfr")
+    even = encode(take, tmp_path / "even.mp4")
+    for path, varies in ((uneven, True), (even, False)):
+        packets = read_packets(path)
+        assert packets is not None and is_variable_frame_rate(packets.time_s) is varies
+
+
+def test_images_are_looked_at_too(tmp_path: Path) -> None:
+    for index in range(30):
+        cv2.imwrite(str(tmp_path / f"{index:04d}.png"), np.full((48, 64, 3), LEVELS[index], dtype=np.uint8))
+    samples = run(sample_spread_frames(Clip.open(tmp_path), 5))
+    assert samples.indices == (3, 9, 15, 21, 27)
+    (tmp_path / "0009.png").write_bytes(b"no image")
+    with pytest.raises(InputError, match=r"0009\.png"):
+        run(sample_spread_frames(Clip.open(tmp_path), 5))

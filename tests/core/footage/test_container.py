@@ -1,36 +1,29 @@
-"""What is given to a video decoder: footage, and nothing that leads on to other files or the network."""
+"""What is given to decoders: footage, not what leads to other files, and not more than can be meant."""
 
 import os
+import struct
+import zlib
 from pathlib import Path
 
 import cv2
-import numpy as np
 import pytest
+from _drawn_clip import write_video
 from keymark.core import MOST_PIXELS
 from keymark.core.errors import InputError
+from keymark.core.footage.clips import image_sequence
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.clips.container import check_container, check_pixels
+from keymark.core.footage.clips.image_sequence import read_image
 
-SIZE = (64, 48)
-
-
-def write_video(path: Path, code: str = "mp4v") -> Path:
-    """A short video."""
-    video = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), 25.0, SIZE)
-    for level in range(6):
-        video.write(np.full((SIZE[1], SIZE[0], 3), 40 * level, dtype=np.uint8))
-    video.release()
-    return path
+SIZE, GRAYS = (64, 48), range(0, 240, 40)
 
 
 @pytest.fixture(scope="module")
 def outside(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Somebody else's video."""
-    return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", "MJPG")
+    return write_video(tmp_path_factory.mktemp("elsewhere") / "private.avi", GRAYS, code="MJPG")
 
 
 def playlists(target: Path) -> dict[str, str]:
-    """Texts that lead a decoder to a file."""
     hls = f"#EXTM3U\n#EXT-X-TARGETDURATION:9\n#EXTINF:1.0,\n{target}\n#EXT-X-ENDLIST\n"
     return {
         "HLS": hls,
@@ -50,7 +43,6 @@ def playlists(target: Path) -> dict[str, str]:
 def test_a_playlist_is_no_clip_whatever_it_is_called(
     kind: str, ending: str, outside: Path, tmp_path: Path
 ) -> None:
-    """The decoder would follow it by its content."""
     (tmp_path / "inside.avi").symlink_to(outside)
     clip = tmp_path / f"clip.{ending}"
     clip.write_text(playlists(outside)[kind], encoding="utf-8")
@@ -59,7 +51,6 @@ def test_a_playlist_is_no_clip_whatever_it_is_called(
 
 
 def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> None:
-    """Else all this would guard against nothing."""
     (tmp_path / "inside.avi").symlink_to(outside)
     clip = tmp_path / "clip.mp4"
     clip.write_text(playlists(outside)["list to be joined"], encoding="utf-8")
@@ -70,10 +61,9 @@ def test_this_decoder_does_follow_a_playlist(outside: Path, tmp_path: Path) -> N
     "name", ["a:b.avi", "file:clip.avi", "concat:x.avi", "http:clip.avi", "clip %03d.avi"]
 )
 def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A relative name that begins like an address is still a file's."""
     if os.name == "nt" and ":" in name:
         pytest.skip("no file is called so here")
-    write_video(tmp_path / "plain.avi", "MJPG").rename(tmp_path / name)
+    write_video(tmp_path / "plain.avi", GRAYS, code="MJPG").rename(tmp_path / name)
     monkeypatch.chdir(tmp_path)
     assert Clip.open(name).size == SIZE
 
@@ -82,8 +72,7 @@ def test_a_name_is_no_protocol(name: str, tmp_path: Path, monkeypatch: pytest.Mo
     ("name", "code"), [("a.mp4", "mp4v"), ("a.avi", "MJPG"), ("a.mkv", "mp4v"), ("a.mov", "mp4v")]
 )
 def test_containers_are_known(name: str, code: str, tmp_path: Path) -> None:
-    """Containers that OpenCV itself writes pass, and open."""
-    path = write_video(tmp_path / name, code)
+    path = write_video(tmp_path / name, GRAYS, code=code)
     check_container(path)
     assert Clip.open(path).size == SIZE
 
@@ -114,14 +103,48 @@ def test_containers_that_opencv_cannot_write_are_known(beginning: bytes, tmp_pat
     "content", [b"RIFF\x00\x00\x00\x00WAVEfmt ", b"PK\x03\x04zip", b"\x7fELF", bytes(400), b"GG"]
 )
 def test_other_files_are_refused(content: bytes, tmp_path: Path) -> None:
-    """Sound, archives, programs, nothing at all."""
     (tmp_path / "clip.mp4").write_bytes(content)
     with pytest.raises(InputError, match=r"clip\.mp4: cannot be decoded; it holds"):
         Clip.open(tmp_path / "clip.mp4")
 
 
 def test_pictures_have_a_largest_size(tmp_path: Path) -> None:
-    """8K is read, a claim of gigabytes is not."""
     check_pixels(tmp_path, 7680, 4320)
     with pytest.raises(InputError, match=f"at most {MOST_PIXELS} pixels"):
         check_pixels(tmp_path, 20000, 20000)
+
+
+def png(width: int, height: int) -> bytes:
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    parts = (chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(bytes(10_000))), chunk(b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+@pytest.mark.parametrize(
+    "size", [(60_000, 60_000), (20_000, 20_000), (2**31 - 1, 1), (2**31 - 1, 2**31 - 1), (0, 9)]
+)
+def test_an_image_that_claims_gigabytes_is_refused(size: tuple[int, int], tmp_path: Path) -> None:
+    (tmp_path / "bomb.png").write_bytes(png(*size))
+    with pytest.raises(InputError, match=r"bomb\.png: cannot be decoded.*at most 134217728 pixels"):
+        read_image(tmp_path / "bomb.png")
+
+
+def test_a_folder_of_too_many_images_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(image_sequence, "MOST_IMAGES", 5)
+    for number in range(6):
+        (tmp_path / f"{number}.png").touch()
+    with pytest.raises(InputError, match="holds more than 5 images"):
+        Clip.open(tmp_path)
+    with pytest.raises(InputError, match="holds more than 5 images"):
+        Clip.open(tmp_path / "#.png")
+
+
+def test_digits_that_are_no_number_are_letters(tmp_path: Path) -> None:
+    for name in ("m\u00b2.png", "2.png", "\u0663.png"):
+        (tmp_path / name).write_bytes(b"")
+    with pytest.raises(InputError, match="cannot be decoded|sequence"):
+        Clip.open(tmp_path)

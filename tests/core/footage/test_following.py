@@ -1,13 +1,13 @@
-"""Following markers through a clip longer than the stretch that their colors are learned from."""
+"""Following markers through a clip longer than what their colors are learned from, and in one frame."""
 
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, finish, moving, path
+from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, clip_of, draw, film, finish, moving, path, tracked
 from keymark.core.errors import InputError
 from keymark.core.footage import markers
 from keymark.core.footage.clips.clip import Clip
-from keymark.core.footage.markers import track_markers
+from keymark.core.footage.markers import regions_of_frame, track_markers
 from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle
 from keymark.core.footage.segmentation.moments import coverage
 from keymark.core.footage.segmentation.search_windows import NO_COLOR, Window, boxes_to_measure, pack_windows
@@ -26,9 +26,8 @@ def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The same centroids and areas whether the whole clip waits for its colors or a fifth of it."""
-    rng = np.random.default_rng(1)
-    images = [draw(moving(index), rng) for index in range(42)]
-    whole = finish(track_markers(clip_of(images), STYLES))
+    images = film(moving, 42, 1)
+    whole = tracked(images)
     monkeypatch.setattr(markers, "STRETCH_BYTES", STRETCH * SIZE[0] * SIZE[1] * 3)
     drawn = Drawn(images)
     followed = finish(track_markers(Clip(clip_of(images).path, drawn), STYLES))
@@ -40,9 +39,7 @@ def test_what_comes_after_the_stretch_is_measured_like_what_lies_in_it(
 @pytest.mark.usefixtures("short_stretch")
 def test_a_marker_that_enters_late_is_found_from_its_first_frame_on() -> None:
     """Red comes after the stretch that was learned from; only its sample is known until then."""
-    rng = np.random.default_rng(2)
-    images = [draw(moving(index)[1 if index < 20 else 0 :], rng) for index in range(60)]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(film(lambda index: moving(index)[1 if index < 20 else 0 :], 60, 2))
     np.testing.assert_array_equal(tracks.visible[:, 0], np.arange(60) >= 20)
     truth = np.array([path(index) for index in range(60)])
     assert np.abs(tracks.centroid[20:, 0] - truth[20:]).max() < 0.3
@@ -50,14 +47,13 @@ def test_a_marker_that_enters_late_is_found_from_its_first_frame_on() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_a_lost_marker_is_found_where_it_comes_back() -> None:
-    """It comes back on the other side of the picture, in the very frame."""
     rng = np.random.default_rng(3)
     places = [(60.0 + 2.0 * index, 60.0) if index < 20 else (260.0 - index, 200.0) for index in range(50)]
     images = []
     for index, place in enumerate(places):
         shapes = [(RED, place, (16.0, 6.0), 10.0), moving(index)[1]]
         images.append(draw(shapes[1 if 20 <= index < 30 else 0 :], rng))
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(images)
     hidden = (np.arange(50) >= 20) & (np.arange(50) < 30)
     np.testing.assert_array_equal(~tracks.visible[:, 0], hidden)
     assert np.abs(tracks.centroid[~hidden, 0] - np.array(places)[~hidden]).max() < 0.3
@@ -65,11 +61,10 @@ def test_a_lost_marker_is_found_where_it_comes_back() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_a_marker_that_leaps_out_of_its_window_is_followed() -> None:
-    """More than its own length from frame to frame, there and back."""
     rng = np.random.default_rng(4)
     places = [(160.0 + 100.0 * np.sin(index * 0.5), 90.0 + 20.0 * np.cos(index * 0.4)) for index in range(48)]
     images = [draw([(RED, place, (17.0, 7.0), 0.0)], rng) for place in places]
-    tracks = finish(track_markers(clip_of(images), (STYLES[0],)))
+    tracks = tracked(images, (STYLES[0],))
     assert np.abs(np.diff(np.array(places)[:, 0])).max() > 45.0
     assert tracks.visible.all()
     assert np.abs(tracks.centroid[:, 0] - places).max() < 0.3
@@ -77,7 +72,6 @@ def test_a_marker_that_leaps_out_of_its_window_is_followed() -> None:
 
 @pytest.mark.usefixtures("short_stretch")
 def test_two_pieces_about_an_arm_are_one_marker_after_the_stretch_too() -> None:
-    """The arm comes before the marker's middle in the last frames."""
     rng = np.random.default_rng(5)
     images = []
     for index in range(30):
@@ -85,7 +79,7 @@ def test_two_pieces_about_an_arm_are_one_marker_after_the_stretch_too() -> None:
         if index >= 18:
             image[94:106] = rng.normal(45, 2, (12, 320, 3)).astype(np.uint8)
         images.append(image)
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(images)
     assert np.abs(tracks.centroid[:, 0] - [150.0, 100.0]).max() < 0.5
     assert (tracks.area[18:, 0] < 0.75 * tracks.area[0, 0]).all()
 
@@ -97,17 +91,17 @@ def alike(index: int) -> list[tuple[float, float]]:
 
 def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
     """Each keeps its own path, and one note says that their colors do not tell them apart."""
-    rng = np.random.default_rng(6)
     other = (RED[0] - 6, RED[1] + 4, RED[2] + 3)
     styles = (MarkerStyle("left", "forearm.L", RED), MarkerStyle("right", "forearm.R", other))
-    images = [
-        draw([(RED, alike(index)[0], (14.0, 6.0), 0.0), (other, alike(index)[1], (6.0, 14.0), 0.0)], rng)
-        for index in range(40)
-    ]
+    images = film(
+        lambda index: [(RED, alike(index)[0], (14.0, 6.0), 0.0), (other, alike(index)[1], (6.0, 14.0), 0.0)],
+        40,
+        6,
+    )
     truth = np.array([alike(index) for index in range(40)])
     apart = np.abs(truth[:, 0, 0] - truth[:, 1, 0]) > 30.0
     expected = ExpectedRegions(truth + [6.0, -5.0], np.full((40, 2), 60.0))
-    tracks = finish(track_markers(clip_of(images), styles, expected))
+    tracks = tracked(images, styles, expected)
     assert tracks.visible[apart].all()
     assert np.abs(tracks.centroid[apart] - truth[apart]).max() < 0.5
     assert len(tracks.notes) == 1
@@ -115,9 +109,8 @@ def test_the_expected_places_tell_markers_of_almost_one_color_apart() -> None:
 
 
 def test_markers_of_different_colors_need_no_note() -> None:
-    """Red and blue are told apart by what they are."""
     rng = np.random.default_rng(7)
-    assert finish(track_markers(clip_of([draw(moving(i), rng) for i in range(12)]), STYLES)).notes == ()
+    assert tracked([draw(moving(i), rng) for i in range(12)]).notes == ()
 
 
 def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
@@ -126,11 +119,10 @@ def test_a_marker_of_the_walls_color_is_refused_with_the_reason() -> None:
     rng = np.random.default_rng(8)
     images = [draw([(wall, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
     with pytest.raises(InputError, match=r"marker sleeve has the color .* [67]\d % of the picture .* too"):
-        finish(track_markers(clip_of(images), (MarkerStyle("sleeve", "forearm.L", wall),)))
+        tracked(images, (MarkerStyle("sleeve", "forearm.L", wall),))
 
 
 def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> None:
-    """Of two images, one of them halved; columns between panels serve no color."""
     rng = np.random.default_rng(9)
     images = [rng.integers(0, 256, (40, 60, 3), dtype=np.uint8) for _ in range(2)]
     sheet = pack_windows(images, [Window(0, 0, 3, 5, 6, 15, 18), Window(1, 1, 4, -2, 10, 8, 22)])
@@ -146,7 +138,6 @@ def test_panels_are_the_windows_and_repeat_the_border_beyond_the_picture() -> No
 
 
 def test_boxes_near_each_other_share_a_window_and_no_pixel_is_in_two() -> None:
-    """A followed box counts only where nothing is seen."""
     assert boxes_to_measure([(0, 0, 10, 10), (18, 4, 30, 12)], []) == [(0, 0, 30, 12)]
     assert sorted(boxes_to_measure([(0, 0, 10, 10)], [(5, 5, 20, 20), (90, 0, 99, 9)])) == [
         (0, 0, 10, 10),
@@ -178,3 +169,20 @@ def test_pictures_of_every_size_are_measured_and_searched_on_like_grids(
     assert halvings(size) == times
     grid = (size[1] >> times, size[0] >> times)
     assert searching_factor(grid) == factor
+
+
+def test_one_frame_is_measured_as_in_a_pass_over_the_clip() -> None:
+    clip = clip_of(film(moving, 30, 1))
+    whole = finish(track_markers(clip, STYLES))
+    for index in (0, 13, 29):
+        one = regions_of_frame(clip, index / 30.0, STYLES)
+        assert one.names == whole.names
+        assert one.frame_count == 1
+        assert np.abs(one.centroid[0] - whole.centroid[index]).max() < 0.1
+        np.testing.assert_allclose(one.area[0], whole.area[index], rtol=0.02)
+
+
+def test_a_frame_beyond_the_end_is_refused() -> None:
+    clip = clip_of(film(moving, 12, 2))
+    with pytest.raises(InputError, match="no frame at 0.50 s"):
+        regions_of_frame(clip, 0.5, STYLES)

@@ -6,11 +6,24 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import BLUE, RED, SIZE, STYLES, Ellipse, clip_of, draw, finish, moving, path, with_panel
+from _drawn_clip import (
+    BLUE,
+    RED,
+    SIZE,
+    STYLES,
+    Ellipse,
+    clip_of,
+    draw,
+    film,
+    moving,
+    path,
+    tracked,
+    with_panel,
+)
 from keymark.core.footage.clips.clip import Clip, sample_clip
 from keymark.core.footage.ignored_regions import IGNORED, IgnoredPixels, IgnoredRegion
 from keymark.core.footage.marker_check import check_markers
-from keymark.core.footage.markers import regions_of_frame, track_markers
+from keymark.core.footage.markers import regions_of_frame
 from keymark.core.footage.reading import Reading, read_clip, reading_key
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.footage.segmentation.regions import color_masks
@@ -21,19 +34,16 @@ OVER = (14.0, 144.0, 96.0, 226.0)
 
 
 def images(count: int = 40) -> list[np.ndarray]:
-    """The usual clip with the panel."""
     rng = np.random.default_rng(3)
     return [with_panel(draw(moving(index), rng)) for index in range(count)]
 
 
 def hidden_red(index: int) -> list[Ellipse]:
-    """Red is behind something in the middle of the clip."""
     return [*(moving(index)[:1] if not 12 <= index < 28 else []), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
 
 
 def track(frames: list[np.ndarray], *ignored: IgnoredRegion) -> RegionTracks:
-    """The markers of a clip."""
-    return finish(track_markers(clip_of(frames), STYLES, ignored=ignored))
+    return tracked(frames, ignored=ignored)
 
 
 def away(tracks: RegionTracks) -> np.ndarray:
@@ -43,7 +53,6 @@ def away(tracks: RegionTracks) -> np.ndarray:
 
 
 def mask(*regions: IgnoredRegion, frame: int = 0, size: tuple[int, int] = SIZE) -> np.ndarray | None:
-    """The mask of a frame."""
     return IgnoredPixels(regions, size).mask(frame)
 
 
@@ -59,7 +68,6 @@ def test_a_box_covers_its_pixels_on_the_measuring_grid() -> None:
 
 
 def test_a_stroke_covers_all_that_its_disc_sweeps() -> None:
-    """A capsule of known area, in its very place."""
     stroke = IgnoredRegion(stroke=((100.0, 60.0), (160.0, 100.0)), radius_px=12.0)
     covered = mask(stroke)
     assert covered is not None
@@ -72,7 +80,6 @@ def test_a_stroke_covers_all_that_its_disc_sweeps() -> None:
 
 
 def test_a_region_counts_in_its_frames_alone() -> None:
-    """First and last included; frames may be those of samples."""
     region = IgnoredRegion(box=(0.0, 0.0, 10.0, 10.0), frames=(5, 7))
     assert [mask(region, frame=frame) is not None for frame in (4, 5, 7, 8)] == [False, True, True, False]
     sampled = IgnoredPixels((region,), SIZE, sampled=(0, 6, 12))
@@ -101,7 +108,6 @@ def test_a_hidden_marker_is_not_taken_for_an_ignored_panel(over: IgnoredRegion) 
 
 
 def test_a_panel_beside_a_resting_marker_is_told_from_it() -> None:
-    """A resting red marker beside a larger panel: only the person knows which is which."""
     rng = np.random.default_rng(7)
     at_rest = [(RED, (200.3, 60.7), (16.0, 6.0), 30.0), (BLUE, (250.5, 120.5), (8.0, 18.0), 0.0)]
     frames = [with_panel(draw(at_rest, rng)) for _ in range(30)]
@@ -123,7 +129,7 @@ def test_a_wall_that_hides_its_color_teaches_nothing_once_it_is_ignored() -> Non
 
     frames = [frame(index) for index in range(36)]
     red = STYLES[:1]
-    seen = finish(track_markers(clip_of(frames), red, ignored=(wall,)))
+    seen = tracked(frames, red, ignored=(wall,))
     true = np.array([(190.0 + 2.0 * index, 90.0) for index in range(36)])
     assert np.linalg.norm(seen.centroid[:, 0] - true, axis=1).max() < 0.5
     assert np.nanmedian(seen.quality[:, 0]) > 0.8
@@ -133,34 +139,23 @@ def test_a_region_that_an_ignored_one_cuts_is_seen_in_part() -> None:
     """Nothing of it lies inside, and it is known to be no whole marker, as at the picture's border."""
     rng = np.random.default_rng(11)
     frames = [draw([(RED, (150.0, 90.0), (30.0, 12.0), 0.0)], rng) for _ in range(20)]
-    half = finish(track_markers(clip_of(frames), STYLES[:1], ignored=(IgnoredRegion(box=(0, 0, 150, 240)),)))
-    whole = finish(track_markers(clip_of(frames), STYLES[:1]))
+    half = tracked(frames, STYLES[:1], ignored=(IgnoredRegion(box=(0, 0, 150, 240)),))
+    whole = tracked(frames, STYLES[:1])
     assert half.clipped[:, 0].all() and not whole.clipped.any()
     assert np.nanmedian(half.area) == pytest.approx(0.5 * np.nanmedian(whole.area), rel=0.05)
     beside = IgnoredRegion(box=(0, 0, 110, 240))
-    assert not finish(track_markers(clip_of(frames), STYLES[:1], ignored=(beside,))).clipped.any()
+    assert not tracked(frames, STYLES[:1], ignored=(beside,)).clipped.any()
 
 
 def test_a_region_ignored_in_some_frames_is_searched_in_the_others() -> None:
     """Red passes through a box that is ignored in its frames; long before and after it is found."""
-    rng = np.random.default_rng(13)
-    frames = [draw(moving(index), rng) for index in range(60)]
+    frames = film(moving, 60, 13)
     tracks = track(frames, IgnoredRegion(box=(0.0, 0.0, 320.0, 240.0), frames=(20, 29)))
     assert np.flatnonzero(~tracks.visible[:, 0]).tolist() == list(range(20, 30))
     assert not tracks.visible[20:30, 1].any() and tracks.visible[30:, 1].all()
 
 
-def test_a_reading_without_ignored_regions_is_the_same_bit_for_bit() -> None:
-    """Its key as well, so that stored ones stay valid; ignored regions change the key."""
-    frames = images(12)
-    clip = clip_of(frames)
-    one, other = track(frames), finish(track_markers(clip, STYLES, None, ()))
-    for name in ("centroid", "second_moment", "area", "quality"):
-        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
-
-
 def test_the_key_of_a_reading_changes_with_what_is_ignored(tmp_path: Path) -> None:
-    """With every number of it; but not where no marker is followed."""
     folder = tmp_path / "clip"
     folder.mkdir()
     for index in range(3):
@@ -178,7 +173,6 @@ def test_the_key_of_a_reading_changes_with_what_is_ignored(tmp_path: Path) -> No
 
 
 def test_a_kept_reading_is_not_used_for_other_ignored_regions(tmp_path: Path) -> None:
-    """The panel is gone from the next reading, although the clip is the same."""
     folder = tmp_path / "clip"
     folder.mkdir()
     rng = np.random.default_rng(5)
@@ -192,12 +186,10 @@ def test_a_kept_reading_is_not_used_for_other_ignored_regions(tmp_path: Path) ->
 
 
 def _read(clip: Clip, kept: Reading | None = None, ignored: Sequence[IgnoredRegion] = ()) -> Reading:
-    """A reading without pictures."""
     return run(read_clip(clip, STYLES, None, False, kept, ignored))
 
 
 def test_one_frame_alone_leaves_the_same_pixels_out() -> None:
-    """As the whole clip does, and only in the frames of a region."""
     rng = np.random.default_rng(5)
     frames = [with_panel(draw(hidden_red(index), rng)) for index in range(40)]
     over = IgnoredRegion(box=OVER, frames=(0, 25))
@@ -207,7 +199,6 @@ def test_one_frame_alone_leaves_the_same_pixels_out() -> None:
 
 
 def test_a_mask_that_is_shown_has_nothing_of_an_ignored_panel() -> None:
-    """Red outside stays as it was."""
     frames = images()
     samples = run(sample_clip(clip_of(frames)))
     over = (IgnoredRegion(box=OVER),)

@@ -8,7 +8,21 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from _drawn_clip import BLUE, RED, SIZE, STYLES, Drawn, Ellipse, clip_of, draw, finish, moving, path
+from _drawn_clip import (
+    BLUE,
+    RED,
+    SIZE,
+    STYLES,
+    Drawn,
+    Ellipse,
+    clip_of,
+    draw,
+    film,
+    finish,
+    moving,
+    path,
+    tracked,
+)
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
 from keymark.core.footage.colors.color_learning import learn_colors
@@ -17,9 +31,7 @@ from keymark.core.footage.region_tracks import ExpectedRegions, MarkerStyle, Reg
 
 
 def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of_a_pixel() -> None:
-    """Centroid within 0.2 px, area within 6 %, second moments within 10 %."""
-    rng = np.random.default_rng(1)
-    tracks = finish(track_markers(clip_of([draw(moving(index), rng) for index in range(40)]), STYLES))
+    tracks = tracked(film(moving, 40, 1))
     truth = np.array([path(index) for index in range(40)])
     assert tracks.visible.all() and tracks.names == ("red", "blue") and tracks.size == SIZE
     assert np.abs(tracks.centroid[:, 0] - truth).max() < 0.2
@@ -32,18 +44,13 @@ def test_regions_of_known_place_size_and_direction_are_measured_to_a_fraction_of
 
 
 def test_the_clip_is_decoded_once_for_the_extraction() -> None:
-    """Learning looks at samples only."""
-    rng = np.random.default_rng(1)
-    drawn = Drawn([draw(moving(index), rng) for index in range(15)])
+    drawn = Drawn(film(moving, 15, 1))
     finish(track_markers(Clip(Path("drawn.mp4"), drawn), STYLES))
     assert drawn.passes == 1
 
 
 def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
-    """Ten frames without red give no observation and no quality; blue goes on."""
-    rng = np.random.default_rng(2)
-    images = [draw(moving(index)[1 if 15 <= index < 25 else 0 :], rng) for index in range(40)]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(film(lambda index: moving(index)[1 if 15 <= index < 25 else 0 :], 40, 2))
     hidden = np.zeros(40, dtype=bool)
     hidden[15:25] = True
     np.testing.assert_array_equal(~tracks.visible[:, 0], hidden)
@@ -52,20 +59,16 @@ def test_a_hidden_marker_is_not_a_number_and_comes_back() -> None:
 
 
 def test_changing_light_and_noise_do_not_lose_a_marker() -> None:
-    """The light falls to six tenths over the clip, under noise of five levels."""
     rng = np.random.default_rng(3)
     images = [draw(moving(index), rng, 5.0, 1.0 - 0.01 * index) for index in range(40)]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(images)
     assert tracks.visible.all()
     assert np.median(np.abs(tracks.centroid[:, 0] - [path(index) for index in range(40)])) < 0.2
 
 
 def test_a_still_thing_of_the_markers_color_is_clutter_even_while_the_marker_is_hidden() -> None:
-    """It is larger than the marker, and the marker is away for a while."""
-    rng = np.random.default_rng(4)
     bucket: Ellipse = (RED, (280.0, 205.0), (22.0, 16.0), 0.0)
-    images = [draw([*moving(index)[15 <= index < 25 :], bucket], rng) for index in range(40)]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(film(lambda index: [*moving(index)[15 <= index < 25 :], bucket], 40, 4))
     seen = tracks.visible[:, 0]
     np.testing.assert_array_equal(~seen, (np.arange(40) >= 15) & (np.arange(40) < 25))
     truth = np.array([path(index) for index in range(40)])
@@ -73,21 +76,19 @@ def test_a_still_thing_of_the_markers_color_is_clutter_even_while_the_marker_is_
 
 
 def test_a_marker_that_rests_is_no_clutter() -> None:
-    """Nothing else of its color moves, so a still region is the marker."""
     rng = np.random.default_rng(5)
-    tracks = finish(track_markers(clip_of([draw(moving(8), rng) for _ in range(30)]), STYLES))
+    tracks = tracked([draw(moving(8), rng) for _ in range(30)])
     assert tracks.visible.all()
 
 
 def test_the_expected_place_tells_the_marker_from_a_moving_thing_of_its_color() -> None:
     """A larger red ball crosses the picture; only the expectation can know which of the two it is."""
-    rng = np.random.default_rng(6)
     balls: list[Ellipse] = [(RED, (300.0 - 3.0 * index, 40.0), (14.0, 14.0), 0.0) for index in range(40)]
-    images = [draw([*moving(index), balls[index]], rng) for index in range(40)]
+    images = film(lambda index: [*moving(index), balls[index]], 40, 6)
     truth = np.array([path(index) for index in range(40)])
     center = np.stack([truth + [9.0, -7.0], np.tile([250.5, 120.5], (40, 1))], axis=1)
     expected = ExpectedRegions(center[:38], np.full((38, 2), 30.0))  # a container may claim too few frames
-    tracks = finish(track_markers(clip_of(images), STYLES, expected))
+    tracks = tracked(images, STYLES, expected)
     apart = np.linalg.norm(truth - [ball[1] for ball in balls], axis=1) > 45.0
     assert np.abs(tracks.centroid[apart, 0] - truth[apart]).max() < 0.3
 
@@ -101,14 +102,13 @@ def test_a_region_that_an_arm_splits_stays_one() -> None:
         if index >= 15:
             image[94:106] = rng.normal(45, 2, (12, 320, 3)).astype(np.uint8)
         images.append(image)
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(images)
     assert np.abs(tracks.centroid[:, 0] - [150.0, 100.0]).max() < 0.5
     assert (tracks.area[15:, 0] < 0.75 * tracks.area[0, 0]).all()
     assert tracks.quality[20, 0] < 0.75 * tracks.quality[5, 0]
 
 
 def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
-    """The marker walks out of the picture."""
     rng = np.random.default_rng(8)
     images = [
         draw(
@@ -117,21 +117,18 @@ def test_a_region_at_the_images_border_is_clipped_and_trusted_less() -> None:
         )
         for index in range(25)
     ]
-    tracks = finish(track_markers(clip_of(images), STYLES))
+    tracks = tracked(images)
     assert tracks.clipped[20, 0] and not tracks.clipped[:15, 0].any() and not tracks.clipped[:, 1].any()
     assert tracks.quality[20, 0] < 0.5 * tracks.quality[10, 0]
 
 
 def test_a_color_that_matches_nothing_is_named_with_the_nearest_ones() -> None:
-    """The sentence names the marker, its color and colors that are in the clip."""
-    rng = np.random.default_rng(9)
-    clip = clip_of([draw(moving(index), rng) for index in range(20)])
+    clip = clip_of(film(moving, 20, 9))
     with pytest.raises(InputError, match=r"marker shin.*\[40, 220, 60\].*nearest.*\[\d+, \d+, \d+\]"):
         finish(track_markers(clip, (*STYLES, MarkerStyle("shin", "shin.L", (40, 220, 60)))))
 
 
 def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_one() -> None:
-    """At four times the size the centroids are four times as far and as exact."""
     rng = np.random.default_rng(11)
     large = [
         cv2.resize(draw(moving(index), rng, 0.0), None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
@@ -146,8 +143,7 @@ def test_larger_images_are_searched_on_a_reduced_grid_and_measured_on_the_full_o
 
 def test_one_sample_off_in_light_still_teaches_the_markers_color() -> None:
     """A sample from the shaded side, a third darker, finds the same pixels as the true color."""
-    rng = np.random.default_rng(12)
-    images = [draw(moving(index), rng) for index in range(6)]
+    images = film(moving, 6, 12)
     dark = (RED[0] * 2 // 3, RED[1] * 2 // 3, RED[2] * 2 // 3)
     right, shaded = (learn_colors(images, [sample, BLUE]).found for sample in (RED, dark))
     np.testing.assert_allclose(shaded, right, rtol=0.1)
@@ -162,23 +158,21 @@ def test_a_marker_without_a_hue_is_told_from_a_colored_wall(gray: tuple[int, int
         image = np.full((SIZE[1], SIZE[0], 3), (60, 130, 170), dtype=np.uint8)
         cv2.ellipse(image, (80 + 6 * index, 120), (30, 15), 0.0, 0, 360, gray, -1)
         images.append(np.clip(image + rng.normal(0, 2.0, image.shape), 0, 255).astype(np.uint8))
-    tracks = finish(track_markers(clip_of(images), (MarkerStyle("gray", "forearm.L", gray),)))
+    tracks = tracked(images, (MarkerStyle("gray", "forearm.L", gray),))
     truth = np.array([[80.5 + 6.0 * index, 120.5] for index in range(20)])
     assert tracks.visible.all() and np.abs(tracks.centroid[:, 0] - truth).max() < 1.0
 
 
 def test_a_gray_marker_before_a_wall_of_a_little_warmth_is_followed() -> None:
-    """Seven hundredths of a color's range tell the two apart."""
     rng = np.random.default_rng(3)
     gray = (128, 128, 128)
     images = [draw([(gray, (80.0 + 6.0 * i, 90.0), (30.0, 15.0), 0.0)], rng) for i in range(20)]
-    tracks = finish(track_markers(clip_of(images), (MarkerStyle("gray", "forearm.L", gray),)))
+    tracks = tracked(images, (MarkerStyle("gray", "forearm.L", gray),))
     truth = np.array([[80.0 + 6.0 * index, 90.0] for index in range(20)])
     assert tracks.visible.all() and np.median(np.abs(tracks.centroid[:, 0] - truth)) < 0.5
 
 
 def test_tracks_refuse_shapes_that_disagree() -> None:
-    """Every array has one row a frame and one column a marker."""
     good: dict[str, Any] = {
         "names": ("a",),
         "centroid": np.zeros((3, 1, 2)),

@@ -14,7 +14,6 @@ from keymark.core.footage.segmentation.moments import (
 
 
 def measured(mask: np.ndarray, origin: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-    """Centroid and second moment matrix of a mask."""
     return centroid_and_second_moment(raw_moments(mask, origin))
 
 
@@ -28,7 +27,6 @@ def ellipse(angle: float, a: float = 60.0, b: float = 24.0, size: int = 160) -> 
 
 
 def test_a_rectangle_of_whole_pixels_has_exactly_the_rectangles_moments() -> None:
-    """Columns 10 to 13 and rows 4 to 9: 4 x 6 pixels, variances of 4²/12 and 6²/12."""
     mask = np.zeros((20, 30), dtype=bool)
     mask[4:10, 10:14] = True
     centroid, second = measured(mask)
@@ -36,15 +34,7 @@ def test_a_rectangle_of_whole_pixels_has_exactly_the_rectangles_moments() -> Non
     np.testing.assert_allclose(second, [[16 / 12, 0.0], [0.0, 3.0]], atol=1e-12)
 
 
-def test_the_first_pixels_center_lies_at_a_half() -> None:
-    """The origin is the outer corner of the first pixel; a pixel alone has the variance of a square."""
-    centroid, second = measured(np.ones((1, 1)))
-    np.testing.assert_allclose(centroid, [0.5, 0.5])
-    np.testing.assert_allclose(second, np.eye(2) / 12)
-
-
 def test_a_window_counts_from_its_own_corner() -> None:
-    """Moments of a window with its origin are those of the whole image."""
     image = np.zeros((60, 80))
     image[20:31, 33:50] = np.random.default_rng(2).uniform(0, 1, (11, 17))
     np.testing.assert_allclose(raw_moments(image), raw_moments(image[18:40, 30:60], (30, 18)), rtol=1e-12)
@@ -52,7 +42,6 @@ def test_a_window_counts_from_its_own_corner() -> None:
 
 @pytest.mark.parametrize("angle", np.linspace(-1.5, 1.5, 7))
 def test_an_ellipse_gives_its_angle_and_the_square_of_its_axes_ratio(angle: float) -> None:
-    """λ1 = a²/4, λ2 = b²/4: the major axis is that of the larger eigenvalue."""
     found = characteristics(*measured(ellipse(angle)))
     assert found.x == pytest.approx(80.0) and found.y == pytest.approx(80.0)
     assert axis_angle_difference(found.angle_rad, angle) == pytest.approx(0.0, abs=2e-3)
@@ -62,14 +51,12 @@ def test_an_ellipse_gives_its_angle_and_the_square_of_its_axes_ratio(angle: floa
 
 
 def test_moments_of_pieces_add_up() -> None:
-    """A region cut in two by an arm has the moments of both pieces together."""
     rng = np.random.default_rng(3)
     first, second = rng.uniform(0, 1, (2, 12, 9))
     np.testing.assert_allclose(raw_moments(first) + raw_moments(second), raw_moments(first + second))
 
 
 def test_moments_agree_with_opencvs_up_to_the_pixels_own_size() -> None:
-    """OpenCV counts from pixel centers and takes pixels for points."""
     weights = np.random.default_rng(4).uniform(0, 1, (30, 40)).astype(np.float32)
     theirs = cv2.moments(weights)
     centroid, second = measured(weights)
@@ -81,14 +68,12 @@ def test_moments_agree_with_opencvs_up_to_the_pixels_own_size() -> None:
 
 
 def test_an_empty_region_is_not_a_number() -> None:
-    """A hidden marker gives no observation, never a zero."""
     centroid, second = measured(np.zeros((5, 5)))
     assert np.isnan(centroid).all() and np.isnan(second).all()
 
 
 @given(st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
 def test_axis_angles_differ_by_less_than_a_right_angle(first: float, second: float) -> None:
-    """The difference is wrapped modulo π and means the same axis turned."""
     difference = axis_angle_difference(first, second)
     assert -np.pi / 2 <= difference <= np.pi / 2
     assert np.sin(difference - (first - second)) == pytest.approx(0.0, abs=1e-9)

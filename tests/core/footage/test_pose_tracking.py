@@ -1,17 +1,28 @@
-"""People are found in a clip and followed: who comes, goes, passes by, and is nobody."""
+"""People are found in a clip and followed, by a landmark network whose points lie where they are seen."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 import pytest
+from _drawn_clip import Drawn
 from _fake_network import SHAPE, FakeNetwork, draw_people
-from keymark.core.arrays import Image
 from keymark.core.errors import InputError
 from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.keypoints.keypoint_file import read_keypoints
 from keymark.core.footage.keypoints.keypoints import People
+from keymark.core.footage.pose_network import (
+    ABOVE,
+    CELLS,
+    CENTER,
+    LAYOUT,
+    MODEL,
+    POINTS,
+    SIDE,
+    Crop,
+    PoseNetwork,
+)
 from keymark.core.footage.pose_tracking import STRETCH, find_people
 from keymark.core.progress import Progress, run
 
@@ -19,40 +30,22 @@ SIZE = (320, 240)
 People3 = list[tuple[float, float, float]]
 
 
-@dataclass
-class Drawn:
-    """A source of drawn frames."""
-
-    people: Sequence[People3]
-    size: tuple[int, int] = SIZE
-    fps: float = 30.0
-
-    @property
-    def frame_count(self) -> int:
-        """Number of frames."""
-        return len(self.people)
-
-    def frames(self) -> Iterator[tuple[int, float, Image]]:
-        """Draw them."""
-        for index, people in enumerate(self.people):
-            yield index, index / self.fps, draw_people(self.size, people)
+def drawn(people: Sequence[People3], size: tuple[int, int] = SIZE, name: str = "drawn.mp4") -> Clip:
+    """A clip of these."""
+    return Clip(Path(name), cast(Any, Drawn([draw_people(size, each) for each in people], size=size)))
 
 
 def seen(people: Sequence[People3], size: tuple[int, int] = SIZE) -> People:
-    """Who is found in a clip of these."""
-    clip = Clip(Path("drawn.mp4"), cast(Any, Drawn(people, size)))
-    return run(find_people(clip, cast(Any, FakeNetwork()), 10_000))
+    return run(find_people(drawn(people, size), cast(Any, FakeNetwork()), 10_000))
 
 
 def counts(people: People) -> list[int]:
-    """Number of people of each frame."""
     return [len(frame.pixel) for frame in people.frames]
 
 
 def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
-    """In place, with every frame counted once, and progress that never goes back."""
     frames = STRETCH * 2 + 5
-    clip = Clip(Path("x"), cast(Any, Drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])))
+    clip = drawn([[(90.0 + index, 120.0, 50.0)] for index in range(frames)])
     progress: list[Progress] = []
     found = run(find_people(clip, cast(Any, FakeNetwork()), 10_000), progress.append)
     assert counts(found) == [1] * frames and found.size == SIZE
@@ -63,7 +56,6 @@ def test_one_person_is_followed_over_the_ends_of_stretches() -> None:
 
 @pytest.mark.parametrize("frames", [1, 3])
 def test_a_clip_of_few_frames(frames: int) -> None:
-    """One is enough."""
     assert counts(seen([[(160.0, 120.0, 50.0)]] * frames)) == [1] * frames
 
 
@@ -75,7 +67,6 @@ def test_somebody_who_comes_and_goes_is_seen_meanwhile_alone() -> None:
 
 
 def test_two_people_are_told_apart_and_a_tiny_one_is_left_out() -> None:
-    """Both in every frame, each once; spectators far away are nobody's take."""
     people: list[People3] = [
         [(100.0 + 0.3 * index, 120.0, 45.0), (220.0, 120.0, 40.0), (300.0, 30.0, 6.0)] for index in range(60)
     ]
@@ -83,31 +74,110 @@ def test_two_people_are_told_apart_and_a_tiny_one_is_left_out() -> None:
 
 
 def test_a_passer_by_of_another_size_who_meets_nobody_is_left_out() -> None:
-    """Somebody near the camera crosses after the performer has left."""
     people: list[People3] = [[(160.0, 120.0, 40.0)]] * 60 + [[]] * 10
     people += [[(120.0 + 4 * index, 120.0, 80.0)] for index in range(26)]
     assert counts(seen(people)) == [1] * 60 + [0] * 36
 
 
 def test_points_beyond_the_picture_are_not_seen() -> None:
-    """They were guessed, as those of somebody half out of it."""
     found = seen([[(20.0, 120.0, 50.0)]] * 5).frames[2]
     outside = np.isnan(found.pixel[0]).any(axis=1)
     assert outside.any() and not outside.all() and (found.score[0][outside] == 0.0).all()
 
 
 def test_a_large_picture_is_found_in_its_own_pixels() -> None:
-    """The network sees it smaller."""
     found = seen([[(1300.0, 900.0, 350.0)]] * 2, (2600, 1800)).frames[0]
     np.testing.assert_allclose(np.nanmean(found.pixel[0] - 350.0 * SHAPE, axis=0), (1300.0, 900.0), atol=6.0)
 
 
 def test_a_clip_without_anybody_is_one_sentence() -> None:
-    """And so is one without frames, or with too many."""
     with pytest.raises(InputError, match=r"drawn.mp4: nobody is seen in any of its 60 frames"):
         seen([[]] * 60)
     with pytest.raises(InputError, match="holds no frame"):
         seen([])
-    clip = Clip(Path("long.mp4"), cast(Any, Drawn([[(160.0, 120.0, 50.0)]] * 60)))
+    clip = drawn([[(160.0, 120.0, 50.0)]] * 60, name="long.mp4")
     with pytest.raises(InputError, match=r"long.mp4: has more than 50 frames"):
         run(find_people(clip, cast(Any, FakeNetwork()), 50))
+
+
+needs_model = pytest.mark.skipif(not MODEL.is_file(), reason="tools/fetch_model.py was not run")
+
+
+def bare() -> PoseNetwork:
+    return PoseNetwork.__new__(PoseNetwork)
+
+
+def answer(place: tuple[float, float]) -> list[Any]:
+    """What the network gives where all points are at one place, but the upper one 50 px above it."""
+    points = np.zeros((POINTS, 5), dtype=np.float32)
+    points[:, :2] = place
+    points[ABOVE, 1] -= 50.0
+    heat = np.full((POINTS, CELLS, CELLS), -20.0, dtype=np.float32)
+    world = np.tile(np.array([1.0, 0.0, 0.5], dtype=np.float32), (POINTS, 1))
+    return [points, 0.9, heat, world]
+
+
+def test_points_and_hints_are_turned_with_the_crop() -> None:
+    crop = Crop(np.array([200.0, 100.0]), 2.0 * SIDE, np.pi / 2)
+    points, presence, heat, world = answer((SIDE / 2 + 10.0, SIDE / 2))
+    pose = bare().postprocess((points, presence, heat, world), crop)
+    np.testing.assert_allclose(pose.pixel, np.tile([200.0, 120.0], (len(LAYOUT.names), 1)), atol=1e-9)
+    np.testing.assert_allclose(pose.hint_m, np.tile([0.0, 1.0, 0.5], (len(LAYOUT.names), 1)), atol=1e-6)
+    np.testing.assert_allclose(pose.crop.center, [200.0, 120.0], atol=1e-9)
+    assert pose.crop.angle == pytest.approx(np.pi / 2) and pose.crop.side == pytest.approx(250.0)
+    assert (pose.score == 0.5).all() and pose.presence == 0.9
+
+
+def test_a_heat_map_moves_its_point_where_it_has_a_peak() -> None:
+    points, presence, heat, world = answer((100.0, 100.0))
+    number = LAYOUT.numbers[3]
+    heat[number, 24, 27], heat[LAYOUT.numbers[4], 24, 27] = 20.0, -1.0
+    pose = bare().postprocess((points, presence, heat, world), Crop(np.full(2, SIDE / 2), SIDE))
+    np.testing.assert_allclose(pose.pixel[3], (108.0, 96.0), atol=1e-3)
+    np.testing.assert_allclose(pose.pixel[4], (100.0, 100.0), atol=1e-9)
+
+
+def test_the_input_shows_the_crop_red_first() -> None:
+    picture = np.zeros((400, 400, 3), dtype=np.uint8)
+    picture[150:160, 250:260, 0] = 255  # blue
+    crop = Crop(np.array([220.0, 170.0]), 300.0, 0.4)
+    blob = bare().preprocess(picture, crop)
+    assert blob.shape == (1, 3, SIDE, SIDE) and blob.max() == pytest.approx(1.0) and not blob[0, :2].any()
+    rows, columns = np.nonzero(blob[0, 2] > 0.5)
+    middle = crop.matrix @ [columns.mean() + 0.5, rows.mean() + 0.5, 1.0]
+    np.testing.assert_allclose(middle, (255.0, 155.0), atol=0.5)
+
+
+def test_a_missing_or_damaged_file_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"cannot be read .*fetch_model.py"):
+        PoseNetwork(tmp_path / "none.tflite")
+    broken = tmp_path / "broken.tflite"
+    broken.write_bytes(b"TFL3" * 1000)
+    with pytest.raises(InputError, match=r"is damaged or another one; install"):
+        PoseNetwork(broken)
+
+
+@needs_model
+def test_the_performer_of_the_demonstration_is_found(repository: Path) -> None:
+    take = repository / "presets" / "demo" / "aerobic"
+    clip = Clip.open(take / "clip.mp4")
+    images = list(clip.source.at(range(6)))
+
+    short = Clip(clip.path, cast(Any, Drawn([image for _, image in images], size=clip.size)))
+    found = run(find_people(short, PoseNetwork(), 100))
+    usual = read_keypoints(take / "keypoints.json", None, clip.size)
+    both = [name for name in found.names if name in usual.names]
+    own, theirs = [[names.index(name) for name in both] for names in (found.names, usual.names)]
+    for index, frame in enumerate(found.frames):
+        assert len(frame.pixel) == 1 and np.isfinite(frame.hint_m).all()
+        off = np.linalg.norm(frame.pixel[0][own] - usual.frames[index].pixel[0][theirs], axis=1)
+        assert np.nanmedian(off) < 8.0
+
+
+@needs_model
+def test_an_empty_room_shows_nobody() -> None:
+    network = PoseNetwork()
+    noise = np.random.default_rng(0).integers(0, 255, (240, 320, 3), dtype=np.uint8)
+    for picture in (noise, np.full((240, 320, 3), 120, dtype=np.uint8)):
+        assert network(picture, Crop(np.array([160.0, 120.0]), 276.0)).presence < 0.5
+    assert CENTER < ABOVE < POINTS

@@ -1,17 +1,30 @@
 """What is read of a clip: known again, kept as arrays, and read anew where anything differs."""
 
 import os
+import shutil
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from _boot import ROOT
+from _drawn_clip import write_video
 from _synthetic_take import write_synthetic_take
 from keymark.core.files.digest import digest, file_fingerprint
 from keymark.core.footage.clips import clip as clip_module
-from keymark.core.footage.reading import Reading, reading_arrays, reading_from_arrays
-from keymark.core.footage.region_tracks import RegionTracks
+from keymark.core.footage.clips.clip import Clip
+from keymark.core.footage.clips.video_file import VideoFile
+from keymark.core.footage.reading import (
+    MOST_CLIPS,
+    Reading,
+    clip_times,
+    read_clip,
+    reading_arrays,
+    reading_from_arrays,
+    reading_key,
+)
+from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.progress import run
 from keymark.core.take.read_footage import read_footage
 from keymark.core.take.take import Take
@@ -22,13 +35,11 @@ FRAMES = 24
 
 @pytest.fixture
 def take(tmp_path: Path) -> Take:
-    """A small synthetic take."""
     return read_take(write_synthetic_take(tmp_path / "take", frames=FRAMES, keyframe_every=8))
 
 
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Grows by one whenever a clip's frames are gone through."""
     counted: list[int] = []
     original = clip_module.ImageSequence.frames
 
@@ -41,7 +52,6 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def assert_alike(one: RegionTracks, other: RegionTracks) -> None:
-    """Every number is the same."""
     for field in fields(RegionTracks):
         a, b = getattr(one, field.name), getattr(other, field.name)
         assert np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else a == b
@@ -56,7 +66,6 @@ def moved(take: Take, by: float) -> Take:
 
 
 def test_a_reading_survives_as_arrays(take: Take) -> None:
-    """Tracks, pictures, detections, notes and key."""
     reading = replace(run(read_footage(take)), notes=("it may be cut off",))
     back = reading_from_arrays(reading_arrays(reading))
     assert_alike(back.tracks, reading.tracks)
@@ -72,7 +81,6 @@ def test_a_reading_survives_as_arrays(take: Take) -> None:
 
 
 def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> None:
-    """The very reading comes back."""
     reading = run(read_footage(take))
     again = run(read_footage(take, reading))
     assert again.detections is reading.detections and again.tracks is reading.tracks
@@ -80,7 +88,6 @@ def test_an_unchanged_take_is_not_read_again(take: Take, passes: list[int]) -> N
 
 
 def test_a_moved_keyframe_needs_no_pass_where_colors_stay(take: Take, passes: list[int]) -> None:
-    """From what was kept comes exactly what reading anew gives."""
     kept = reading_from_arrays(reading_arrays(run(read_footage(take))))
     changed = moved(take, 0.03)
     again = run(read_footage(changed, kept))
@@ -93,7 +100,6 @@ def test_a_moved_keyframe_needs_no_pass_where_colors_stay(take: Take, passes: li
 
 
 def test_a_keyframe_that_hides_a_color_has_the_clip_read_anew(take: Take, passes: list[int]) -> None:
-    """Where the markers may be looked for has a say in what is learned."""
     kept = run(read_footage(take))
     far = moved(take, 0.9)
     again = run(read_footage(far, kept))
@@ -103,7 +109,6 @@ def test_a_keyframe_that_hides_a_color_has_the_clip_read_anew(take: Take, passes
 
 @pytest.mark.parametrize("change", ["clip", "touched", "color", "segment"])
 def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[int], change: str) -> None:
-    """Nothing is ever out of date."""
     kept = run(read_footage(take))
     image = sorted((take.folder / "frames").iterdir())[3]
     style = take.markers[0]
@@ -120,7 +125,6 @@ def test_whatever_else_changes_has_the_clip_read_anew(take: Take, passes: list[i
 
 
 def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passes: list[int]) -> None:
-    """One that was thought to move needs the clip once more for them."""
     poses = np.repeat(take.camera.matrix_world[None], FRAMES, axis=0)
     poses[1:, 0, 3] += 0.01
     moving = replace(take, camera=replace(take.camera, matrix_world=poses))
@@ -131,7 +135,6 @@ def test_pictures_are_kept_for_a_camera_that_stands_still_only(take: Take, passe
 
 
 def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
-    """Kinds and borders count."""
     alike: Callable[..., bool] = lambda a, b: digest(*a) == digest(*b)  # noqa: E731
     assert alike((1, "a", np.arange(3)), (1, "a", np.arange(3)))
     for one, other in (
@@ -153,3 +156,73 @@ def test_digests_tell_like_from_unlike(tmp_path: Path) -> None:
     file.write_bytes(bytes(150_000) + b"1" + bytes(149_999))
     os.utime(file, ns=(state.st_atime_ns, state.st_mtime_ns))
     assert file_fingerprint(file) != before
+
+
+DEMO = ROOT / "presets" / "demo" / "aerobic"
+
+
+@pytest.fixture
+def decoded(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """The clips that are decoded for their times, one entry a pass."""
+    seen: list[Path] = []
+    decode = VideoFile.time_stamps
+
+    def counted(video: VideoFile):  # noqa: ANN202
+        seen.append(video.path)
+        return decode(video)
+
+    monkeypatch.setattr(VideoFile, "time_stamps", counted)
+    return seen
+
+
+@pytest.fixture
+def clip(tmp_path: Path) -> Path:
+    return Path(shutil.copy(DEMO / "clip.mp4", tmp_path))
+
+
+def test_a_clip_is_decoded_once_for_its_times(clip: Path, decoded: list[Path]) -> None:
+    first, second = (run(clip_times(Clip.open(clip))) for _ in range(2))
+    assert decoded == [clip]
+    np.testing.assert_array_equal(first, list(Clip.open(clip).source.time_stamps()))
+    np.testing.assert_array_equal(second, first)
+    assert len(first) > 1
+
+
+def test_a_clip_that_has_changed_is_decoded_again(clip: Path, decoded: list[Path]) -> None:
+    first = run(clip_times(Clip.open(clip)))
+    write_video(clip, range(0, 100, 10), 30.0)
+    assert len(run(clip_times(Clip.open(clip)))) == 10 != len(first)
+    assert decoded == [clip, clip]
+
+
+def test_a_reading_of_the_clip_knows_its_times(clip: Path, decoded: list[Path]) -> None:
+    """The same to the last digit; a reading of another file, or of other markers, is not asked."""
+    opened = Clip.open(clip)
+    reading = run(read_clip(opened, (), with_album=False))
+    style = MarkerStyle("trunk", "trunk", (70, 106, 213))
+    found = run(clip_times(opened, reading))
+    assert decoded == []
+    np.testing.assert_array_equal(found, list(opened.source.time_stamps()))
+    os.utime(clip, (1, 1))
+    run(clip_times(opened, reading))
+    os.utime(clip, (2, 2))
+    run(clip_times(opened, replace(reading, key=reading_key(clip, opened.fps, (style,), None))))
+    assert decoded == [clip] * 3  # one of them just now, to compare
+
+
+def test_a_pass_that_was_broken_off_leaves_nothing(clip: Path, decoded: list[Path]) -> None:
+    broken = clip_times(Clip.open(clip))
+    next(broken)
+    broken.close()
+    assert len(run(clip_times(Clip.open(clip)))) > 1
+    assert len(decoded) == 2
+
+
+def test_only_the_last_clips_are_remembered(clip: Path, tmp_path: Path, decoded: list[Path]) -> None:
+    others = [tmp_path / f"{number}.mp4" for number in range(MOST_CLIPS)]
+    for number, other in enumerate(others):
+        other.write_bytes(clip.read_bytes())
+        os.utime(other, (100 + number, 100 + number))  # the fingerprint has the time
+    for path in (clip, *others, clip):
+        run(clip_times(Clip.open(path)))
+    assert decoded == [clip, *others, clip]

@@ -22,7 +22,6 @@ DEVIATION = np.full((SIZE, SIZE), NOISE, dtype=np.float32)
 
 
 def surface(color: np.ndarray) -> Surface:
-    """A surface of one color."""
     return Surface(contrast(color), 5.0)
 
 
@@ -37,7 +36,6 @@ def bar(left: float, color: np.ndarray, image: np.ndarray) -> np.ndarray:
 
 
 def wall() -> np.ndarray:
-    """A wall (rows, columns, 3), darker to one side."""
     return WALL * np.linspace(0.9, 1.1, SIZE)[None, :, None] * np.ones((SIZE, 1, 1))
 
 
@@ -66,7 +64,6 @@ def test_a_bar_is_found_where_it_was_on_average(width: float) -> None:
 
 
 def test_the_wider_the_blur_the_smaller_the_share() -> None:
-    """Twice the bar's width leaves about a half, and no pixel gains more than the most."""
     sharp, blurred = look(swept(26.0, 26.0, RED)), look(swept(20.0, 32.0, RED))
     assert sharp.peak[0] > 0.9 > 0.65 > blurred.peak[0] > 0.35
     assert 0.0 < sharp.certainty[0] <= 1.0 and sharp.gain[0] <= MOST_GAIN * SIZE**2
@@ -74,12 +71,10 @@ def test_the_wider_the_blur_the_smaller_the_share() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_noise_is_no_surface(seed: int) -> None:
-    """Nothing that could be taken for one is found on a bare wall."""
     assert look(wall(), seed).gain.max(initial=0.0) < 0.1 * SIGNIFICANT
 
 
 def test_a_shadow_is_no_surface() -> None:
-    """Less light on the wall is the wall."""
     shaded = wall()
     shaded[20:40, 15:45] *= 0.6
     assert look(shaded).gain.max(initial=0.0) < 0.1 * SIGNIFICANT
@@ -88,7 +83,6 @@ def test_a_shadow_is_no_surface() -> None:
 @pytest.mark.parametrize("color", [GREEN, SKIN])
 @pytest.mark.parametrize("width", [0.0, 10.0])
 def test_another_surface_is_another_blurred_or_not(color: np.ndarray, width: float) -> None:
-    """Skin is nearer to red than the wall is, and is skin nevertheless."""
     assert look(swept(20.0, 20.0 + width, color)).gain.max(initial=0.0) < SIGNIFICANT
     alone = Palette(surface(RED), ())
     if color is SKIN:
@@ -98,7 +92,6 @@ def test_another_surface_is_another_blurred_or_not(color: np.ndarray, width: flo
 
 
 def test_a_sliver_before_another_surface_is_found() -> None:
-    """What is left of a red bar behind a green one, two pixels wide."""
     hidden = bar(28.0, GREEN, bar(26.0, RED, wall()))
     found = look(hidden)
     best = int(found.gain.argmax())
@@ -108,7 +101,6 @@ def test_a_sliver_before_another_surface_is_found() -> None:
 
 
 def test_an_unknown_background_tells_nothing() -> None:
-    """Where it was never seen free, not even a sharp bar is found."""
     seen = bar(26.0, RED, wall()).astype(np.uint8)
     assert PALETTE.unmix(seen, wall().astype(np.float32), DEVIATION).gain.any()
     nothing = np.full(seen.shape, np.nan, dtype=np.float32)
@@ -116,7 +108,6 @@ def test_an_unknown_background_tells_nothing() -> None:
 
 
 def test_a_surface_is_the_usual_color_of_its_pixels() -> None:
-    """Few others among them do not matter."""
     rng = np.random.default_rng(3)
     pixels = np.clip(RED + rng.normal(0.0, 4.0, (200, 3)), 0, 255).astype(np.uint8)
     pixels[:20] = WALL.astype(np.uint8)

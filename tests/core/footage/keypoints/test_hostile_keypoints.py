@@ -58,7 +58,6 @@ def read_or_refuse(path: Path, frame_count: int | None, frame_start: int) -> Non
 def test_any_content_is_read_or_refused(
     tmp_path_factory: pytest.TempPathFactory, name: str, data: st.DataObject
 ) -> None:
-    """Random changes of values and bytes raise no other error and no NumPy warning."""
     folder = tmp_path_factory.mktemp("hostile")
     path = folder / "results.json"
     if name == "openpose":
@@ -80,7 +79,6 @@ def test_any_content_is_read_or_refused(
 def test_any_numbers_of_files_are_read_or_refused(
     tmp_path_factory: pytest.TempPathFactory, numbers: set[int], data: st.DataObject
 ) -> None:
-    """No gap between two numbers takes memory or time."""
     folder = tmp_path_factory.mktemp("numbers")
     for number in numbers:
         write(folder / f"clip{number}.json", openpose_frame([moving_person(BODY25)[0]]))
@@ -89,7 +87,6 @@ def test_any_numbers_of_files_are_read_or_refused(
 
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "loop"])
 def test_special_files_in_a_folder_do_not_block(tmp_path: Path, kind: str) -> None:
-    """A pipe may never begin, a device never end."""
     folder = write_openpose(tmp_path / "json", moving_person(BODY25))
     path = folder / "clip_000000000003_keypoints.json"
     path.unlink()
@@ -119,14 +116,12 @@ def test_all_points_together_are_bounded(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_numbered_files_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder of other data is not read to its end."""
     monkeypatch.setattr(frame_folder, "MOST_FRAMES", 5)
     with pytest.raises(InputError, match="more than 5 numbered files"):
         read_keypoints(write_openpose(tmp_path / "json", moving_person(BODY25)), FRAMES, SIZE)
 
 
 def test_names_with_control_characters_reach_no_sentence_on_people(tmp_path: Path) -> None:
-    """The file's name stands for its detector."""
     path = tmp_path / "evil\x1b[31m\u202e.json"
     path.write_text(json.dumps(coco_value(moving_person(COCO17))), encoding="utf-8")
     assert read_keypoints(path, FRAMES, SIZE).source == "evil?[31m?.json"

@@ -30,7 +30,6 @@ from keymark.core.footage.keypoints.layouts import Layout
 
 
 def read(path: Path, frames: int | None = FRAMES, size: tuple[int, int] = SIZE, **more: Any) -> People:
-    """Read a file of a clip of twelve frames."""
     return read_keypoints(path, frames, size, **more)
 
 
@@ -49,7 +48,6 @@ def assert_shows(people: People, person: Array, layout: Layout, frames: list[int
 @pytest.mark.parametrize("layout", [COCO17, BODY25, HALPE26])
 @pytest.mark.parametrize("first", [0, 1, 1001])
 def test_openpose_folder(tmp_path: Path, layout: Layout, first: int) -> None:
-    """Files are counted from 0, 1 or anything else, where there is one for every frame."""
     person = moving_person(layout)
     people = read(write_openpose(tmp_path / "json", person, first))
     assert_shows(people, person, layout)
@@ -57,7 +55,6 @@ def test_openpose_folder(tmp_path: Path, layout: Layout, first: int) -> None:
 
 
 def test_openpose_folder_with_holes(tmp_path: Path) -> None:
-    """Nobody is seen where a file is missing, and nothing after it is shifted."""
     person = moving_person(BODY25)
     people = read(write_openpose(tmp_path / "json", person, 0, holes=(3, 4, 11)))
     assert_shows(people, person, BODY25, [0, 1, 2, 5, 6, 7, 8, 9, 10])
@@ -66,7 +63,6 @@ def test_openpose_folder_with_holes(tmp_path: Path) -> None:
 
 
 def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
-    """Never shifted in silence."""
     person = moving_person(BODY25)
     folder = write_openpose(tmp_path / "json", person, 7)
     with pytest.raises(InputError, match="numbered 7 to 18; the clip has 13"):
@@ -81,7 +77,6 @@ def test_numbers_that_do_not_fit_the_clip_are_refused(tmp_path: Path) -> None:
 
 
 def test_a_few_frames_more_or_less_are_noted(tmp_path: Path) -> None:
-    """Decoders disagree at a clip's end."""
     person = moving_person(BODY25)
     folder = write_openpose(tmp_path / "json", person)
     longer, shorter = read(folder, FRAMES - 1), read(folder, FRAMES + 2)
@@ -111,7 +106,6 @@ def test_hands_of_openpose_follow_the_body(tmp_path: Path) -> None:
 
 
 def test_mmpose_of_an_image_sequence(tmp_path: Path) -> None:
-    """One file an image, which holds its people."""
     person = moving_person(COCO17)
     for index, entry in enumerate(mmpose_value(person)["instance_info"]):
         write(tmp_path / f"img_{index + 1:04d}.json", [] if index == 2 else entry["instances"])
@@ -120,7 +114,6 @@ def test_mmpose_of_an_image_sequence(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("as_list", [False, True])
 def test_mmpose(tmp_path: Path, as_list: bool) -> None:
-    """The demonstration's object, and the plain list of the inferencer."""
     person = moving_person(HALPE26)
     value: Any = mmpose_value(person)
     people = read(write(tmp_path / "results.json", value["instance_info"] if as_list else value))
@@ -130,7 +123,6 @@ def test_mmpose(tmp_path: Path, as_list: bool) -> None:
 
 @pytest.mark.parametrize("names", ["{}.jpg", "clip_{}", "{}"])
 def test_coco(tmp_path: Path, names: str) -> None:
-    """Images are numbered by their names; those in which nobody was seen are not listed."""
     person = moving_person(COCO17)
     value = coco_value(person, names)
     if names == "{}":
@@ -143,7 +135,6 @@ def test_coco(tmp_path: Path, names: str) -> None:
 
 @pytest.mark.parametrize("form", ["objects", "lists", "messages", "people", "frames", "pixels"])
 def test_mediapipe(tmp_path: Path, form: str) -> None:
-    """Every way in which its landmarks are dumped."""
     person = moving_person(BLAZEPOSE33)
     value: Any = mediapipe_value(person, (1, 1) if form == "pixels" else SIZE)
     value[2] = None if form in ("lists", "frames") else {"landmarks": []}
@@ -167,7 +158,6 @@ def test_mediapipe(tmp_path: Path, form: str) -> None:
 
 
 def test_own_file_is_read_back(tmp_path: Path) -> None:
-    """Several people, with hints, with points and people that are missing."""
     generator = np.random.default_rng(3)
     frames = []
     for count in (1, 0, 3, 2, 0):
@@ -188,7 +178,6 @@ def test_own_file_is_read_back(tmp_path: Path) -> None:
 
 
 def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
-    """`frames` where nobody else is there, and a faint score is not rounded to none."""
     frame = SeenPeople(np.array([[[5.0, 6.0]]]), np.array([[1e-7]]), np.full((1, 1, 3), np.nan))
     write_keypoints(tmp_path / "k.json", People(("head",), "x", SIZE, (frame,) * 2), 1)
     text = (tmp_path / "k.json").read_text(encoding="utf-8")
@@ -197,7 +186,6 @@ def test_one_person_is_written_as_the_plain_form(tmp_path: Path) -> None:
 
 
 def test_pixels_of_a_smaller_picture_are_scaled(tmp_path: Path) -> None:
-    """Only where the proportions are the clip's."""
     person = moving_person(COCO17)
     path = write(tmp_path / "own.json", own_value(person))
     twice = read(path, FRAMES, (640, 480))
@@ -224,7 +212,6 @@ def test_points_not_seen(tmp_path: Path) -> None:
 
 
 def test_nan_of_other_programs_is_not_seen(tmp_path: Path) -> None:
-    """Pose2Sim pads people who are lost with NaN; our own file may not have it."""
     person = moving_person(HALPE26)
     person[2] = np.nan
     person[3, 0, :2] = np.nan
@@ -244,7 +231,6 @@ def test_nan_of_other_programs_is_not_seen(tmp_path: Path) -> None:
     ],
 )
 def test_scores_become_confidences(tmp_path: Path, change: Any, word: str) -> None:
-    """Whatever the range, the order stays, and a note says what was done."""
     person = moving_person(COCO17)
     before = person[:, :, 2].copy()
     person[:, :, 2] = change(before)
@@ -258,7 +244,6 @@ def test_scores_become_confidences(tmp_path: Path, change: Any, word: str) -> No
 
 
 def test_one_high_score_sets_no_scale(tmp_path: Path) -> None:
-    """An outlier is cut off instead."""
     person = moving_person(COCO17)
     person[0, 0, 2] = 500.0
     people = read(write(tmp_path / "own.json", own_value(person)))
@@ -266,7 +251,6 @@ def test_one_high_score_sets_no_scale(tmp_path: Path) -> None:
 
 
 def test_negative_scores_beside_probabilities_are_not_seen(tmp_path: Path) -> None:
-    """Some programs write -1 for what they did not find."""
     person = moving_person(COCO17)
     person[:, 3, 2] = -1.0
     people = read(write(tmp_path / "own.json", own_value(person)))
@@ -289,81 +273,8 @@ def test_frame_rate_and_start_of_the_file(tmp_path: Path) -> None:
         read(path, 13, frame_start=101)
 
 
-def broken(tmp_path: Path, kind: str) -> Path:
-    """A file or folder that cannot be used."""
-    person, path = moving_person(COCO17), tmp_path / "x.json"
-    value = own_value(person)
-    if kind == "truncated":
-        path.write_text('{"layout": "coco17", "frames": [[[1, 2', encoding="utf-8")
-        return path
-    if kind == "truncated in a folder":
-        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
-        (folder / "clip_000000000003_keypoints.json").write_text('{"people": [', encoding="utf-8")
-        return folder
-    if kind in ("two alike", "no frames", "link", "points", "other points", "many people"):
-        folder = write_openpose(tmp_path / "json", moving_person(BODY25))
-        one = folder / "clip_000000000003_keypoints.json"
-        if kind == "two alike":
-            write(folder / "other_3.json", openpose_frame([]))
-        elif kind == "no frames":
-            for file in folder.iterdir():
-                file.rename(file.with_name("x" + "y" * int(file.name[5:17]) + ".json"))
-        elif kind == "link":
-            one.rename(tmp_path / "outside.json")
-            one.symlink_to(tmp_path / "outside.json")
-        elif kind == "many people":
-            write(one, openpose_frame([moving_person(BODY25)[0]] * 101))
-        else:
-            count = {"points": 20, "other points": 17}[kind]
-            write(one, openpose_frame([np.ones((count, 3))]))
-        return folder
-    values: dict[str, Any] = {
-        "one picture": openpose_frame([moving_person(BODY25)[0]]),
-        "one picture of MMPose": mmpose_value(person)["instance_info"][0]["instances"],
-        "of no kind": {"poses": []},
-        "a text": "keypoints",
-        "an empty list": [],
-        "nobody": value | {"frames": [None] * FRAMES},
-        "nobody scored": value | {"frames": (person * 0.0).tolist()},
-        "empty": value | {"frames": []},
-        "shares": value | {"frames": (person / [320.0, 240.0, 1.0]).tolist()},
-        "larger picture": own_value(person * [6.0, 6.0, 1.0]),
-        "in space": {"instance_info": [{"frame_id": 0, "instances": [{"keypoints": [[1, 2, 3]] * 17}]}]},
-        "half the frames": value | {"frames": person[::2].tolist()},
-        "far": value | {"frames": (person * 1e8).tolist()},
-    }
-    return write(path, values[kind])
-
-
-@pytest.mark.parametrize(
-    ("kind", "words"),
-    [
-        ("truncated", "no valid JSON"),
-        ("truncated in a folder", "000003_keypoints.json.*no valid JSON"),
-        ("two alike", "the same number"),
-        ("no frames", "ends in a number"),
-        ("link", "leads by a link"),
-        ("points", "has 20 points; those before have 25"),
-        ("other points", "all must be alike"),
-        ("many people", "has 101 people; at most 100"),
-        ("one picture", "one frame of OpenPose, whose folder"),
-        ("one picture of MMPose", "one picture of MMPose"),
-        ("of no kind", "the fields .'poses'., which no known format has"),
-        ("an empty list", "is empty; it must be"),
-        ("a text", "it must be Keymark's own file"),
-        ("nobody", "nobody is seen in any of its 12 frames"),
-        ("nobody scored", "no point has a score above 0|nobody"),
-        ("empty", "frames has 0 of them; it must be a list of 1 to 1000000 entries, one a frame"),
-        ("shares", "must be pixels of the clip"),
-        ("larger picture", "outside the clip's picture"),
-        ("in space", "points in space"),
-        ("half the frames", "has 6 frames, the clip 12.*one for every 2"),
-        ("far", "a number beyond 1e"),
-    ],
-)
-def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, words: str) -> None:
-    """It names the file and what would be valid."""
-    path = broken(tmp_path, kind)
+def refused(path: Path, words: str) -> None:
+    """A file is refused in a sentence that names it and what would be valid."""
     with pytest.raises(InputError, match=words) as caught:
         read(path)
     text = str(caught.value)
@@ -371,8 +282,67 @@ def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, kind: str, w
     assert any(valid in text for valid in ("must", "at most", "no valid JSON", "layouts that are read"))
 
 
+PERSON, BODY = moving_person(COCO17), moving_person(BODY25)
+OWN = own_value(PERSON)
+IN_SPACE = {"frame_id": 0, "instances": [{"keypoints": [[1, 2, 3]] * 17}]}
+UNUSABLE: dict[str, Any] = {
+    "one frame of OpenPose, whose folder": openpose_frame([BODY[0]]),
+    "one picture of MMPose": mmpose_value(PERSON)["instance_info"][0]["instances"],
+    "the fields .'poses'., which no known format has": {"poses": []},
+    "it must be Keymark's own file": "keypoints",
+    "is empty; it must be": [],
+    "nobody is seen in any of its 12 frames": OWN | {"frames": [None] * FRAMES},
+    "no point has a score above 0|nobody": OWN | {"frames": (PERSON * 0.0).tolist()},
+    "frames has 0 of them; it must be a list of 1 to 1000000 entries, one a frame": OWN | {"frames": []},
+    "must be pixels of the clip": OWN | {"frames": (PERSON / [320.0, 240.0, 1.0]).tolist()},
+    "outside the clip's picture": own_value(PERSON * [6.0, 6.0, 1.0]),
+    "points in space": {"instance_info": [IN_SPACE]},
+    "has 6 frames, the clip 12.*one for every 2": OWN | {"frames": PERSON[::2].tolist()},
+    "a number beyond 1e": OWN | {"frames": (PERSON * 1e8).tolist()},
+}
+
+
+@pytest.mark.parametrize("words", UNUSABLE)
+def test_unusable_files_are_refused_with_a_sentence(tmp_path: Path, words: str) -> None:
+    refused(write(tmp_path / "x.json", UNUSABLE[words]), words)
+
+
+def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "x.json").write_text('{"layout": "coco17", "frames": [[[1, 2', encoding="utf-8")
+    refused(tmp_path / "x.json", "no valid JSON")
+
+
+def without_numbers(file: Path) -> None:
+    """Rename all files of the folder."""
+    for one in list(file.parent.iterdir()):
+        one.rename(one.with_name("x" + "y" * int(one.name[5:17]) + ".json"))
+
+
+def linked(file: Path) -> None:
+    """Replace a file by a link that leads outside."""
+    outside = file.rename(file.parents[1] / "outside.json")
+    file.symlink_to(outside)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda file: file.write_text('{"people": ['), "000003_keypoints.json.*no valid JSON"),
+        (lambda file: write(file.with_name("other_3.json"), openpose_frame([])), "the same number"),
+        (without_numbers, "ends in a number"),
+        (linked, "leads by a link"),
+        (lambda file: write(file, openpose_frame([np.ones((20, 3))])), "has 20 points; those before have 25"),
+        (lambda file: write(file, openpose_frame([np.ones((17, 3))])), "all must be alike"),
+        (lambda file: write(file, openpose_frame([BODY[0]] * 101)), "has 101 people; at most 100"),
+    ],
+)
+def test_unusable_folders_are_refused_with_a_sentence(tmp_path: Path, change: Any, words: str) -> None:
+    folder = write_openpose(tmp_path / "json", BODY)
+    change(folder / "clip_000000000003_keypoints.json")
+    refused(folder, words)
+
+
 def test_the_takes_at_hand(shared_takes: Path) -> None:
-    """What a real detector wrote is read without a word."""
     for take in sorted(shared_takes.iterdir()):
         path = take / "keypoints_mediapipe.json"
         if path.exists():

@@ -1,4 +1,4 @@
-"""Layouts show the body points that their detectors mean."""
+"""Layouts show the points that detectors mean, and names of tracks those that people mean."""
 
 import json
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from keymark.core.body.human import HUMAN
 from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
-from keymark.core.footage.keypoints.layouts import LAYOUTS, OWN, layout_of, own_layout
+from keymark.core.footage.keypoints.layouts import LAYOUTS, OWN, layout_of, named_point, own_layout
 
 SPOTS = {
     "coco17": {0: "nose", 3: "ear.L", 6: "shoulder.R", 9: "wrist.L", 11: "hip.L", 16: "ankle.R"},
@@ -38,7 +38,6 @@ SPOTS = {
 
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_points_are_those_of_the_detector(name: str) -> None:
-    """Points on both sides and of all limbs, so that no order is shifted or mirrored."""
     layout = LAYOUTS[name]
     assert {number: layout.points[number] for number in SPOTS[name]} == SPOTS[name]
     assert max(layout.points) < layout.count
@@ -49,20 +48,55 @@ def test_points_are_those_of_the_detector(name: str) -> None:
 
 
 def test_layouts_are_told_apart_by_their_number_of_points() -> None:
-    """Files of other programs name no layout."""
     assert all(layout_of(layout.count) is layout for layout in LAYOUTS.values())
     assert layout_of(21) is None
 
 
 def test_own_layout_keeps_the_order_of_its_names() -> None:
-    """Names in any order."""
     layout = own_layout(["toe.R", "head"])
     assert (layout.count, layout.names, layout.numbers) == (2, ("toe.R", "head"), [0, 1])
 
 
 def test_the_schema_knows_all_names(repository: Path) -> None:
-    """Layouts and body points of the schema are those of the reader."""
     path = repository / "presets" / "schemas" / "keypoints.schema.json"
     schema = json.loads(path.read_text(encoding="utf-8"))
     assert tuple(schema["properties"]["layout"]["enum"]) == (*LAYOUTS, OWN)
     assert tuple(schema["$defs"]["names"]["items"]["enum"]) == BODY_POINTS
+
+
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        ("wrist.L", "wrist.L"),
+        ("Left Wrist", "wrist.L"),
+        ("l_wrist", "wrist.L"),
+        ("wrist_l.001", "wrist.L"),
+        ("LWrist", "wrist.L"),
+        ("rightKnee", "knee.R"),
+        ("R-ANKLE", "ankle.R"),
+        ("RIGHT_ELBOW_2", "elbow.R"),
+        ("hips", "pelvis"),
+        ("hip.R", "hip.R"),
+        ("Big Toe Left", "toe.L"),
+        ("small_toe.L", "small_toe.L"),
+        ("Head", "head"),
+        ("top of head", "crown"),
+    ],
+)
+def test_a_name_tells_the_point(name: str, point: str) -> None:
+    assert named_point(name) == point
+
+
+@pytest.mark.parametrize(
+    "name", ["Track", "Track.001", "", "L", "12", "wrist", "left right wrist", "head.L", "Marker L", "lamp.L"]
+)
+def test_other_names_tell_none(name: str) -> None:
+    assert named_point(name) is None
+
+
+def test_every_point_is_told_by_its_own_name() -> None:
+    assert [point for point in BODY_POINTS if named_point(point) != point] == []
+    titles = {
+        point: point.replace("_", " ").replace(".L", " Left").replace(".R", " Right") for point in BODY_POINTS
+    }
+    assert [point for point, title in titles.items() if named_point(title.title()) != point] == []

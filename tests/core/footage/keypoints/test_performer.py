@@ -1,15 +1,20 @@
-"""The performer among several people: kept through crossings, gaps and exchanged order."""
+"""The performer among several people, and its principal points as several sources show them."""
 
 import numpy as np
 import pytest
 from keymark.core.arrays import Array, IndexArray
+from keymark.core.body.human import HUMAN, TRUNK, limb_of
+from keymark.core.body.skeleton import SIDES
+from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.keypoints.performer import (
     MOST_CANDIDATES,
     NOBODY,
     Expected,
     Sightings,
     choose_performer,
+    performer_size_px,
     person_size,
+    principal_keypoints,
 )
 
 FPS = 30.0
@@ -57,7 +62,6 @@ def expected_from(person: Array, every: int, std_px: float = 5.0) -> Expected:
 @pytest.mark.parametrize("missing", [0.0, 0.1, 0.3])
 @pytest.mark.parametrize("knows", ["keyframes", "one click"])
 def test_two_people_who_cross(missing: float, knows: str) -> None:
-    """Both walk through each other, in any order, and some sightings are missing."""
     frames = 90
     people = [walker((20, 60), (2.5, 0), frames, 0), walker((240, 62), (-2.5, 0), frames, 1)]
     present = np.random.default_rng(4).random((frames, 2)) >= missing
@@ -72,7 +76,6 @@ def test_two_people_who_cross(missing: float, knows: str) -> None:
 
 
 def test_a_performer_who_is_hidden_is_nobody() -> None:
-    """Somebody else who is seen meanwhile does not take the place."""
     frames = 100
     people = [walker((40, 60), (1.5, 0), frames, 0), walker((200, 50), (0, 0), frames, 1)]
     present = np.ones((frames, 2), dtype=bool)
@@ -82,7 +85,6 @@ def test_a_performer_who_is_hidden_is_nobody() -> None:
 
 
 def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
-    """A smaller person behind, and a large one who is there for a moment, are not."""
     frames = 80
     people = [
         walker((60, 60), (1.0, 0), frames, 0),
@@ -99,13 +101,11 @@ def test_without_any_hint_the_largest_who_stays_is_followed() -> None:
 
 
 def test_nobody_anywhere() -> None:
-    """No frame has anybody."""
     empty = Sightings((np.zeros((0, 7, 2)),) * 5, (np.zeros((0, 7)),) * 5)
     assert (choose_performer(empty, None, FPS) == NOBODY).all()
 
 
 def test_a_jump_to_somebody_else_is_left_out() -> None:
-    """A detector of one person that follows a passer-by for a while shows nobody then."""
     frames = 60
     performer, other = walker((60, 60), (0.5, 0), frames, 0), walker((280, 40), (-1, 0), frames, 1)
     person = performer.copy()
@@ -116,7 +116,6 @@ def test_a_jump_to_somebody_else_is_left_out() -> None:
 
 
 def test_a_crowd_is_searched_where_the_performer_is_expected() -> None:
-    """More people than are looked at: those nearest are."""
     frames = 25
     people = [walker((30, 60), (2.0, 0), frames, 0)]
     generator = np.random.default_rng(8)
@@ -133,3 +132,49 @@ def test_size_ignores_points_not_seen() -> None:
     points = np.stack([FIGURE, np.full_like(FIGURE, np.nan)])
     points[0, 1:3] = np.nan
     np.testing.assert_allclose(person_size(points), [np.hypot(14.0, 75.0), 1.0])
+
+
+HEAD, WRIST = HUMAN.point_names.index("head"), HUMAN.point_names.index("wrist.L")
+
+
+def seen(points: dict[str, tuple[float, float]], score: float = 0.9) -> Keypoints:
+    pixel = np.array([list(points.values())])
+    shape = pixel.shape[:2]
+    sources = (f"sure to {score}",) * len(points)
+    return Keypoints(tuple(points), sources, pixel, np.full(shape, score), np.full((*shape, 3), np.nan))
+
+
+def test_the_heads_center_is_halfway_between_the_ears() -> None:
+    """The nose, a decimeter in front of it, counts where the ears are hidden, and for less."""
+    face = {"nose": (50.0, 20.0), "ear.L": (60.0, 10.0), "ear.R": (40.0, 12.0)}
+    both, nose = principal_keypoints(seen(face)), principal_keypoints(seen({"nose": (50.0, 20.0)}))
+    np.testing.assert_allclose(both.pixel[0, HEAD], [50.0, 11.0])
+    np.testing.assert_allclose(nose.pixel[0, HEAD], [50.0, 20.0])
+    assert nose.score[0, HEAD] < 0.5 * both.score[0, HEAD]
+    own = principal_keypoints(seen({"head": (7.0, 8.0), **face}))
+    np.testing.assert_allclose(own.pixel[0, HEAD], [7.0, 8.0])
+
+
+def test_sources_that_agree_are_averaged_and_a_lone_one_that_does_not_is_left_out() -> None:
+    first = seen({"wrist.L": (10.0, 0.0), "ankle.L": (0.0, 100.0)}, 0.8)
+    near, far = seen({"wrist.L": (14.0, 0.0)}, 0.4), seen({"wrist.L": (40.0, 0.0)}, 0.4)
+    with_near = principal_keypoints(Keypoints.side_by_side([first, near], 1))
+    with_far = principal_keypoints(Keypoints.side_by_side([far, first], 1))
+    np.testing.assert_allclose(with_near.pixel[0, WRIST], [(0.8 * 10.0 + 0.4 * 14.0) / 1.2, 0.0])
+    np.testing.assert_allclose(with_far.pixel[0, WRIST], [10.0, 0.0])
+    assert with_far.score[0, WRIST] == 0.8
+
+
+def test_what_nothing_shows_is_missing() -> None:
+    found = principal_keypoints(seen({"wrist.L": (10.0, 0.0)}))
+    assert found.seen.sum() == 1
+    assert not principal_keypoints(Keypoints.none(4)).seen.any()
+    np.testing.assert_array_equal(performer_size_px(Keypoints.none(4)), np.zeros(4))
+
+
+def test_every_segment_and_point_belongs_to_a_part_of_the_body() -> None:
+    names = [*(segment.name for segment in HUMAN.segments), *HUMAN.point_names]
+    found = {limb_of(name) for name in names}
+    assert found == {TRUNK, *(f"{limb}.{side}" for limb in ("arm", "leg") for side in SIDES)}
+    assert limb_of("shoulder.L") == limb_of("hip.R") == limb_of("nose") == TRUNK
+    assert limb_of("toe.R") == "leg.R"
