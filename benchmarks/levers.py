@@ -42,8 +42,7 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS, with_evidence  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 
-Switch = tuple[Any, str, Any]
-"""A module, a name in it, and what stands in for that."""
+Switch = tuple[Any, str, Any]  # a module, a name in it, and what stands in for that
 EVIDENCE = {"markers": (MARKERS, CONTOURS), "keypoints": (KEYPOINTS, CONTOURS), "contours": (CONTOURS,)}
 ALL = "all of it"
 
@@ -122,8 +121,7 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
     "trust of keypoints": ((whole_clip, "keypoint_trust", trusting),),
     "swaps of keypoints": ((whole_clip, "find_swaps", lambda points, *_: np.zeros(points.seen.shape, bool)),),
     "doubt at swaps": ((whole_clip, "doubted_at_changes", lambda points, *_: points),),
-}
-"""What is replaced to have a lever off."""
+}  # what is replaced to have a lever off
 
 
 def measured(trial: Trial, evidence: str, lever: str) -> tuple[float, float]:

@@ -66,10 +66,8 @@ STANDING_STD = {
 STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
 """The same for arms that are held out sideways as well as one can."""
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
-MOST_DEVIATIONS = 3.0
-"""Largest deviation of trunk or legs, in standard deviations, of someone who stands."""
-ARMS_RAISED_RAD = (0.0, 0.65, 1.3)
-"""Starts of the descent: arms hanging, half raised and stretched out."""
+MOST_DEVIATIONS = 3.0  # largest deviation of trunk or legs, in standard deviations, of someone who stands
+ARMS_RAISED_RAD = (0.0, 0.65, 1.3)  # starts of the descent: arms hanging, half raised and stretched out
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
 LARGEST_STEP = 0.4
 
@@ -79,14 +77,10 @@ class MeasuredActor:
     """Lengths and place of a performer, measured from one frame."""
 
     body: Body
-    posture: Posture
-    """A single posture: how the performer stands in that frame."""
-    spread: dict[str, float]
-    """Standard deviation of each of the lengths `MEASURED`, as a share of it."""
-    stands: bool
-    """Whether markers and keypoints fit someone who stands."""
-    distance_m: float
-    """From the camera to the ground between the feet [m]."""
+    posture: Posture  # a single posture: how the performer stands in that frame
+    spread: dict[str, float]  # standard deviation of each of the lengths `MEASURED`, as a share of it
+    stands: bool  # whether markers and keypoints fit someone who stands
+    distance_m: float  # from the camera to the ground between the feet [m]
 
 
 def measure_standing(
@@ -102,16 +96,11 @@ def measure_standing(
 ) -> MeasuredActor:
     """Measure the lengths and the place of a performer who stands.
 
-    Args:
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        stature_m: Body height [m].
-        crown_px: (2,) top of the head in the picture [px].
-        ground_px: (2,) the ground between the feet [px].
-        regions: The markers' regions in this frame, as tracks of one frame; None for none.
-        segments: The segment each marker is bound to.
-        arms_stretched: Whether the performer holds the arms out sideways, across the view.
-        keypoints: Those of this frame alone; without them and regions the lengths are average ones.
+    `crown_px`: (2,) top of the head in the picture [px]; `ground_px`: (2,) the ground between the feet [px];
+    `regions`: the markers' regions in this frame, as tracks of one frame; None for none; `segments`: the
+    segment each marker is bound to; `arms_stretched`: whether the performer holds the arms out sideways,
+    across the view; `keypoints`: those of this frame alone; without them and regions the lengths are average
+    ones.
 
     Raises:
         InputError: The height is out of range, or the two points cannot be a person's.
@@ -161,8 +150,7 @@ class _Problem:
     observed: ObservedRegions
     segments: tuple[str, ...]
     points: ObservedKeypoints
-    point_names: tuple[str, ...]
-    """(N,) the body points that the keypoints show."""
+    point_names: tuple[str, ...]  # (N,) the body points that the keypoints show
     arms_stretched: bool
 
     @property
@@ -344,16 +332,11 @@ class _Problem:
 class _Rows:
     """Residuals, and the information of each."""
 
-    region: Array
-    """(M, 5) of the markers' regions [px]."""
-    region_information: Array
-    """(M, 5) [1/px²]."""
-    point: Array
-    """(N, 2) of the keypoints [px]."""
-    point_information: Array
-    """(N, 1) [1/px²]."""
-    height: float
-    """Of the body height, in standard deviations."""
+    region: Array  # (M, 5) of the markers' regions [px]
+    region_information: Array  # (M, 5) [1/px²]
+    point: Array  # (N, 2) of the keypoints [px]
+    point_information: Array  # (N, 1) [1/px²]
+    height: float  # of the body height, in standard deviations
 
     @property
     def groups(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

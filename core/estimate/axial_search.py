@@ -21,30 +21,22 @@ from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
 LINES = np.array([-0.4, 0.0, 0.4])
 """Lines along a part on which pixels are looked at, in half-widths from its axis."""
-STEP_PX = 2.0
-"""Distance of the pixels that are looked at, along the axis."""
-FINE_REACH = 8
-"""Shifts up to this reach are tried pixel by pixel, in wider searches every other one [px]."""
+STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis
+FINE_REACH = 8  # shifts up to this reach are tried pixel by pixel, in wider searches every other one [px]
 CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))
 """Logarithm of the levels³ in a cell: the background's densities are those per level³."""
-SHORTEST_PX = 8.0
-"""Least length of a part in the pictures; shorter ones are seen end on."""
+SHORTEST_PX = 8.0  # least length of a part in the pictures; shorter ones are seen end on
 
 
 @dataclass(frozen=True, eq=False)
 class Shifts:
     """Shifts of O parts along their axes in F frames."""
 
-    share: Array
-    """(F, O) the point of a part's length that the colors say most of."""
-    distance: Array
-    """(F, O) along the axis, toward its end [px]; zero where nothing was found."""
-    variance: Array
-    """(F, O) [px²], infinite where nothing was found."""
-    direction: Array
-    """(F, O, 2) unit direction of the axis in the image."""
-    scale: Array
-    """(F, O) pixels of a meter."""
+    share: Array  # (F, O) the point of a part's length that the colors say most of
+    distance: Array  # (F, O) along the axis, toward its end [px]; zero where nothing was found
+    variance: Array  # (F, O) [px²], infinite where nothing was found
+    direction: Array  # (F, O, 2) unit direction of the axis in the image
+    scale: Array  # (F, O) pixels of a meter
 
 
 def learn_along(
@@ -83,15 +75,10 @@ def find_shifts(
 ) -> Shifts:
     """Search for the shifts of all parts near predicted postures.
 
-    Args:
-        model: The contours' model.
-        pose: Forward kinematics of the F predicted postures.
-        frame: (F,) their indices in the clip.
-        pictures: (F, rows, columns, 3) small pictures of the frames.
-        factor: Pixels of the camera to one of the pictures.
-        appearance: The look of the background in them.
-        colors: The colors along each part.
-        search: How far from the prediction shifts are looked for.
+    `pose`: forward kinematics of the F predicted postures; `frame`: (F,) their indices in the clip;
+    `pictures`: (F, rows, columns, 3) small pictures of the frames; `factor`: pixels of the camera to one of
+    the pictures; `appearance`: the look of the background in them; `colors`: the colors along each part;
+    `search`: how far from the prediction shifts are looked for.
     """
     outlines = model.part_outlines(pose, frame)
     size = pictures.shape[2], pictures.shape[1]

@@ -23,52 +23,35 @@ class ClipProblem:
 
     # What it is about.
     body: Body
-    camera: Camera
-    """As stated; the evidence has the calibrated lens."""
+    camera: Camera  # as stated; the evidence has the calibrated lens
     noise: RegionNoise
 
     # What the keyframes say.
-    keyframes: IndexArray
-    """(K,) their frames."""
-    matched: BoolArray
-    """(K,) which of them are matched."""
+    keyframes: IndexArray  # (K,) their frames
+    matched: BoolArray  # (K,) which of them are matched
     evidence: KeyframeEvidence
-    factor: Array
-    """(D, D) of the deviation's accelerations."""
-    interpolated: Posture
-    """F postures: the keyframes interpolated, which turns the short way round."""
-    depth_std_m: Array
-    """(F,) noise of the prior's depths [m]."""
-    ankle_height_m: Array | None
-    """(F,) usual height of the lower ankle [m]; None where no floor is known."""
+    factor: Array  # (D, D) of the deviation's accelerations
+    interpolated: Posture  # F postures: the keyframes interpolated, which turns the short way round
+    depth_std_m: Array  # (F,) noise of the prior's depths [m]
+    ankle_height_m: Array | None  # (F,) usual height of the lower ankle [m]; None where no floor is known
 
     # What the footage has taught.
-    prior: Posture
-    """The interpolated postures with the turns."""
+    prior: Posture  # the interpolated postures with the turns
     turns: IndexArray
     """(K - 1,) whole turns about the vertical that the prior adds in each gap; see `prior/turns`."""
-    limb_size: Array
-    """(D,) factor on the accelerations of each degree of freedom's limb."""
+    limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
     depth_factor: Array
     """(F, P) factor on the noise of the prior's depths, by how far the prior misses each point."""
-    observed: ObservedRegions
-    """The markers' regions: as tracked, and those found at a second look."""
+    observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
 
     # What was seen.
-    tracked: ObservedRegions
-    """The markers' regions as tracked."""
-    width_px: Array
-    """(F, M) half-width of each marker's limb [px]."""
-    ignored: IgnoredPixels | None
-    """What is never a marker, in all frames; None for nothing."""
-    keypoints: Keypoints
-    """Of the performer, N of them; left and right exchanged back where they were swapped."""
-    points: ObservedKeypoints
-    """The same, as they are compared."""
-    swapped: BoolArray
-    """(F, N) which of them were exchanged."""
-    step_s: Array
-    """(F - 1,) time between frames [s]."""
+    tracked: ObservedRegions  # the markers' regions as tracked
+    width_px: Array  # (F, M) half-width of each marker's limb [px]
+    ignored: IgnoredPixels | None  # what is never a marker, in all frames; None for nothing
+    keypoints: Keypoints  # of the performer, N of them; left and right exchanged back where they were swapped
+    points: ObservedKeypoints  # the same, as they are compared
+    swapped: BoolArray  # (F, N) which of them were exchanged
+    step_s: Array  # (F - 1,) time between frames [s]
 
     @property
     def accelerations(self) -> Array:

@@ -16,11 +16,9 @@ class Window:
     """A range of frames that is solved, and the part of it whose result is kept."""
 
     first: int
-    last: int
-    """One past the last frame solved."""
+    last: int  # one past the last frame solved
     keep_first: int
-    keep_last: int
-    """One past the last frame kept."""
+    keep_last: int  # one past the last frame kept
 
     @property
     def frames(self) -> slice:
@@ -36,10 +34,8 @@ class Window:
 def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
     """Windows whose kept parts follow each other without a gap.
 
-    Args:
-        frames: Frames of the clip.
-        length: Frames kept of a window; a clip up to 1.5 times as long stays whole.
-        margin: Frames solved beyond the kept ones on either side, where the clip has them.
+    `frames`: frames of the clip; `length`: frames kept of a window; a clip up to 1.5 times as long stays
+    whole; `margin`: frames solved beyond the kept ones on either side, where the clip has them.
     """
     count = max(1, round(frames / length))
     edges = [frames * i // count for i in range(count + 1)]
@@ -60,16 +56,11 @@ class ClipState:
     """
 
     body: Body
-    prior: Posture
-    """A batch of F postures."""
-    frame: IndexArray
-    """(F,) their indices in the clip, which a moving camera's pose depends on."""
-    factor: Array
-    """(D, D) the matrix L [m, rad]."""
-    variation: Array
-    """(F, D) the unknowns z."""
-    bias: Array
-    """(F, B) [px]."""
+    prior: Posture  # a batch of F postures
+    frame: IndexArray  # (F,) their indices in the clip, which a moving camera's pose depends on
+    factor: Array  # (D, D) the matrix L [m, rad]
+    variation: Array  # (F, D) the unknowns z
+    bias: Array  # (F, B) [px]
 
     @property
     def frames(self) -> int:
@@ -118,9 +109,8 @@ class ClipState:
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and the largest change of its postures.
 
-        Args:
-            step: Step of all unknowns.
-            largest: Largest change of a deviation's component; a frame's step is shortened to it.
+        `step`: step of all unknowns; `largest`: largest change of a deviation's component; a frame's step is
+        shortened to it.
         """
         count = self.variation.shape[1]
         moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)

@@ -28,35 +28,28 @@ from .terms.term import DEGREES
 
 APPEARANCE_FRAMES = 32
 CHUNK_FRAMES = 50
-MOST_KEYFRAMES = 60
-"""Largest number of keyframes that shapes are fitted to, evenly spread in time."""
+MOST_KEYFRAMES = 60  # largest number of keyframes that shapes are fitted to, evenly spread in time
 SHAPE_ROUNDS = 3
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """Standard deviation of a performer's parts from average ones: thickness at both ends, and place."""
 EDGE_STD_M = 0.012
 FEWEST_EDGES = 20
 AXIAL_STD_PX = 2.0
-AXIAL_STD_M = 0.03
-"""Standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm."""
+AXIAL_STD_M = 0.03  # standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm
 AXIAL_MEMORY_S = 0.3
 """Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
 toward or away from the camera."""
-LEAST_FRAME_SHARE = 0.1
-"""Least share of frames with a picture."""
+LEAST_FRAME_SHARE = 0.1  # least share of frames with a picture
 
 
 @dataclass(frozen=True, eq=False)
 class ContourEvidence:
     """Appearance and shapes by which contours are measured in any of a clip's frames."""
 
-    album: Album
-    """Pictures of the frames."""
-    appearance: Appearance
-    """The look of performer and background."""
-    model: ContourModel
-    """The contours of the performer's own parts."""
-    schedule: Schedule = BY_MARKERS
-    """How far from the contours edges are looked for."""
+    album: Album  # pictures of the frames
+    appearance: Appearance  # the look of performer and background
+    model: ContourModel  # the contours of the performer's own parts
+    schedule: Schedule = BY_MARKERS  # how far from the contours edges are looked for
     along: BandColors | None = None
     """The colors along each part, for shifts along their axes; None where markers tell these."""
 
@@ -65,10 +58,8 @@ class ContourEvidence:
     ) -> Generator[float, None, ContourTerm]:
         """Measure the edges near the contours of F postures; yields the fraction done.
 
-        Args:
-            posture: The F postures.
-            frame: (F,) their indices in the clip.
-            search: How far from the contours.
+        `posture`: the F postures; `frame`: (F,) their indices in the clip; `search`: how far from the
+        contours.
         """
         model, album = self.model, self.album
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
@@ -102,11 +93,8 @@ class ContourEvidence:
     ) -> Generator[float, None, AxialTerm]:
         """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
 
-        Args:
-            posture: The F postures.
-            frame: (F,) their indices in the clip.
-            search: How far from the prediction.
-            step_s: Times between all of the clip's frames [s].
+        `posture`: the F postures; `frame`: (F,) their indices in the clip; `search`: how far from the
+        prediction; `step_s`: times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
         kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
@@ -144,17 +132,11 @@ def learn_contours(
 
     It yields now and then, so that a job can be canceled.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        album: Pictures of the clip's frames.
-        posture: The postures of all F frames, by their markers.
-        keyframes: Frames whose posture is known best.
-        schedule: How far from the contours edges are to be looked for; a wide one says that only the
-            keyframes' postures are known.
-
-    Returns:
-        None where no background can be trusted: before a moving camera, or where most pictures are missing.
+    `posture`: the postures of all F frames, by their markers; `keyframes`: frames whose posture is known
+    best; `schedule`: how far from the contours edges are to be looked for; a wide one says that only the
+    keyframes' postures are known.
+    Returns None where no background can be trusted: before a moving camera, or where most pictures are
+    missing.
     """
     seen = np.array([index in album for index in range(posture.batch[0])])
     keyframes = keyframes[seen[keyframes]]
@@ -259,17 +241,14 @@ LENS_DIFFERENCE = 1e-3
 EDGE_STD_M_CONTOUR_KEYFRAMES = 0.003
 """Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors."""
 HALVES = 2
-ROWS = HALVES * len(SIDES)
-"""Rows of a part."""
+ROWS = HALVES * len(SIDES)  # rows of a part
 
 
 def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray) -> EvidenceRows:
     """A row for either side of both halves of each part, with the part's shape as parameters.
 
-    Args:
-        contours: Edges and appearance, learned at the keyframes.
-        posture: The J judged postures.
-        frame: (J,) their indices in the clip.
+    `contours`: edges and appearance, learned at the keyframes; `posture`: the J judged postures; `frame`:
+    (J,) their indices in the clip.
     """
     model, factor = contours.model, contours.album.factor
     predicted, edges = contours.near(posture, frame, contours.schedule.judging)

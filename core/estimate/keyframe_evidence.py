@@ -37,19 +37,15 @@ from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import DEGREES
 
-LEAST_TRUSTED = 0.3
-"""Least visibility and quality of a region that judges a keyframe."""
+LEAST_TRUSTED = 0.3  # least visibility and quality of a region that judges a keyframe
 MOST_JUDGED = 60
 """Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters."""
 ITERATIONS = 4
-SCALES = np.geomspace(0.1, 2.5, 17)
-"""Sizes of the posing error tried, relative to a person's usual one."""
-SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2
-"""Log-normal prior of the size."""
+SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
+SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2  # log-normal prior of the size
 TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
-TIMING_MEAN = 0.7
-"""Mean of its exponential prior [frames]."""
+TIMING_MEAN = 0.7  # mean of its exponential prior [frames]
 LEARNED_SHARE = 1.3
 """Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
 keyframes, with their errors, which hides about a quarter of these."""
@@ -66,38 +62,26 @@ ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
 class KeyframeEvidence:
     """The calibrated model and the trust that keyframes and markers deserve."""
 
-    model: RegionModel
-    """With the placements and the lens found."""
-    posing_scale: float
-    """Size of the posing error relative to a person's usual one."""
-    timing_frames: float
-    """Standard deviation of the keyframes' timing error [frames]."""
-    distrust: Array
-    """(M,) factor, at least one, of the expected standard deviation of each marker's regions."""
+    model: RegionModel  # with the placements and the lens found
+    posing_scale: float  # size of the posing error relative to a person's usual one
+    timing_frames: float  # standard deviation of the keyframes' timing error [frames]
+    distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
     area_ratio: Array
     """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
-    information: Array
-    """(K, D, D) inverse covariance of each keyframe's posing error."""
-    keypoints: KeypointEvidence
-    """The calibrated model of keypoints, none where there are none."""
+    information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
+    keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
 
 
 @dataclass(frozen=True, eq=False)
 class SeenAtKeyframes:
     """K keyframes, and what was seen there."""
 
-    frame: IndexArray
-    """(K,) their indices in the clip."""
-    posture: Posture
-    """The K postures."""
-    observed: ObservedRegions
-    """The markers' regions."""
-    width_px: Array
-    """(K, M) half-width of each marker's limb [px]."""
-    keypoints: KeypointEvidence | None = None
-    """Usual evidence of the N keypoints; None for none."""
-    points: ObservedKeypoints | None = None
-    """Those seen."""
+    frame: IndexArray  # (K,) their indices in the clip
+    posture: Posture  # the K postures
+    observed: ObservedRegions  # the markers' regions
+    width_px: Array  # (K, M) half-width of each marker's limb [px]
+    keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
+    points: ObservedKeypoints | None = None  # those seen
     contours: ContourReader | None = None
     """Reads the rows of contours at some of the keyframes; None where contours do not judge."""
 
@@ -119,11 +103,6 @@ def read_keyframes(
     """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them.
 
     It yields now and then, so that a job can be canceled.
-
-    Args:
-        model: The region model with average placements.
-        noise: Noise of the regions' features.
-        at: The keyframes.
     """
     posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
     posing = posing_covariance(model.body, model.body.pose(posture))

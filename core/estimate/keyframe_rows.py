@@ -19,12 +19,9 @@ from ..evidence.regions import MarkerPlacement, RegionModel
 from ..footage.camera import Camera
 from .terms.regions import ObservedRegions, feature_rows
 
-POINT_STD_M = 0.014
-"""Error of each point along each axis [m]."""
-PLACE_STD_M = 0.009
-"""Error that all points share along each axis [m]."""
-FREE_STD_RAD = 0.5
-"""Error of rotations that no point determines, about a limb's own axis [rad]."""
+POINT_STD_M = 0.014  # error of each point along each axis [m]
+PLACE_STD_M = 0.009  # error that all points share along each axis [m]
+FREE_STD_RAD = 0.5  # error of rotations that no point determines, about a limb's own axis [rad]
 
 
 def posing_covariance(body: Body, pose: Pose) -> Array:
@@ -65,12 +62,9 @@ LARGEST = np.array([0.7, 1.3, 0.06, 0.06, 2.0])
 class KnownFrames:
     """Frames whose posture is known, and the regions seen there."""
 
-    pose: Pose
-    """Forward kinematics of K postures."""
-    frame: IndexArray
-    """(K,) their indices in the clip."""
-    observed: ObservedRegions
-    """Regions of those K frames."""
+    pose: Pose  # forward kinematics of K postures
+    frame: IndexArray  # (K,) their indices in the clip
+    observed: ObservedRegions  # regions of those K frames
 
 
 def placement_values(placements: tuple[MarkerPlacement, ...]) -> Array:
@@ -105,55 +99,39 @@ def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: Re
 # --- Rows at keyframes
 
 
-UNUSED = 1e6
-"""Variance of a row that does not count [px²]."""
-LENS_STD = 0.03
-"""Standard deviation of a stated focal length, as a share."""
+UNUSED = 1e6  # variance of a row that does not count [px²]
+LENS_STD = 0.03  # standard deviation of a stated focal length, as a share
 
 
 @dataclass(frozen=True, eq=False)
 class EvidenceRows:
     """The rows R of one kind of evidence at J judged keyframes, with X parameters of its own."""
 
-    residual: Array
-    """(J, R) predicted minus observed, at average parameters [px]."""
-    by_parameters: Array
-    """(J, R, X)."""
-    by_lens: Array
-    """(J, R) by the logarithm of the focal length."""
-    by_posture: Array
-    """(J, R, D) by the posture's tangent."""
-    variance: Array
-    """(J, R) at a perfectly posed keyframe [px²]; `UNUSED` for rows that do not count."""
-    prior: Array
-    """(X, X) information of the parameters' prior."""
+    residual: Array  # (J, R) predicted minus observed, at average parameters [px]
+    by_parameters: Array  # (J, R, X)
+    by_lens: Array  # (J, R) by the logarithm of the focal length
+    by_posture: Array  # (J, R, D) by the posture's tangent
+    variance: Array  # (J, R) at a perfectly posed keyframe [px²]; `UNUSED` for rows that do not count
+    prior: Array  # (X, X) information of the parameters' prior
 
 
 @dataclass(frozen=True, eq=False)
 class KeyframeRows:
     """The rows of all evidence, R of them, with all parameters: X, of which the last is the lens."""
 
-    residual: Array
-    """(J, R)."""
-    parameter_jacobian: Array
-    """(J, R, X)."""
-    variance: Array
-    """(J, R)."""
-    posing: Array
-    """(J, R, R) covariance that a person's usual posing error adds."""
-    velocity: Array
-    """(J, R) change of the rows per frame."""
-    prior: Array
-    """(X, X)."""
+    residual: Array  # (J, R)
+    parameter_jacobian: Array  # (J, R, X)
+    variance: Array  # (J, R)
+    posing: Array  # (J, R, R) covariance that a person's usual posing error adds
+    velocity: Array  # (J, R) change of the rows per frame
+    prior: Array  # (X, X)
 
     @classmethod
     def stacked(cls, parts: Sequence[EvidenceRows], posing: Array, velocity: Array) -> "KeyframeRows":
         """The rows of several kinds of evidence, one after the other.
 
-        Args:
-            parts: The kinds.
-            posing: (J, D, D) usual posing error at the keyframes.
-            velocity: (J, D) change of their postures per frame.
+        `posing`: (J, D, D) usual posing error at the keyframes; `velocity`: (J, D) change of their postures
+        per frame.
         """
         judged = len(posing)
         rows = [part.residual.shape[1] for part in parts]
@@ -214,10 +192,8 @@ class KeyframeRows:
     def noise(self, weight: Array, scale: float, timing: float) -> Array:
         """(J, R, R) covariance of the rows without the parameters' own.
 
-        Args:
-            weight: (J, R) of each row, 1 for one that is no outlier.
-            scale: Size of the posing error relative to a person's usual one.
-            timing: Standard deviation of the timing error [frames].
+        `weight`: (J, R) of each row, 1 for one that is no outlier; `scale`: size of the posing error relative
+        to a person's usual one; `timing`: standard deviation of the timing error [frames].
         """
         total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
         rows = np.arange(total.shape[-1])

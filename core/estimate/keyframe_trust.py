@@ -23,8 +23,7 @@ from .keyframe_rows import posing_covariance
 from .match_error import match_covariance
 from .terms.regions import RegionNoise
 
-FEWEST_POSED = 2
-"""Fewer posed keyframes calibrate nothing."""
+FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
 
 
 def read_mixed_keyframes(
@@ -32,12 +31,8 @@ def read_mixed_keyframes(
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
-    Args:
-        model: The region model with average placements.
-        noise: Noise of the regions' features.
-        at: The K keyframes.
-        match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
-            0 for posed ones.
+    `at`: the K keyframes; `match_scale`: (K,) size of the matched ones' error, relative to a usual difference
+    between performers; 0 for posed ones.
     """
     if not match_scale.any():
         return (yield from read_keyframes(model, noise, at))
@@ -57,15 +52,12 @@ def read_mixed_keyframes(
 # --- Selection of matched keyframes
 
 
-LARGEST_LIBRARY_ERROR_M = 0.12
-"""A library with a larger error along the line of sight holds another motion."""
+LARGEST_LIBRARY_ERROR_M = 0.12  # a library with a larger error along the line of sight holds another motion
 LARGEST_RATIO = 1.3
 """Largest ratio of the library's error to the interpolation's: it knows how the motion goes on."""
+# Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes none.
 LEAST_WEIGHT = 0.5
-"""Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes
-none."""
-LEAST_TRUSTED = 0.3
-"""Least visibility and quality of a region that counts."""
+LEAST_TRUSTED = 0.3  # least visibility and quality of a region that counts
 CHUNK_FRAMES = 500
 KEYPOINT_COLUMNS = 10
 """Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers."""
@@ -82,12 +74,8 @@ def select_keyframes(
 ) -> tuple[Keyframe, ...]:
     """The posed keyframes, and those matched ones that are better than interpolation between them.
 
-    Args:
-        keyframes: Posed and matched ones, in order of frame.
-        model: The region model with average placements.
-        tracks: The regions seen.
-        fps: Frames per second.
-        keypoints: The performer's; None for none.
+    `keyframes`: posed and matched ones, in order of frame; `tracks`: the regions seen; `keypoints`: the
+    performer's; None for none.
     """
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)

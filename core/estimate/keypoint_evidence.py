@@ -17,19 +17,16 @@ from ..footage.keypoints.keypoints import mirrored_point
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 
-USUAL_ERROR = 0.2
-"""Error of a guess over the link's length: the sine of some twelve degrees."""
+USUAL_ERROR = 0.2  # error of a guess over the link's length: the sine of some twelve degrees
 GAIN_STD, OFFSET_STD = 0.5, 0.2
 """Standard deviation of the gain from 1, and of the offset over the link's length."""
 NAME_COUNT, LINK_COUNT = 12.0, 6.0
 """Numbers of errors that the usual error, and that of a link's name, weigh as much as."""
 CLIP_FACTOR = 1.4
 """Between keyframes errors count as this many times as large: those of neighboring links are alike."""
-MEMORY_S = 0.25
-"""Time in which an error fades to a third."""
+MEMORY_S = 0.25  # time in which an error fades to a third
 ROUNDS = 4
-LARGEST_ERROR = 4.0
-"""A larger error, in standard deviations, counts as one this large."""
+LARGEST_ERROR = 4.0  # a larger error, in standard deviations, counts as one this large
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +34,10 @@ class DepthEvidence:
     """What the L links' guesses are worth."""
 
     links: DepthLinks
-    gain: Array
-    """(L,) expected depth by a guess: gain times guess plus offset."""
-    offset_m: Array
-    """(L,)."""
-    std_m: Array
-    """(L,) error of what is expected [m]."""
-    memory_s: float = MEMORY_S
-    """Time in which an error fades to a third [s]."""
+    gain: Array  # (L,) expected depth by a guess: gain times guess plus offset
+    offset_m: Array  # (L,)
+    std_m: Array  # (L,) error of what is expected [m]
+    memory_s: float = MEMORY_S  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(cls, links: DepthLinks, model: KeypointModel) -> "DepthEvidence":
@@ -72,13 +65,9 @@ def read_depths(
 ) -> DepthEvidence:
     """The evidence as K posed keyframes have it.
 
-    Args:
-        evidence: The usual one.
-        model: The points' calibrated model.
-        pose: The keyframes' poses.
-        frame: (K,) their frames.
-        depth: (K, N) the points' guessed depths there [m].
-        posing_std_m: Error of a posed point [m].
+    `evidence`: the usual one; `model`: the points' calibrated model; `pose`: the keyframes' poses; `frame`:
+    (K,) their frames; `depth`: (K, N) the points' guessed depths there [m]; `posing_std_m`: error of a posed
+    point [m].
     """
     links = evidence.links
     guessed, true = links.guessed(depth), links.depths(model, pose, frame)
@@ -118,8 +107,7 @@ MIRRORED = 0.7
 sides."""
 NAME_COUNT_KEYPOINT_EVIDENCE, POINT_COUNT = 40.0, 12.0
 """Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
-MEMORY_S_KEYPOINT_EVIDENCE = 0.15
-"""Time in which an error fades to a third."""
+MEMORY_S_KEYPOINT_EVIDENCE = 0.15  # time in which an error fades to a third
 CLIP_FACTOR_KEYPOINT_EVIDENCE = 3.0
 """Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
 a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
@@ -130,20 +118,14 @@ turns it a long way toward or away from the camera, of which a linearised row kn
 class KeypointEvidence:
     """The calibrated model of N keypoints, and the trust they deserve."""
 
-    model: KeypointModel
-    """With the places and the lens found."""
-    sources: tuple[str, ...]
-    """(N,) what saw each."""
-    std_m: Array
-    """(N,) error of a sure detection along each axis of the image [m]."""
-    trust: Array
-    """(N,) 1 for points that are believed, 0 for those left out."""
+    model: KeypointModel  # with the places and the lens found
+    sources: tuple[str, ...]  # (N,) what saw each
+    std_m: Array  # (N,) error of a sure detection along each axis of the image [m]
+    trust: Array  # (N,) 1 for points that are believed, 0 for those left out
     lag: Mapping[str, int]
     """By source that is left out for it: frames by which it is late, or early where negative."""
-    depths: DepthEvidence
-    """What the hints of depth are worth."""
-    memory_s: float = MEMORY_S_KEYPOINT_EVIDENCE
-    """Time in which an error fades to a third [s]."""
+    depths: DepthEvidence  # what the hints of depth are worth
+    memory_s: float = MEMORY_S_KEYPOINT_EVIDENCE  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(
@@ -183,10 +165,8 @@ def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
 class KnownKeypoints:
     """Keypoints at J frames whose posture is known."""
 
-    pose: Pose
-    """Forward kinematics of the postures."""
-    frame: IndexArray
-    """(J,) their indices in the clip."""
+    pose: Pose  # forward kinematics of the postures
+    frame: IndexArray  # (J,) their indices in the clip
     observed: ObservedKeypoints
 
 
@@ -195,11 +175,9 @@ def keypoint_rows(
 ) -> EvidenceRows:
     """Two rows a keypoint, with three parameters each, its place.
 
-    Args:
-        model: The points at the places found so far, before the lens found so far.
-        usual: The points at their usual places, before the stated lens, which parameters count from.
-        known: The keypoints seen.
-        std_m: (N,) error of a sure detection.
+    `model`: the points at the places found so far, before the lens found so far; `usual`: the points at their
+    usual places, before the stated lens, which parameters count from; `known`: the keypoints seen; `std_m`:
+    (N,) error of a sure detection.
     """
     pixel = model.pixels(known.pose, known.frame)
     by_place = model.place_jacobian(known.pose, known.frame)
@@ -249,13 +227,9 @@ def learned_std(
 
     A step of expectation maximization, in which the rows' error is what is not known.
 
-    Args:
-        model: The points' model.
-        known: The keypoints seen at J keyframes.
-        usual_m: (N,) usual errors.
-        std_m: (N,) the errors so far.
-        left: (J, 2 N) rows that the calibrated places leave.
-        noise: (J, 2 N, 2 N) their covariance.
+    `model`: the points' model; `known`: the keypoints seen at J keyframes; `usual_m`: (N,) usual errors;
+    `std_m`: (N,) the errors so far; `left`: (J, 2 N) rows that the calibrated places leave; `noise`: (J, 2 N,
+    2 N) their covariance.
     """
     judged, points = known.observed.confidence.shape
     scale = _scale(model, known) / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)

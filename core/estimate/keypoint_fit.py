@@ -24,24 +24,16 @@ THROWN_OUT = 0.25
 class KeypointFit:
     """N keypoints in F frames beside what the estimate predicts of them."""
 
-    keypoints: Keypoints
-    """As they were compared: left and right exchanged back where they were swapped."""
-    predicted_px: Array
-    """(F, N, 2) where the estimate has them [px]."""
-    residual_px: Array
-    """(F, N) distance between the two [px]; NaN where not seen."""
-    std_px: Array
-    """(F, N) expected error along each axis [px]; infinite for points that are left out."""
-    weight: Array
-    """(F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out."""
+    keypoints: Keypoints  # as they were compared: left and right exchanged back where they were swapped
+    predicted_px: Array  # (F, N, 2) where the estimate has them [px]
+    residual_px: Array  # (F, N) distance between the two [px]; NaN where not seen
+    std_px: Array  # (F, N) expected error along each axis [px]; infinite for points that are left out
+    weight: Array  # (F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out
     thrown_out: BoolArray
     """(F, N) those seen that had next to no weight: jumps to another thing, person or side."""
-    swapped: BoolArray
-    """(F, N) those that the source had on the other side of the body."""
-    trust: Array
-    """(N,) share of the usual trust in each point, 0 for one that is left out all along."""
-    source_trust: Mapping[str, float]
-    """By source: mean trust in its points, 0 for one that is left out."""
+    swapped: BoolArray  # (F, N) those that the source had on the other side of the body
+    trust: Array  # (N,) share of the usual trust in each point, 0 for one that is left out all along
+    source_trust: Mapping[str, float]  # by source: mean trust in its points, 0 for one that is left out
     lag: Mapping[str, int]
     """By source that is left out for it: frames by which it is late, or early where negative."""
 
@@ -55,12 +47,8 @@ def keypoint_fit(
 ) -> KeypointFit:
     """Compare keypoints with an estimate.
 
-    Args:
-        evidence: What the keyframes say of them.
-        keypoints: As they are compared.
-        points: The same, with their confidence.
-        swapped: (F, N) those exchanged with their mirror image.
-        posture: The F postures.
+    `evidence`: what the keyframes say of them; `keypoints`: as they are compared; `points`: the same, with
+    their confidence; `swapped`: (F, N) those exchanged with their mirror image; `posture`: the F postures.
     """
     model, frame = evidence.model, np.arange(posture.batch[0])
     pose = model.body.pose(posture)
@@ -105,12 +93,9 @@ def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
 # --- Notes on keypoints for people
 
 
-THROUGHOUT = 0.5
-"""Share of the frames from which on sides are exchanged throughout."""
-MANY_THROWN_OUT = 0.2
-"""Share of a source's keypoints that are thrown out which gets a note."""
-MOST_NAMED = 4
-"""Largest number of points that a note names."""
+THROUGHOUT = 0.5  # share of the frames from which on sides are exchanged throughout
+MANY_THROWN_OUT = 0.2  # share of a source's keypoints that are thrown out which gets a note
+MOST_NAMED = 4  # largest number of points that a note names
 
 
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:

@@ -20,29 +20,23 @@ from ..numerics.robust import multivariate_cost
 from .terms.keypoints import ObservedKeypoints
 from .terms.term import DEGREES
 
-LIMB_WIDTH_M = 0.07
-"""About the half-width of a thigh and the width of an arm [m]."""
-TURNED = 2.0
-"""How many of a point's usual errors are added to it: hands and feet turn."""
+LIMB_WIDTH_M = 0.07  # about the half-width of a thigh and the width of an arm [m]
+TURNED = 2.0  # how many of a point's usual errors are added to it: hands and feet turn
 USUAL_QUANTILE = 0.4
 """Of the distances at the keyframes: a few that are far off are outliers, of a point that is believed."""
-FEWEST_BELIEVED = 0.5
-"""A source of whose principal points a smaller share is believed is left out."""
-LONGEST_LAG = 15
-"""Largest number of frames by which a source is thought to be early or late."""
+FEWEST_BELIEVED = 0.5  # a source of whose principal points a smaller share is believed is left out
+LONGEST_LAG = 15  # largest number of frames by which a source is thought to be early or late
 LEAST_LAG = 2
 LAGGED_SHARE = 0.6
 """A source is early or late if its points' usual distance becomes this share of what it is, or less."""
-LEAST_MISFIT_M = 0.03
-"""Nearer points are right as they stand [m]."""
+LEAST_MISFIT_M = 0.03  # nearer points are right as they stand [m]
 
 
 @dataclass(frozen=True, eq=False)
 class KeypointTrust:
     """What the keyframes say of N keypoints of several sources."""
 
-    trust: Array
-    """(N,) 1 for points that are believed, 0 for others."""
+    trust: Array  # (N,) 1 for points that are believed, 0 for others
     distance_m: Array
     """(N,) usual distance across the view from where keyframes have each [m]; NaN where not seen at any."""
     lag: Mapping[str, int]
@@ -54,12 +48,8 @@ def keypoint_trust(
 ) -> KeypointTrust:
     """Compare keypoints with posed keyframes.
 
-    Args:
-        model: The points at their usual places.
-        sources: (N,) what saw each.
-        points: Those seen in all F frames.
-        pose: Poses of the K posed keyframes.
-        frame: (K,) their frames.
+    `model`: the points at their usual places; `sources`: (N,) what saw each; `points`: those seen in all F
+    frames; `pose`: poses of the K posed keyframes; `frame`: (K,) their frames.
     """
     predicted, depth = model.camera.project(model.world(pose), frame[:, None])
     predicted *= np.maximum(depth, 0.1)[..., None] / model.camera.focal_px  # to meters across the view
@@ -108,8 +98,7 @@ def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: Index
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
-FACE = ("eye", "ear")
-"""Too near each other to tell: exchanged where arms and legs are."""
+FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and legs are
 STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
 """Whether arms, and whether legs, are exchanged."""
 PLACE_STD_M = 0.04
@@ -119,10 +108,8 @@ LEAST_SPEED_M_PER_S, SPEED_QUANTILE = 0.3, 0.8
 interpolated, and at least so fast: a running leg is anywhere a few frames later."""
 JITTER_STD_M, ACCELERATION_M_PER_S2 = 0.04, 40.0
 """How far a point is from where its velocity takes it: a detector's jitter, and fast limbs."""
-ALIKE = 0.5
-"""The points of a limb err alike: each counts as half."""
-CHANGE = 1.0 / 60.0
-"""Probability that limbs begin or cease to be exchanged, a frame."""
+ALIKE = 0.5  # the points of a limb err alike: each counts as half
+CHANGE = 1.0 / 60.0  # probability that limbs begin or cease to be exchanged, a frame
 SLIDING_S = 0.07
 """Before and after a change: a detector that follows limbs slides from one to the other for a while."""
 
@@ -132,12 +119,8 @@ def find_swaps(
 ) -> BoolArray:
     """(F, N) which keypoints are exchanged with their mirror image.
 
-    Args:
-        keypoints: The performer's.
-        predicted: (F, N, 2) where the interpolated keyframes have them [px].
-        scale: (F,) pixels of a meter on the performer.
-        keyframes: (K,) frames of the keyframes.
-        time_s: (F,) times of the frames [s].
+    `predicted`: (F, N, 2) where the interpolated keyframes have them [px]; `scale`: (F,) pixels of a meter on
+    the performer; `keyframes`: (K,) frames of the keyframes; `time_s`: (F,) times of the frames [s].
     """
     swapped = np.zeros(keypoints.seen.shape, dtype=bool)
     away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
@@ -191,10 +174,8 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
 def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:
     """The keypoints without their confidence and hints in frames near a change of what is exchanged.
 
-    Args:
-        keypoints: The performer's, exchanged back.
-        swapped: (F, N) which of them were exchanged.
-        time_s: (F,) times of the frames [s].
+    `keypoints`: the performer's, exchanged back; `swapped`: (F, N) which of them were exchanged; `time_s`:
+    (F,) times of the frames [s].
     """
     doubted = np.zeros_like(swapped)
     for frame in np.flatnonzero((swapped[1:] != swapped[:-1]).any(axis=1)):

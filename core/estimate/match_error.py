@@ -24,24 +24,20 @@ JOINT_STD_DEG = {
     "hip": 12.0,
     "knee": 15.0,
     "shin": 10.0,
-}
-"""Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
-PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
-"""Usual error of the place across and along the line of sight [m]."""
+}  # usual difference of a joint, about each of its axes, between performers at the same moment of a motion
+PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20  # usual error of the place across and along the line of sight [m]
+# Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
+# keyframe that is certain and near one that is certainly wrong. A limb that leans toward the camera looks
+# like one that leans away from it, a body turned to one side nearly like one turned to the other: what was
+# found there is right or wrong, which a covariance about it does not show. In 25 recordings with truth where
+# nothing was posed, errors along the line of sight were 13 cm where the confidence was below 0.7, 9 cm at
+# 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm.
 SURE_STD_M, UNSURE_STD_M = np.array([0.02, 0.07]), np.array([0.07, 0.16])
-"""Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
-keyframe that is certain and near one that is certainly wrong.
-
-A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
-like one turned to the other: what was found there is right or wrong, which a covariance about it does not
-show. In 25 recordings with truth where nothing was posed, errors along the line of sight were 13 cm where the
-confidence was below 0.7, 9 cm at 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm."""
 SIZE_STD = 0.05
 """Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
 lie farther in or out than joints. All frames share it."""
+# Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share it.
 GROUND_STD_M = 0.04
-"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share
-it."""
 POINT_DEPTH_STD_M = 2.0
 """Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
 large that they count for nothing, since place and joints have errors of their own that determine them."""
@@ -68,10 +64,8 @@ def match_covariance(posture: Posture, camera: Camera, frame: IndexArray) -> Arr
 def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
 
-    Args:
-        index: (K,) the keyframes' indices in the clip, in order.
-        matched: (K,) which of them are matched.
-        frames: Frames of the clip, F.
+    `index`: (K,) the keyframes' indices in the clip, in order; `matched`: (K,) which of them are matched;
+    `frames`: frames of the clip, F.
     """
     share = np.interp(np.arange(frames), index, matched.astype(np.float64))
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
@@ -82,10 +76,7 @@ def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    Args:
-        points: (F, P, 3) in the world [m].
-        ankles: (F,) heights of the lower ankle [m].
-        camera: The camera.
+    `points`: (F, P, 3) in the world [m]; `ankles`: (F,) heights of the lower ankle [m].
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)
@@ -108,13 +99,10 @@ def undetermined_covariance(
 ) -> Array:
     """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
-    Args:
-        points: Places in the world [m].
-        camera: The camera.
-        index: (K,) the keyframes' indices in the clip, in order.
-        match_scale: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones.
-        confidence: (K,) probability that each is about right.
-        place_std_m: (F,) error of the whole performer's place along the line of sight, if more than usual.
+    `points`: places in the world [m]; `index`: (K,) the keyframes' indices in the clip, in order;
+    `match_scale`: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones;
+    `confidence`: (K,) probability that each is about right; `place_std_m`: (F,) error of the whole
+    performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
@@ -131,12 +119,9 @@ def undetermined_covariance(
 # time
 
 
-GRACE_S = 0.25
-"""Time for which the estimate's own covariance holds."""
-TIME_CONSTANT_S = 0.35
-"""Time constant at which a limb approaches the variance of anywhere in reach."""
-TRUNK_STD_RAD, LIMB_STD_RAD = 0.15, 0.5
-"""Standard deviation of joints anywhere in reach [rad]."""
+GRACE_S = 0.25  # time for which the estimate's own covariance holds
+TIME_CONSTANT_S = 0.35  # time constant at which a limb approaches the variance of anywhere in reach
+TRUNK_STD_RAD, LIMB_STD_RAD = 0.15, 0.5  # standard deviation of joints anywhere in reach [rad]
 WALKING_SPEED_M_PER_S = 0.5
 """Growth of the place's standard deviation along each axis: the performer may stand or walk."""
 FARTHEST_M = 2.0
@@ -151,13 +136,9 @@ def unobserved_variance(
 ) -> Array:
     """(F, D) variance of postures beyond their covariance, where nothing observes them [m², rad²].
 
-    Args:
-        skeleton: The body's.
-        segments: (M,) the segment each marker is bound to, or the joint each keypoint moves with; an unknown
-            name counts for the trunk.
-        visible: (F, M) whether each marker or keypoint is seen.
-        keyframes: (K,) frames whose posture is known.
-        time_s: (F,) time stamps.
+    `skeleton`: the body's; `segments`: (M,) the segment each marker is bound to, or the joint each keypoint
+    moves with; an unknown name counts for the trunk; `visible`: (F, M) whether each marker or keypoint is
+    seen; `keyframes`: (K,) frames whose posture is known; `time_s`: (F,) time stamps.
     """
     trunk, *limbs = skeleton.limbs
     joint = {one.name: index for index, one in enumerate(skeleton.joints)}

@@ -9,15 +9,11 @@ from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
-DOUBTED_LENS = 0.03
-"""Difference of the calibrated from the stated lens, as a share, that gets a note."""
+DOUBTED_LENS = 0.03  # difference of the calibrated from the stated lens, as a share, that gets a note
 DOUBTED_TIMING_FRAMES = 1.0
-DOUBTED_POSING = 2.0
-"""Size of the posing error, in usual ones, that gets a note."""
-DOUBTED_MARKER = 3.0
-"""Distrust of a marker that gets a note."""
-MOST_NAMED = 3
-"""Largest number of frames that a note names."""
+DOUBTED_POSING = 2.0  # size of the posing error, in usual ones, that gets a note
+DOUBTED_MARKER = 3.0  # distrust of a marker that gets a note
+MOST_NAMED = 3  # largest number of frames that a note names
 
 
 def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:

@@ -24,21 +24,16 @@ from ..footage.region_tracks import RegionTracks
 
 TOUCHING_PERCENT = 30.0
 """Percentile of the lowest soles that is the floor: more than half touch it, except for runners."""
-SHOE_M = 0.012
-"""Thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor."""
+SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
-SAME_FLOOR_M = 0.12
-"""Ankles that stand within this of a given floor stand on it."""
+SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
 
 
 def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
     """(F,) usual height of the lower ankle [m].
 
-    Args:
-        body: The actor's body.
-        matched: K matched postures, as the library has them.
-        index: (K,) their indices in the clip, in order.
-        frames: Frames of the clip, F.
+    `matched`: K matched postures, as the library has them; `index`: (K,) their indices in the clip, in order;
+    `frames`: frames of the clip, F.
     """
     soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)
     floor = np.percentile(soles, TOUCHING_PERCENT)
@@ -60,12 +55,9 @@ def found_ankle_m(
 
     Their rigid feet may point into the floor, so that their soles tell nothing of it.
 
-    Args:
-        body: The actor's body.
-        found: K postures put together from parts and held against the footage.
-        index: (K,) their indices in the clip, in order.
-        frames: Frames of the clip, F.
-        floor_m: Height of the floor; by the ankles themselves where None.
+    `found`: K postures put together from parts and held against the footage; `index`: (K,) their indices in
+    the clip, in order; `frames`: frames of the clip, F; `floor_m`: height of the floor; by the ankles
+    themselves where None.
     """
     points = body.points(body.pose(found))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
@@ -79,15 +71,12 @@ def found_ankle_m(
 # --- Placement of a standing performer before the camera, before any keyframe is posed
 
 
-FILLED_SHARE = 0.7
-"""Share of the picture's height that a body fills where no region is seen."""
-SIZE_STD = 0.08
-"""Standard deviation of a distance by size in the picture, as a share."""
+FILLED_SHARE = 0.7  # share of the picture's height that a body fills where no region is seen
+SIZE_STD = 0.08  # standard deviation of a distance by size in the picture, as a share
 TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
 """The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
 bend)."""
-AGREEING = 1.5
-"""Largest difference, in standard deviations, of sizes that agree on a distance."""
+AGREEING = 1.5  # largest difference, in standard deviations, of sizes that agree on a distance
 TRUNK = ("trunk", "chest", "pelvis")
 PAIR_SPANS = {("shoulder", "hip"): 0.12, ("hip", "ankle"): 0.1, ("shoulder", "ankle"): 0.08}
 """Standard deviation of a distance by that of two pairs of keypoints in the picture, as a share: trunks lean,
@@ -97,13 +86,10 @@ LIMB_SPANS = {
     ("knee", "ankle"): 0.1,
     ("shoulder", "elbow"): 0.15,
     ("elbow", "wrist"): 0.15,
-}
-"""The same by single limbs, of which one lies across the view even in someone who bends or sits."""
+}  # the same by single limbs, of which one lies across the view even in someone who bends or sits
 _TRUNK_POINTS = np.array([name.split(".")[0] in ("hip", "shoulder") for name in HUMAN.point_names])
-FLOOR_STD_M = 0.05
-"""Standard deviation of the soles' height above the floor [m]."""
-FLOOR_DOUBTED = 3.0
-"""Standard deviations beyond which the ground is not at z = 0."""
+FLOOR_STD_M = 0.05  # standard deviation of the soles' height above the floor [m]
+FLOOR_DOUBTED = 3.0  # standard deviations beyond which the ground is not at z = 0
 ROUNDS = 6
 LEAST_DEPTH_M = 0.3
 LEAST_HEIGHT_PX = 20.0
@@ -119,17 +105,10 @@ def place_standing(
 ) -> Posture:
     """A body that stands upright where the performer is, facing the camera.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
-            goes to the picture's middle.
-        segments: The segment each marker is bound to.
-        keypoints: Those of this frame alone; markers are not asked where its hips or shoulders are seen.
-
-    Returns:
-        A single posture.
+    `regions`: the markers' regions in this frame, as tracks of one frame; where none is seen, the body goes
+    to the picture's middle; `segments`: the segment each marker is bound to; `keypoints`: those of this frame
+    alone; markers are not asked where its hips or shoulders are seen.
+    Returns a single posture.
     """
     rotation, _ = camera.pose(frame)
     heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
@@ -167,14 +146,8 @@ def _by_size(
 ) -> Posture:
     """The standing body where it is as large in the picture as what was seen.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        frame: The frame's index in the clip.
-        standing: The body that stands anywhere.
-        center: (2,) middle of what was seen [px].
-        shown_from: Middle (2,) [px] of the same of a body that stands somewhere, and the ratio of its size to
-            the one seen.
+    `standing`: the body that stands anywhere; `center`: (2,) middle of what was seen [px]; `shown_from`:
+    middle (2,) [px] of the same of a body that stands somewhere, and the ratio of its size to the one seen.
     """
     _, location = camera.pose(frame)
     _, direction = camera.rays(center, frame)
@@ -222,12 +195,7 @@ def ground_place(
 ) -> Array:
     """The ground, (3,) in the world [m], between the feet of someone who stands there upright.
 
-    Args:
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        stature_m: Body height [m].
-        crown_px: (2,) top of the head in the picture [px].
-        ground_px: (2,) the ground between the feet [px].
+    `crown_px`: (2,) top of the head in the picture [px]; `ground_px`: (2,) the ground between the feet [px].
 
     Raises:
         InputError: The two points in the picture cannot be a person's.
@@ -305,10 +273,8 @@ def _largest_size(logarithms: Array, errors: Array) -> float:
 def _floor_step(above_m: float, down: float, distance: float) -> float:
     """Correction along the line of sight that brings the soles to the floor [m].
 
-    Args:
-        above_m: Height of the soles by the region's size [m].
-        down: Vertical share of the line of sight.
-        distance: By the region's size [m].
+    `above_m`: height of the soles by the region's size [m]; `down`: vertical share of the line of sight;
+    `distance`: by the region's size [m].
     """
     variance = (SIZE_STD * distance) ** 2
     spread = FLOOR_STD_M**2 + variance * down**2

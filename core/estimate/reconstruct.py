@@ -44,8 +44,7 @@ from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
-EXTRACTION_SHARE = 0.6
-"""Usual share of the work of reading the footage."""
+EXTRACTION_SHARE = 0.6  # usual share of the work of reading the footage
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,20 +52,13 @@ class Reconstruction:
     """A motion and the intermediate results it was made from."""
 
     motion: Motion
-    interpolation: Motion
-    """The keyframes interpolated without the footage, for comparison."""
-    reading: Reading
-    """Data read from the clip, for another reconstruction of it."""
-    speed: Array
-    """(F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]."""
-    notes: tuple[str, ...]
-    """Notes on the result for people, one sentence each."""
-    keypoints: Keypoints
-    """The performer's keypoints in every frame, none where the take has none."""
-    model: RegionModel
-    """The markers' region model: calibrated on the keyframes, or of average placements."""
-    solution: WholeClipResult | None = None
-    """Result of method `map`, for another to start from."""
+    interpolation: Motion  # the keyframes interpolated without the footage, for comparison
+    reading: Reading  # data read from the clip, for another reconstruction of it
+    speed: Array  # (F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]
+    notes: tuple[str, ...]  # notes on the result for people, one sentence each
+    keypoints: Keypoints  # the performer's keypoints in every frame, none where the take has none
+    model: RegionModel  # the markers' region model: calibrated on the keyframes, or of average placements
+    solution: WholeClipResult | None = None  # result of method `map`, for another to start from
 
     @property
     def keypoint_fit(self) -> KeypointFit | None:
@@ -88,18 +80,11 @@ def reconstruct(
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
-    Args:
-        take: A validated take with at least two keyframes.
-        method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        reading: Data that `read_footage` or an earlier reconstruction has read from the same clip, which is
-            then not opened again.
-        earlier: A reconstruction to start from; parts that no longer hold are recognized and not used.
-
-    Yields:
-        Progress; closing the generator cancels the job, which has no effects of its own.
-
-    Returns:
-        The motion of every frame of the clip.
+    `take`: a validated take with at least two keyframes; `method`: `map` (the whole clip at once), `ekf` (the
+    paper's filter) or `interpolation`; `reading`: data that `read_footage` or an earlier reconstruction has
+    read from the same clip, which is then not opened again; `earlier`: a reconstruction to start from; parts
+    that no longer hold are recognized and not used.
+    Returns the motion of every frame of the clip.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -327,11 +312,7 @@ def _motion(
 def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
 
-    Args:
-        body: The actor's body.
-        posture: F postures.
-        covariance: Theirs.
-        more: (F, D) variances added to it.
+    `posture`: F postures; `more`: (F, D) variances added to it.
     """
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))

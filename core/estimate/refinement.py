@@ -40,8 +40,7 @@ second apart and show less of the swings between them. A looser motion has more 
 DEPENDENT_ROWS = 8.0
 """Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
 but count as rows of their own."""
-BODY_SHARE = 0.5
-"""Share of the whole body's in a point's squared miss: depths of one body err together."""
+BODY_SHARE = 0.5  # share of the whole body's in a point's squared miss: depths of one body err together
 LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M = 0.1, 3.0
 
 
@@ -56,16 +55,11 @@ def adapted(
 
     It yields now and then, so that a job can be canceled.
 
-    Args:
-        problem: The clip's problem, with sizes as the keyframes tell them.
-        spans: The windows.
-        states: The state of each by the markers.
-        among: (F,) frames in whose gaps it is asked how far the prior misses.
-        earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
-            prior misses in all other gaps; None without one.
-
-    Returns:
-        The same problem and states where the markers or keypoints do not show the whole body.
+    `problem`: the clip's problem, with sizes as the keyframes tell them; `states`: the state of each by the
+    markers; `among`: (F,) frames in whose gaps it is asked how far the prior misses; `earlier`: the problem
+    of an earlier estimate, whose limbs keep their sizes, and which knows how far the prior misses in all
+    other gaps; None without one.
+    Returns the same problem and states where the markers or keypoints do not show the whole body.
     """
     segments = tuple(one.segment for one in problem.evidence.model.placements)
     if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
@@ -87,10 +81,7 @@ def adapted(
 def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
     """(D,) factor on the usual accelerations of each degree of freedom's limb.
 
-    Args:
-        problem: The clip's problem.
-        spans: Windows that keep all of its frames.
-        states: The state of each.
+    `spans`: windows that keep all of its frames; `states`: the state of each.
     """
     kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
     pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
@@ -148,21 +139,12 @@ def refine(
 ) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
     """Learn from the footage what the keyframes could not tell.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows.
-        states: The state of each by its markers.
-        album: Pictures of all frames; None where contours are left out.
-        anew: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in.
-        contours: What is known of contours already; None to learn it.
-        earlier: The problem of an earlier estimate, which knows the rest; None without one.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        Problem and states with all that was learned, and the look of performer and background; None where no
-        background can be trusted.
+    `states`: the state of each by its markers; `album`: pictures of all frames; None where contours are left
+    out; `anew`: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in;
+    `contours`: what is known of contours already; None to learn it; `earlier`: the problem of an earlier
+    estimate, which knows the rest; None without one.
+    Returns problem and states with all that was learned, and the look of performer and background; None where
+    no background can be trusted.
     """
     problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
     problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)

@@ -39,63 +39,44 @@ def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks
 # be
 
 
-ROUNDS = 3
-"""Looks at most: what is found moves the body, and with it where the rest is looked for."""
-LOST = 0.5
-"""Quality below which a tracked region beside lost ones is looked at again."""
-BESIDE = 2
-"""Frames from lost ones within which it is: a blur comes and goes."""
+ROUNDS = 3  # looks at most: what is found moves the body, and with it where the rest is looked for
+LOST = 0.5  # quality below which a tracked region beside lost ones is looked at again
+BESIDE = 2  # frames from lost ones within which it is: a blur comes and goes
 MORE = 1.3
 """How much larger than such a region a find must be to replace it, and the prediction to look for it."""
-LEAST_AREA_PX = 6.0
-"""Least predicted area, in pixels of the album."""
+LEAST_AREA_PX = 6.0  # least predicted area, in pixels of the album
 LEAST_GAIN = 10.0
 """Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance."""
-LEAST_REST_GAIN = 3.0
-"""Of what something before it cuts off from a find."""
-LEAST_PEAK = 0.3
-"""Least of a find's largest shares; colors that were never learned pass for less."""
+LEAST_REST_GAIN = 3.0  # of what something before it cuts off from a find
+LEAST_PEAK = 0.3  # least of a find's largest shares; colors that were never learned pass for less
 LEAST_CERTAINTY = 0.25
 """Least mean gain of its pixels, relative to the largest: what others explain as well tells no place."""
-LEAST_SIZE, MOST_SIZE = 0.15, 2.0
-"""Area of a find relative to the predicted one."""
-SIZE_DEVIATION = 1.2
-"""Standard deviation of its logarithm, as for tracking."""
-NEAR = 1.0
-"""Distance from the prediction, in the marker's lengths, within which a find stands alone."""
+LEAST_SIZE, MOST_SIZE = 0.15, 2.0  # area of a find relative to the predicted one
+SIZE_DEVIATION = 1.2  # standard deviation of its logarithm, as for tracking
+NEAR = 1.0  # distance from the prediction, in the marker's lengths, within which a find stands alone
 WIDENING = 0.5
 """Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
-FARTHEST = 5.0
-"""Largest such distance: that from one side of the body to the other, two arms long."""
-STRETCHED = 80.0
-"""Percentile of its predicted lengths that is a marker's own, hardly foreshortened."""
-HALF = 0.6
-"""Half of the marker's length, and its blur."""
+FARTHEST = 5.0  # largest such distance: that from one side of the body to the other, two arms long
+STRETCHED = 80.0  # percentile of its predicted lengths that is a marker's own, hardly foreshortened
+HALF = 0.6  # half of the marker's length, and its blur
 MOVING = 0.3
 """Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
 what is nearer is taken in by the steps that follow with contours."""
 STEP = 1.0
 """Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear."""
-REST_REACH = 0.7
-"""Distance of such a rest from the find, in the marker's lengths."""
-PLACE_STD = 0.5
-"""Standard deviation of a find's features beyond a tracked region's, in pixels of the album."""
-SHUTTER = 0.5
-"""Share of the time between frames in which the shutter is open: between nothing and all of it."""
+REST_REACH = 0.7  # distance of such a rest from the find, in the marker's lengths
+PLACE_STD = 0.5  # standard deviation of a find's features beyond a tracked region's, in pixels of the album
+SHUTTER = 0.5  # share of the time between frames in which the shutter is open: between nothing and all of it
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
     """What is looked for, and before what: the colors of M markers, of the bare body and the background."""
 
-    contours: ContourEvidence
-    """The clip's pictures, and the look of performer and background."""
-    palettes: tuple[Palette | None, ...]
-    """(M,) None for a marker whose color was never seen well."""
-    background: SingleArray
-    """(rows, columns, 3) blue, green, red; NaN where unknown."""
-    deviation: SingleArray
-    """(rows, columns) its standard deviation."""
+    contours: ContourEvidence  # the clip's pictures, and the look of performer and background
+    palettes: tuple[Palette | None, ...]  # (M,) None for a marker whose color was never seen well
+    background: SingleArray  # (rows, columns, 3) blue, green, red; NaN where unknown
+    deviation: SingleArray  # (rows, columns) its standard deviation
 
     @classmethod
     def of(cls, problem: ClipProblem, contours: ContourEvidence) -> "Search":
@@ -120,13 +101,10 @@ class Search:
     ) -> Generator[float, None, tuple[ObservedRegions, IndexArray]]:
         """Look for what is missed; yields the fraction done.
 
-        Args:
-            problem: The clip's problem.
-            posture: Postures of the frames, by what was observed so far.
-            frame: (N,) ascending frames that are looked at; in others nothing changes.
-
-        Returns:
-            The observed regions with those found, and the frames of finds that are far from the prediction.
+        `posture`: postures of the frames, by what was observed so far; `frame`: (N,) ascending frames that
+        are looked at; in others nothing changes.
+        Returns the observed regions with those found, and the frames of finds that are far from the
+        prediction.
         """
         album, observed = self.contours.album, problem.observed[frame]
         expected = _Expected.of(problem, posture, frame)
@@ -177,12 +155,9 @@ def find_lost(
 ) -> Part[ClipProblem]:
     """The problem with lost markers observed where they are found; states follow those that are far off.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows.
-        states: The state of each by the markers so far; those with far finds are replaced.
-        contours: The look of performer and background, and the clip's pictures.
-        among: (F,) frames that are looked at; the others keep what is observed in them.
+    `states`: the state of each by the markers so far; those with far finds are replaced; `contours`: the look
+    of performer and background, and the clip's pictures; `among`: (F,) frames that are looked at; the others
+    keep what is observed in them.
     """
     if not spans or not among.any():
         return problem
@@ -212,20 +187,13 @@ def find_lost(
 class _Expected:
     """What is predicted of M markers in N frames, in pixels of the clip."""
 
-    frame: IndexArray
-    """(N,)."""
-    centroid: Array
-    """(N, M, 2)."""
-    area: Array
-    """(N, M)."""
-    seen: BoolArray
-    """(N, M) whether enough of it is predicted in sight to be compared."""
-    length: Array
-    """(M,) the marker's length where it is hardly foreshortened."""
-    reach: Array
-    """(N, M) how far around is searched."""
-    sweep: Array
-    """(N, M, 2) motion while the shutter is open."""
+    frame: IndexArray  # (N,)
+    centroid: Array  # (N, M, 2)
+    area: Array  # (N, M)
+    seen: BoolArray  # (N, M) whether enough of it is predicted in sight to be compared
+    length: Array  # (M,) the marker's length where it is hardly foreshortened
+    reach: Array  # (N, M) how far around is searched
+    sweep: Array  # (N, M, 2) motion while the shutter is open
 
     @classmethod
     def of(cls, problem: ClipProblem, posture: Posture, frame: IndexArray) -> "_Expected":
@@ -287,12 +255,9 @@ class _Expected:
     ) -> tuple[ObservedRegions, BoolArray]:
         """Finds (N, M), and which of them hold against the frames beside them and against markers alike.
 
-        Args:
-            observed: What is observed already, in the N frames.
-            moments: (N, M, 6) raw moments of the finds, NaN for none.
-            certainty: (N, M).
-            alike: Pairs of markers of one color.
-            factor: Pixels of the clip to one of the album.
+        `observed`: what is observed already, in the N frames; `moments`: (N, M, 6) raw moments of the finds,
+        NaN for none; `certainty`: (N, M); `alike`: pairs of markers of one color; `factor`: pixels of the
+        clip to one of the album.
         """
         centroid, second = centroid_and_second_moment(moments)
         area, known = moments[..., 0], np.isfinite(observed.centroid[..., 0])

@@ -21,28 +21,21 @@ from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from .terms.term import NormalEquations, Term, total_cost
 
-MISPLACED_WIDTHS = 1.5
-"""A marker farther off than this many of its limb's half-widths is misplaced ..."""
-MISPLACED_PX = 4.0
-"""... unless it is nearer than this [px]."""
+MISPLACED_WIDTHS = 1.5  # a marker farther off than this many of its limb's half-widths is misplaced ...
+MISPLACED_PX = 4.0  # ... unless it is nearer than this [px]
 MISPLACED_M = 0.12
 """A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
-SURE = 0.5
-"""Least confidence of a keypoint that is called misplaced."""
+SURE = 0.5  # least confidence of a keypoint that is called misplaced
 
 
 @dataclass(frozen=True, eq=False)
 class FrameResiduals:
     """Distances in the picture, and what is misplaced."""
 
-    marker_px: Array
-    """(M,) of the centroids [px]; NaN where a marker is hidden."""
-    keypoint_px: Array
-    """(N,) of the keypoints [px]; NaN where one is not seen."""
-    markers: tuple[int, ...]
-    """Indices of the markers that the posture does not explain."""
-    points: tuple[str, ...]
-    """Body points of the keypoints that it does not explain."""
+    marker_px: Array  # (M,) of the centroids [px]; NaN where a marker is hidden
+    keypoint_px: Array  # (N,) of the keypoints [px]; NaN where one is not seen
+    markers: tuple[int, ...]  # indices of the markers that the posture does not explain
+    points: tuple[str, ...]  # body points of the keypoints that it does not explain
 
 
 def frame_residuals(
@@ -54,12 +47,8 @@ def frame_residuals(
 ) -> FrameResiduals:
     """Compare a posture with what is seen of one frame.
 
-    Args:
-        evidence: The models of markers and keypoints.
-        observed: The regions of this one frame, (1, M).
-        points: The keypoints of this one frame, (1, N); None for none.
-        posture: A single posture.
-        frame: The frame's index in the clip.
+    `evidence`: the models of markers and keypoints; `observed`: the regions of this one frame, (1, M);
+    `points`: the keypoints of this one frame, (1, N); None for none.
     """
     model, index = evidence.model, np.array([frame])
     pose = model.body.pose(Posture.stack([posture]))
@@ -83,8 +72,7 @@ def frame_residuals(
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 """From a start that may be far off; image noise is widened by these factors."""
-LARGEST_STEP = 0.4
-"""Largest change of a posture's unknown in one step [m, rad]."""
+LARGEST_STEP = 0.4  # largest change of a posture's unknown in one step [m, rad]
 CONVERGED = 2e-3
 
 
@@ -93,13 +81,9 @@ def descend(
 ) -> tuple[ClipState, Array]:
     """Descend from every start of a state.
 
-    Args:
-        state: The starts; where each descent's prior lies elsewhere is a candidate, too.
-        terms: The frame's terms, for as many states of it.
-        temperatures: Factors of the image noise, one a step.
-
-    Returns:
-        The best state of each descent, never less probable than its prior's mean, and their costs (S,).
+    `state`: the starts; where each descent's prior lies elsewhere is a candidate, too; `terms`: the frame's
+    terms, for as many states of it; `temperatures`: factors of the image noise, one a step.
+    Returns the best state of each descent, never less probable than its prior's mean, and their costs (S,).
     """
     best = replace(state, variation=np.zeros_like(state.variation))
     least = total_cost(terms, best)
@@ -127,32 +111,24 @@ def descend(
 # --- One frame's posture from that frame's marker regions and keypoints
 
 
-CALIBRATED_FROM = 5
-"""Fewest keyframes that calibrate: their placements are better than average ones."""
-EXPECTED_RADIUS_M = 0.9
-"""Largest distance of a marker from where it is believed to be."""
-EXCHANGED_COST = 3.0
-"""Cost of taking a detector's left for right: it is wrong in one frame of twenty."""
+CALIBRATED_FROM = 5  # fewest keyframes that calibrate: their placements are better than average ones
+EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
+EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
 
 @dataclass(frozen=True, eq=False)
 class FrameFit:
     """The posture found for one frame."""
 
-    posture: Posture
-    """A single posture."""
+    posture: Posture  # a single posture
     residual_px: Array
     """(M,) distance between each marker's predicted and observed centroid [px]; NaN where it is hidden."""
-    before_px: Array
-    """(M,) the same for the believed posture."""
-    misplaced: tuple[int, ...]
-    """Indices of the markers that the posture does not explain."""
+    before_px: Array  # (M,) the same for the believed posture
+    misplaced: tuple[int, ...]  # indices of the markers that the posture does not explain
     keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
     """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
-    misplaced_points: tuple[str, ...] = ()
-    """Body points of the keypoints that the posture does not explain."""
-    cost: float = 0.0
-    """Negative logarithm of its probability, up to a constant of the frame."""
+    misplaced_points: tuple[str, ...] = ()  # body points of the keypoints that the posture does not explain
+    cost: float = 0.0  # negative logarithm of its probability, up to a constant of the frame
 
 
 def fit_frame(
@@ -165,14 +141,9 @@ def fit_frame(
 ) -> FrameFit:
     """The most probable posture of one frame.
 
-    Args:
-        evidence: The models of markers and keypoints, as calibrated on keyframes or of average proportions
-            (`uncalibrated`).
-        observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: Prior belief in the posture.
-        frame: The frame's index in the clip, which a moving camera's pose depends on.
-        noise: Noise of the regions' features.
-        points: The keypoints of this one frame, (1, N); None for none.
+    `evidence`: the models of markers and keypoints, as calibrated on keyframes or of average proportions
+    (`uncalibrated`); `observed`: the regions of this one frame, (1, M) of them; NaN where a marker is hidden;
+    `belief`: prior belief in the posture; `points`: the keypoints of this one frame, (1, N); None for none.
     """
     noise = noise or RegionNoise()
     fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
@@ -203,13 +174,9 @@ def calibrated(
 ) -> KeyframeEvidence:
     """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
-    Args:
-        model: The region model with average placements.
-        observed: Regions observed at the K keyframes.
-        keyframes: The K postures.
-        frame: (K,) their indices in the clip.
-        keypoints: Usual evidence of the N keypoints; None for none.
-        points: Those seen at the keyframes, (K, N).
+    `observed`: regions observed at the K keyframes; `keyframes`: the K postures; `frame`: (K,) their indices
+    in the clip; `keypoints`: usual evidence of the N keypoints; None for none; `points`: those seen at the
+    keyframes, (K, N).
     """
     if len(frame) < CALIBRATED_FROM:
         found = uncalibrated(model)

@@ -32,8 +32,7 @@ class Alternative:
 
     problem: ClipProblem
     state: ClipState
-    gain: float
-    """How much less it costs than the estimate, in negative log probability."""
+    gain: float  # how much less it costs than the estimate, in negative log probability
 
 
 def alternative(
@@ -43,13 +42,9 @@ def alternative(
 
     It yields now and then, so that a job can be canceled.
 
-    Args:
-        problem: The clip's problem.
-        state: Its solution in the stretch, cut from that of a window.
-        other: The problem about the other prior.
-
-    Returns:
-        None where the other prior is hopeless.
+    `state`: its solution in the stretch, cut from that of a window; `other`: the problem about the other
+    prior.
+    Returns None where the other prior is hopeless.
     """
     first, last = int(state.frame[0]), int(state.frame[-1]) + 1
     window = Window(first, last, first, last)
@@ -67,11 +62,8 @@ def alternative(
 def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipState | None:
     """The state of the frames `first` to `last - 1` and a margin around them; None where no window has all.
 
-    Args:
-        states: Of windows, in order, which may overlap.
-        first: A frame of the clip.
-        last: One past another.
-        margin: Frames more on either side, where the window has them.
+    `states`: of windows, in order, which may overlap; `first`: a frame of the clip; `last`: one past another;
+    `margin`: frames more on either side, where the window has them.
     """
     for state in states:
         begin, end = int(state.frame[0]), int(state.frame[-1]) + 1
@@ -83,19 +75,15 @@ def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipStat
 # --- Which way round the body turns between two keyframes
 
 
-LARGE_STEP_RAD = np.radians(60.0)
-"""A turn between keyframes from which on the other way round is tried."""
+LARGE_STEP_RAD = np.radians(60.0)  # a turn between keyframes from which on the other way round is tried
 FASTEST_RAD_PER_S = 3.0 * FULL_TURN
 """Nobody turns faster between two keyframes: dancers make two to three turns a second."""
-LONG_S = 0.3
-"""Gaps of this time and longer ..."""
+LONG_S = 0.3  # gaps of this time and longer ...
 DOUBTED_COST = 0.5
 """... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
 would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well."""
-MARGIN_S = 0.2
-"""How far beyond its keyframes, which hold it, a stretch is solved."""
-CHEAPER = 3.0
-"""Another turn is taken where it costs less by so much: it is twenty times as probable."""
+MARGIN_S = 0.2  # how far beyond its keyframes, which hold it, a stretch is solved
+CHEAPER = 3.0  # another turn is taken where it costs less by so much: it is twenty times as probable
 
 
 @dataclass(frozen=True)
@@ -103,19 +91,15 @@ class DoubtedTurn:
     """A gap between keyframes in which the body may turn another way."""
 
     gap: int
-    turns: tuple[int, ...]
-    """Whole turns that may have to be added to the short way round."""
-    strength: float
-    """By which the most doubtful gap comes first."""
+    turns: tuple[int, ...]  # whole turns that may have to be added to the short way round
+    strength: float  # by which the most doubtful gap comes first
 
 
 def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
-    Args:
-        problem: The clip's problem.
-        cost: (F,) what each marker seen costs on average in each frame, the short way round.
-        among: (K - 1,) the gaps that are asked for.
+    `cost`: (F,) what each marker seen costs on average in each frame, the short way round; `among`: (K - 1,)
+    the gaps that are asked for.
     """
     keyframes = problem.keyframes
     step = heading_steps_rad(problem.interpolated[keyframes])
@@ -141,16 +125,9 @@ def choose_turns(
 ) -> Part[tuple[ClipProblem, list[ClipState]]]:
     """Turn the other way round where that costs less.
 
-    Args:
-        problem: The clip's problem, which turns the short way in these gaps.
-        states: Windows of it, solved; they may overlap.
-        among: (K - 1,) the gaps that are asked for.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The problem with the turns chosen, and its windows, solved.
+    `problem`: the clip's problem, which turns the short way in these gaps; `states`: windows of it, solved;
+    they may overlap; `among`: (K - 1,) the gaps that are asked for.
+    Returns the problem with the turns chosen, and its windows, solved.
     """
     states = list(states)
     margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0

@@ -24,21 +24,14 @@ from .keypoint_evidence import KeypointEvidence
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions
 
-SAME = 1e-7
-"""Differences of a posture's unknowns [m, rad] from reading it from Blender once more."""
-SAME_PLACEMENT = 0.06
-"""Difference of placements in standard deviations of their prior: 0.3 mm on average."""
-SAME_LENS = 5e-4
-"""Difference of the focal length's logarithm."""
+SAME = 1e-7  # differences of a posture's unknowns [m, rad] from reading it from Blender once more
+SAME_PLACEMENT = 0.06  # difference of placements in standard deviations of their prior: 0.3 mm on average
+SAME_LENS = 5e-4  # difference of the focal length's logarithm
+# Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in frames.
 SAME_SIZE = 0.1
-"""Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in
-frames."""
-SAME_ANKLE_HEIGHT_M = 2e-3
-"""Difference of the lower ankle's usual height."""
-SAME_PLACE_M = 2e-3
-"""Difference of keypoints' places."""
-SAME_GAIN = 0.1
-"""Difference of the depth hints' gains, and of offsets in links' errors."""
+SAME_ANKLE_HEIGHT_M = 2e-3  # difference of the lower ankle's usual height
+SAME_PLACE_M = 2e-3  # difference of keypoints' places
+SAME_GAIN = 0.1  # difference of the depth hints' gains, and of offsets in links' errors
 SAME_FACTOR = 0.15
 """Difference of the accelerations' log covariance, in the direction of the largest difference."""
 
@@ -183,10 +176,8 @@ def _observations_differ(
 def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
     """Windows around changed frames (F,), in order; their kept frames do not overlap.
 
-    Args:
-        changed: The frames.
-        length: Largest number of frames kept of a window.
-        margin: Frames over which a change, or the end of a window, may have an effect.
+    `length`: largest number of frames kept of a window; `margin`: frames over which a change, or the end of a
+    window, may have an effect.
     """
     count = len(changed)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
@@ -214,9 +205,7 @@ def blend_weight(changed: BoolArray, margin: int) -> Array:
 
     Farther away from a change than the margin both are right.
 
-    Args:
-        changed: (F,) the changed frames.
-        margin: As for the windows.
+    `changed`: (F,) the changed frames; `margin`: as for the windows.
     """
     if not changed.any():
         return np.zeros(len(changed))

@@ -50,8 +50,7 @@ class WholeClipOptions:
     """Noise of the whole-clip estimate, and the length of its windows."""
 
     regions: RegionNoise = field(default_factory=RegionNoise)
-    window_s: float = 20.0
-    """Longer clips are solved in windows of about this length [s] ..."""
+    window_s: float = 20.0  # longer clips are solved in windows of about this length [s] ...
     margin_s: float = 3.0
     """... that reach this far into their neighbors: several times as far as any term remembers [s]."""
 
@@ -60,26 +59,19 @@ class WholeClipOptions:
 class Seen:
     """What was seen in the F frames of a clip."""
 
-    tracks: RegionTracks
-    """Regions of M markers."""
-    segments: tuple[str, ...]
-    """The segment each marker is bound to."""
-    keypoints: Keypoints | None = None
-    """The performer's; None for none."""
-    album: Album | None = None
-    """Pictures of all frames, in which contours are measured; None leaves them out."""
-    ignored: IgnoredPixels | None = None
-    """What of the pictures is never a marker; None for nothing."""
+    tracks: RegionTracks  # regions of M markers
+    segments: tuple[str, ...]  # the segment each marker is bound to
+    keypoints: Keypoints | None = None  # the performer's; None for none
+    album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
+    ignored: IgnoredPixels | None = None  # what of the pictures is never a marker; None for nothing
 
 
 @dataclass(frozen=True, eq=False)
 class Believed:
     """What is believed of the motion before the footage is asked."""
 
-    prior: Posture
-    """F postures that pass through the keyframes."""
-    keyframes: tuple[int, ...]
-    """Frames of the K keyframes, at least one."""
+    prior: Posture  # F postures that pass through the keyframes
+    keyframes: tuple[int, ...]  # frames of the K keyframes, at least one
     match_scale: Array | None = None
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
@@ -91,14 +83,11 @@ class Believed:
 class WholeClipResult:
     """The estimate of F frames; another estimate of the same clip may start from it."""
 
-    posture: Posture
-    """A batch of F postures."""
-    covariance: Array
-    """(F, D, D) of the posture's own tangent."""
+    posture: Posture  # a batch of F postures
+    covariance: Array  # (F, D, D) of the posture's own tangent
     residual_px: Array
     """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
-    problem: ClipProblem
-    """The problem it solves."""
+    problem: ClipProblem  # the problem it solves
     contours: ContourEvidence | None
     """The look of performer and background; None where no background can be trusted."""
     outlined: BoolArray | None = None
@@ -127,17 +116,8 @@ def estimate_whole_clip(
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        seen: The evidence.
-        believed: The keyframes, and the motion through them.
-        options: Noise and windows.
-        earlier: An estimate of the same pictures, reused for frames that have not changed since, within the
-            tolerances of `warm_start`.
-
-    Yields:
-        The fraction done, from 0 to 1, and a preview of a window's postures after every step.
+    `believed`: the keyframes, and the motion through them; `earlier`: an estimate of the same pictures,
+    reused for frames that have not changed since, within the tolerances of `warm_start`.
     """
     options = options or WholeClipOptions()
     tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, believed.prior
@@ -256,13 +236,9 @@ def _solve_windows(
 ) -> Part[WholeClipResult]:
     """Estimate the frames that windows keep.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows; without an earlier estimate they keep all of the clip's frames.
-        anew: (F,) the frames that are decided anew.
-        album: Pictures of all frames.
-        earlier: An estimate of all other frames.
-        contours: What was learned of them already; None to learn it once the markers are followed.
+    `spans`: the windows; without an earlier estimate they keep all of the clip's frames; `anew`: (F,) the
+    frames that are decided anew; `earlier`: an estimate of all other frames; `contours`: what was learned of
+    them already; None to learn it once the markers are followed.
     """
     total = max(sum(window.keep_last - window.keep_first for window in spans), 1)
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])

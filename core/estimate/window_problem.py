@@ -21,24 +21,19 @@ TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
 """Of a first descent: what is learned from its postures changes the problem before they have converged."""
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-SETTLING_TEMPERATURES = (1.0, 1.0)
-"""Of the steps from postures that were found with less knowledge."""
-CONVERGING_TEMPERATURES = tuple(1.0 for _ in range(9))
-"""Of the last steps where no contours follow."""
+SETTLING_TEMPERATURES = (1.0, 1.0)  # of the steps from postures that were found with less knowledge
+CONVERGING_TEMPERATURES = tuple(1.0 for _ in range(9))  # of the last steps where no contours follow
 CONTOUR_TEMPERATURES = (1.0, 1.0)
 """Of the steps with contours, once the markers have brought these within reach of their edges."""
-LARGEST_STEP = 0.5
-"""Largest change of a posture's unknown in one step [m, rad]."""
-CONVERGED = 3e-3
-"""Converged once no unknown of any posture changes by more in a step [m, rad]."""
+LARGEST_STEP = 0.5  # largest change of a posture's unknown in one step [m, rad]
+CONVERGED = 3e-3  # converged once no unknown of any posture changes by more in a step [m, rad]
 MOST_UNPACKED = 256 << 20
 """Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
 UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
 for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
 other side."""
-MEASURING_SHARE = 0.5
-"""Share of following the contours that measuring their edges is."""
+MEASURING_SHARE = 0.5  # share of following the contours that measuring their edges is
 
 
 @dataclass(eq=False)
@@ -69,11 +64,9 @@ class WindowProblem:
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
         """Gauss-Newton steps with the terms there are; it yields now and then.
 
-        Args:
-            temperatures: Factor of the image's variance in each step.
-
-        Returns:
-            (F,) negative logarithm of the probability of each frame where the steps end, up to a constant.
+        `temperatures`: factor of the image's variance in each step.
+        Returns (F,) negative logarithm of the probability of each frame where the steps end, up to a
+        constant.
         """
         for _ in self._gauss_newton(temperatures, 0.0, 1.0):
             yield
@@ -156,9 +149,7 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
 
     A keypoint has two of a marker's five rows and counts as much less.
 
-    Args:
-        clip: The clip's problem.
-        states: Of windows, in order; where two overlap, the later one counts.
+    `states`: of windows, in order; where two overlap, the later one counts.
     """
     cost = np.zeros(clip.frames)
     for state in states:

@@ -29,20 +29,13 @@ SHAPE = 4
 class ContourPrediction:
     """N contour samples in F frames."""
 
-    world: Array
-    """(F, N, 3) [m]."""
-    pixel: Array
-    """(F, N, 2) [px]."""
-    depth: Array
-    """(F, N) camera depth [m]."""
-    normal: Array
-    """(F, N, 2) unit outward normal in the image."""
-    slope: Array
-    """(F, N, 2, 3) d pixel / d world [px per m]."""
-    half_width: Array
-    """(F, N) half-width of the part at the sample [px]."""
-    shape_rate: Array
-    """(F, N, SHAPE) motion of a sample along the normal by each correction [px per m]."""
+    world: Array  # (F, N, 3) [m]
+    pixel: Array  # (F, N, 2) [px]
+    depth: Array  # (F, N) camera depth [m]
+    normal: Array  # (F, N, 2) unit outward normal in the image
+    slope: Array  # (F, N, 2, 3) d pixel / d world [px per m]
+    half_width: Array  # (F, N) half-width of the part at the sample [px]
+    shape_rate: Array  # (F, N, SHAPE) motion of a sample along the normal by each correction [px per m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,10 +130,8 @@ def _between(view: View, part: IndexArray, share: Array) -> Array:
 # --- Part segmentation of the body
 
 
-NO_PART = 255
-"""-1 as a signed byte."""
-SUBPIXEL_BITS = 4
-"""Fractional bits of the coordinates that outlines are drawn with."""
+NO_PART = 255  # -1 as a signed byte
+SUBPIXEL_BITS = 4  # fractional bits of the coordinates that outlines are drawn with
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
@@ -149,14 +140,9 @@ CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
 def part_map(parts: PartOutlines, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
     """Draw the body of one frame, the farthest part first.
 
-    Args:
-        parts: Outlines of the O parts in all frames.
-        frame: Index of the frame to draw.
-        size: Columns and rows of the map.
-        factor: Pixels of the camera to one of the map.
-
-    Returns:
-        (rows, columns) index of the visible part, -1 for none.
+    `parts`: outlines of the O parts in all frames; `frame`: index of the frame to draw; `size`: columns and
+    rows of the map; `factor`: pixels of the camera to one of the map.
+    Returns (rows, columns) index of the visible part, -1 for none.
     """
     labels = np.full((size[1], size[0]), NO_PART, dtype=np.uint8)
     outlines = _outlines(parts, frame) / factor - 0.5
@@ -183,8 +169,7 @@ def _outlines(parts: PartOutlines, frame: int) -> Array:
 # --- The axes of the body's parts in the image, with Jacobians
 
 
-FREE, UNKNOWN = -1, -2
-"""What lies beyond a part's end: the background, or any of several things."""
+FREE, UNKNOWN = -1, -2  # what lies beyond a part's end: the background, or any of several things
 BEYOND: dict[str, tuple[str | int, str | int]] = {
     "pelvis": (UNKNOWN, "chest"),
     "chest": ("pelvis", "head"),
@@ -195,8 +180,7 @@ BEYOND: dict[str, tuple[str | int, str | int]] = {
     "thigh": ("pelvis", "shin"),
     "shin": ("thigh", "foot"),
     "foot": ("shin", FREE),
-}
-"""By kind of segment: the part before its start, and the one after its end."""
+}  # by kind of segment: the part before its start, and the one after its end
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,11 +215,8 @@ class LimbAxes:
     def jacobian(self, pose: Pose, frame: IndexArray, world: Array, direction: Array) -> Array:
         """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad].
 
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) their indices in the clip.
-            world: (F, O, 3) the points [m].
-            direction: (F, O, 2) unit directions in the image.
+        `pose`: forward kinematics of F postures; `frame`: (F,) their indices in the clip; `world`: (F, O, 3)
+        the points [m]; `direction`: (F, O, 2) unit directions in the image.
         """
         slope = self.camera.project_jacobian(world, frame[:, None])
         force = (direction[..., None, :] @ slope)[..., 0, :]

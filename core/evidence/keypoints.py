@@ -27,14 +27,10 @@ from ..footage.camera import Camera
 class UsualPlace:
     """Where a point of the body usually is, and by how much a detector's point differs from it."""
 
-    joint: str
-    """The joint in whose frame it is fixed."""
-    placement: Placement
-    """Its place there, in shares of the actor's lengths."""
-    place_std_m: float
-    """Standard deviation, along each axis, of where detectors and performers have it [m]."""
-    error_std_m: float
-    """Usual error of a sure detection, along each axis of the image [m]."""
+    joint: str  # the joint in whose frame it is fixed
+    placement: Placement  # its place there, in shares of the actor's lengths
+    place_std_m: float  # standard deviation, along each axis, of where detectors and performers have it [m]
+    error_std_m: float  # usual error of a sure detection, along each axis of the image [m]
 
 
 JOINT_PLACE_STD_M, WIDE_PLACE_STD_M = 0.02, 0.035
@@ -109,8 +105,7 @@ def _at_an_extremity(joint: str, placement: Placement, turned_m: float) -> Usual
     return UsualPlace(joint, placement, JOINT_PLACE_STD_M, error)
 
 
-USUAL_PLACES: Mapping[str, UsualPlace] = _usual_places()
-"""By the name of the body point."""
+USUAL_PLACES: Mapping[str, UsualPlace] = _usual_places()  # by the name of the body point
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,10 +114,8 @@ class KeypointModel:
 
     body: Body
     camera: Camera
-    names: tuple[str, ...]
-    """(N,) the body points; the same one may occur several times."""
-    place: Array
-    """(N, 3) where each sits in its joint's frame [m]."""
+    names: tuple[str, ...]  # (N,) the body points; the same one may occur several times
+    place: Array  # (N, 3) where each sits in its joint's frame [m]
 
     @classmethod
     def usual(cls, body: Body, camera: Camera, names: tuple[str, ...]) -> "KeypointModel":
@@ -152,10 +145,8 @@ class KeypointModel:
     def pixels_jacobian(self, pose: Pose, frame: IndexArray, factor: Array | None = None) -> Array:
         """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad].
 
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) their indices in the clip.
-            factor: (F, N) factor on each point's rows, zero for one that does not count; None for 1.
+        `pose`: forward kinematics of F postures; `frame`: (F,) their indices in the clip; `factor`: (F, N)
+        factor on each point's rows, zero for one that does not count; None for 1.
         """
         rows, world = self._rows(pose, frame)
         if factor is not None:
@@ -183,8 +174,7 @@ class KeypointModel:
 # --- Links of the body whose depth a network guesses
 
 
-Ends = tuple[str, ...]
-"""Body points whose middle is the end of a link."""
+Ends = tuple[str, ...]  # body points whose middle is the end of a link
 HIPS: Ends = ("hip.L", "hip.R")
 SHOULDERS: Ends = ("shoulder.L", "shoulder.R")
 HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))
@@ -196,20 +186,15 @@ LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "a
 class DepthLinks:
     """L links between the N points of a model."""
 
-    names: tuple[str, ...]
-    """(L,) without the side, which links on both sides share."""
-    sources: tuple[str, ...]
-    """(L,) whose points they join."""
-    ends: Array
-    """(L, N) weights of the points: 1 in all for the far end, -1 for the near one."""
+    names: tuple[str, ...]  # (L,) without the side, which links on both sides share
+    sources: tuple[str, ...]  # (L,) whose points they join
+    ends: Array  # (L, N) weights of the points: 1 in all for the far end, -1 for the near one
 
     @classmethod
     def between(cls, names: Sequence[str], sources: Sequence[str]) -> "DepthLinks":
         """All links between points that one source has.
 
-        Args:
-            names: (N,) the body points.
-            sources: (N,) what saw each.
+        `names`: (N,) the body points; `sources`: (N,) what saw each.
         """
         found: list[tuple[str, str, Array]] = []
         for source in dict.fromkeys(sources):
@@ -267,22 +252,16 @@ def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
 # --- d(θ)
 
 
-DEPTH_VARIANCE_M2 = 0.1
-"""Variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²."""
+DEPTH_VARIANCE_M2 = 0.1  # variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
 DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
 
 
 def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
     """Depths of the principal points along the viewing axis (paper, eq. 9).
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        pose: The body's pose, of any batch shape.
-        frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
-
-    Returns:
-        (..., P) [m], positive in front of the camera.
+    `pose`: the body's pose, of any batch shape; `frame`: index of each pose's camera, integers of the batch
+    shape; a fixed camera ignores it.
+    Returns (..., P) [m], positive in front of the camera.
     """
     return camera.depth(body.points(pose), _per_point(frame))
 

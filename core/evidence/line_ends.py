@@ -24,8 +24,7 @@ from ..footage.segmentation.moments import axis_angle_difference, characteristic
 X, Y, ANGLE, LOG_RATIO = range(4)
 """Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
 
-JointPoint = tuple[int, Array]
-"""A joint and a point in its frame, (3,) [m]."""
+JointPoint = tuple[int, Array]  # a joint and a point in its frame, (3,) [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,12 +79,9 @@ class LineEnds:
         rectangle's sides (eq. 6 is the square of Figure 4's a/b) when seen from the side, and 1, a round
         region, when seen end on.
 
-        Args:
-            pose: The body's pose, of any batch shape.
-            frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
-
-        Returns:
-            (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
+        `pose`: the body's pose, of any batch shape; `frame`: index of each pose's camera, integers of the
+        batch shape; a fixed camera ignores it.
+        Returns (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
         """
         pixels, depth = self.camera.project(self._world_ends(pose), _per_end(frame))  # (..., M, 2, 2)
         line = pixels[..., 1, :] - pixels[..., 0, :]

@@ -36,14 +36,10 @@ class View:
 
     start: Array
     end: Array
-    toward: Array
-    """Viewing direction, away from the camera."""
-    across: Array
-    """Unit direction across both the view and the axis."""
-    along: Array
-    """Unit direction of the axis, across the view."""
-    apparent_length: Array
-    """Length of the axis across the view [m]."""
+    toward: Array  # viewing direction, away from the camera
+    across: Array  # unit direction across both the view and the axis
+    along: Array  # unit direction of the axis, across the view
+    apparent_length: Array  # length of the axis across the view [m]
     lateral: Array
     sagittal: Array
 
@@ -56,12 +52,9 @@ class View:
 class Silhouette:
     """Sample points of the pieces' silhouettes."""
 
-    world: Array
-    """(F, Q, S, 3) [m]."""
-    area: Array
-    """(F, Q, S) share of the silhouette [m², across the view]."""
-    area_rate: Array
-    """(F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening."""
+    world: Array  # (F, Q, S, 3) [m]
+    area: Array  # (F, Q, S) share of the silhouette [m², across the view]
+    area_rate: Array  # (F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening
 
 
 def _dot(a: Array, b: Array) -> Array:
@@ -156,10 +149,8 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
 
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
-HIDDEN_DEPTH_M = 0.01
-"""Least depth difference of an occluding part: neighbors share their joint's depth."""
-NEGLIGIBLE = 8.0
-"""Softness widths beyond which a part's effect vanishes."""
+HIDDEN_DEPTH_M = 0.01  # least depth difference of an occluding part: neighbors share their joint's depth
+NEGLIGIBLE = 8.0  # softness widths beyond which a part's effect vanishes
 BLOCK = 256
 """Pairs of a piece and a part that are evaluated at a time, so that their samples fit in the cache."""
 
@@ -168,15 +159,11 @@ BLOCK = 256
 class PartOutlines:
     """Image outlines of the O parts that may occlude others, per frame; the last axis runs over both ends."""
 
-    start: Array
-    """(F, O, 2) projection of the axis' first end [px]."""
+    start: Array  # (F, O, 2) projection of the axis' first end [px]
     end: Array
-    depth: Array
-    """(F, O, 2) camera depth of both ends [m]."""
-    half_width: Array
-    """(F, O, 2) half-width of the outline at both ends [px]."""
-    overshoot: Array
-    """(F, O, 2) extent of the outline past both ends, along the axis [px]."""
+    depth: Array  # (F, O, 2) camera depth of both ends [m]
+    half_width: Array  # (F, O, 2) half-width of the outline at both ends [px]
+    overshoot: Array  # (F, O, 2) extent of the outline past both ends, along the axis [px]
 
     def pick(self, frame: IndexArray, part: IndexArray) -> "PartOutlines":
         """Select R pairs of a frame and a part; the arrays become (R, 2)."""
@@ -206,14 +193,10 @@ def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArr
 def visible_share(pixels: Array, depth: Array, parts: PartOutlines, own: BoolArray) -> Array:
     """Visible share of each sample, 0 to 1.
 
-    Args:
-        pixels: (F, Q, S, 2) image points of the samples of Q pieces [px].
-        depth: (F, Q, S) camera depths [m].
-        parts: The O parts of the body.
-        own: (Q, O) whether a part belongs to the piece's own marker and cannot occlude it.
-
-    Returns:
-        (F, Q, S).
+    `pixels`: (F, Q, S, 2) image points of the samples of Q pieces [px]; `depth`: (F, Q, S) camera depths [m];
+    `parts`: the O parts of the body; `own`: (Q, O) whether a part belongs to the piece's own marker and
+    cannot occlude it.
+    Returns (F, Q, S).
     """
     seen = np.ones(depth.shape)
     frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)

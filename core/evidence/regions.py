@@ -26,19 +26,15 @@ SMALLEST_SHARE = 1e-6
 class EdgeCut(NamedTuple):
     """What the picture's edge leaves of samples (...)."""
 
-    share: Array
-    """(...) share within the picture, 0 to 1."""
-    slope: Array
-    """(..., 2) d log share / d pixel [1/px]; zero where all or nothing is left."""
+    share: Array  # (...) share within the picture, 0 to 1
+    slope: Array  # (..., 2) d log share / d pixel [1/px]; zero where all or nothing is left
 
 
 def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
     """(F, Q) which pieces the edge of a picture (columns, rows) cuts, or leaves out.
 
-    Args:
-        pixels: (F, Q, S, 2) the pieces' samples.
-        area: (F, Q, S) of the cells they stand for [px²].
-        size: Columns and rows.
+    `pixels`: (F, Q, S, 2) the pieces' samples; `area`: (F, Q, S) of the cells they stand for [px²]; `size`:
+    columns and rows.
     """
     reach = 0.5 * np.sqrt(np.maximum(area.max(axis=-1), SMALLEST_CELL_PX**2))
     outside = np.zeros(area.shape[:2], dtype=np.bool_)
@@ -51,10 +47,7 @@ def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
 def edge_cut(pixels: Array, area: Array, size: tuple[int, int]) -> EdgeCut:
     """What the edge of a picture leaves of square cells.
 
-    Args:
-        pixels: (..., 2) their centers [px].
-        area: (...) [px²].
-        size: Columns and rows of the picture.
+    `pixels`: (..., 2) their centers [px]; `area`: (...) [px²]; `size`: columns and rows of the picture.
     """
     side = np.sqrt(np.maximum(area, SMALLEST_CELL_PX**2))
     share, slope = np.ones(area.shape), np.zeros(pixels.shape)
@@ -71,8 +64,7 @@ def edge_cut(pixels: Array, area: Array, size: tuple[int, int]) -> EdgeCut:
 # --- Measurement model of the markers' image regions, with Jacobians
 
 
-MOMENTS = ((0, 0), (0, 1), (1, 1))
-"""Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
+MOMENTS = ((0, 0), (0, 1), (1, 1))  # entries of a second-moment matrix in the order of rows: xx, xy, yy
 USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "trunk": {"first": 0.07, "last": 1.12},
@@ -91,16 +83,11 @@ class MarkerPlacement:
     """Position of a marker on its segment and its thickness: the calibrated parameters."""
 
     segment: str
-    first: float = 0.05
-    """Share of the segment's length at which the color begins."""
-    last: float = 0.95
-    """Share at which it ends."""
-    lateral_m: float = 0.0
-    """Displacement along the segment's lateral direction [m]."""
-    sagittal_m: float = 0.0
-    """Displacement along its sagittal direction [m]."""
-    girth: float = 1.0
-    """Thickness relative to the average body's."""
+    first: float = 0.05  # share of the segment's length at which the color begins
+    last: float = 0.95  # share at which it ends
+    lateral_m: float = 0.0  # displacement along the segment's lateral direction [m]
+    sagittal_m: float = 0.0  # displacement along its sagittal direction [m]
+    girth: float = 1.0  # thickness relative to the average body's
 
     @classmethod
     def usual(cls, segment: str) -> "MarkerPlacement":
@@ -126,18 +113,12 @@ class MarkerPlacement:
 class RegionPrediction:
     """Predicted regions of M markers in F frames."""
 
-    centroid: Array
-    """(F, M, 2) [px]."""
-    second_moment: Array
-    """(F, M, 2, 2) [px²]."""
-    area: Array
-    """(F, M) visible area [px²]."""
-    visible: Array
-    """(F, M) visible share of the silhouette."""
-    centroid_jacobian: Array | None = None
-    """(F, M, 2, D) [px per m or rad]."""
-    moment_jacobian: Array | None = None
-    """(F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]."""
+    centroid: Array  # (F, M, 2) [px]
+    second_moment: Array  # (F, M, 2, 2) [px²]
+    area: Array  # (F, M) visible area [px²]
+    visible: Array  # (F, M) visible share of the silhouette
+    centroid_jacobian: Array | None = None  # (F, M, 2, D) [px per m or rad]
+    moment_jacobian: Array | None = None  # (F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]
 
     @classmethod
     def unmarked(cls, frames: int, dofs: int | None) -> "RegionPrediction":
@@ -206,13 +187,10 @@ class RegionModel:
     def evaluate(self, pose: Pose, frame: IndexArray, jacobian: bool = False) -> RegionPrediction:
         """Predict every marker's region.
 
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) index of each posture's frame in the clip, for a moving camera.
-            jacobian: Whether to compute Jacobians of centroid and moments by the posture's tangent as well.
-
-        Returns:
-            The prediction; wholly hidden markers keep the moments of their whole silhouette.
+        `pose`: forward kinematics of F postures; `frame`: (F,) index of each posture's frame in the clip, for
+        a moving camera; `jacobian`: whether to compute Jacobians of centroid and moments by the posture's
+        tangent as well.
+        Returns the prediction; wholly hidden markers keep the moments of their whole silhouette.
         """
         if not self.placements:
             dofs = pose.posture.skeleton.dof_count if jacobian else None

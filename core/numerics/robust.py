@@ -16,10 +16,8 @@ Floats = TypeVar("Floats", Array, SingleArray)
 def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:
     """Weight of groups of rows whose t gets `degrees` for each row; 1 at zero.
 
-    Args:
-        squared: Sum of squared whitened residuals of each group.
-        degrees: Degrees of freedom; fewer forgive more.
-        count: Rows in each group.
+    `squared`: sum of squared whitened residuals of each group; `degrees`: degrees of freedom; fewer forgive
+    more; `count`: rows in each group.
     """
     return np.asarray(degrees / (degrees + squared / np.maximum(count, 1)))
 
@@ -49,8 +47,7 @@ Equations = tuple[Array, Array, Array]
 FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
 REWARD, PENALTY = 0.2, 8.0
 """Factors on the damping after a step that lowers the cost, and after one that does not."""
-RIDGE = 1e-9
-"""Added to the diagonal, so that what nothing determines stays."""
+RIDGE = 1e-9  # added to the diagonal, so that what nothing determines stays
 
 
 def levenberg_marquardt(
@@ -63,13 +60,10 @@ def levenberg_marquardt(
 ) -> State:
     """Lower the cost of N problems together.
 
-    Args:
-        equations: Cost, normal matrix and gradient of each at a state.
-        start: The state to start from.
-        plus: A state changed by steps (N, D).
-        choose: Of each problem the first state where a mask (N,) holds, else the second.
-        iterations: Steps at most.
-        converged: Share of its cost below which a step's gain ends a problem.
+    `equations`: cost, normal matrix and gradient of each at a state; `start`: the state to start from;
+    `plus`: a state changed by steps (N, D); `choose`: of each problem the first state where a mask (N,)
+    holds, else the second; `iterations`: steps at most; `converged`: share of its cost below which a step's
+    gain ends a problem.
     """
     state = start
     cost, normal, gradient = equations(state)

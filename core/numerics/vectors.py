@@ -5,8 +5,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, IndexArray
 
-SHORTEST = 1e-12
-"""Length below which a vector has no direction."""
+SHORTEST = 1e-12  # length below which a vector has no direction
 
 
 def unit(vectors: Array) -> Array:

@@ -16,26 +16,18 @@ from ..body.skeleton import Skeleton
 from ..evidence.keypoints import DEPTH_STD_M
 from .keyframes import Keyframe, interpolate
 
-REFERENCE_STEP_S = 1.0 / 30.0
-"""Accelerations are stated as second differences at this step."""
-NATURAL_SHARE = 0.2
-"""Factor on every degree of freedom's natural deviation (`Skeleton.deviations`)."""
+REFERENCE_STEP_S = 1.0 / 30.0  # accelerations are stated as second differences at this step
+NATURAL_SHARE = 0.2  # factor on every degree of freedom's natural deviation (`Skeleton.deviations`)
+# Factors on the steps between keyframes over their squared duration, with and without correlations. A swing
+# there and back within a gap, a half sine, accelerates by nearly ten times its size over that square.
 CORRELATED_SHARE, INDEPENDENT_SHARE = 6.0, 2.5
-"""Factors on the steps between keyframes over their squared duration, with and without correlations.
-
-A swing there and back within a gap, a half sine, accelerates by nearly ten times its size over that square.
-"""
 
 
 def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
     """Cholesky factor L (D, D) of the covariance L Lᵀ of the deviation's second differences.
 
-    Args:
-        keyframes: K postures in order of time.
-        time_s: (K,) their times.
-
-    Returns:
-        Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
+    `keyframes`: K postures in order of time; `time_s`: (K,) their times.
+    Returns lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
     """
     skeleton = keyframes.skeleton
     covariance = np.diag((NATURAL_SHARE * skeleton.deviations) ** 2)
@@ -68,10 +60,8 @@ UNRELATED_STD = {
     "knee": 0.60,
     "shin": 0.05,
 }
-CORRELATION_TIME_S = 0.3
-"""Time after which postures differ by two thirds of that."""
-SPEED_M_PER_S = 0.7
-"""A walking performer's hips also move away steadily, by this speed."""
+CORRELATION_TIME_S = 0.3  # time after which postures differ by two thirds of that
+SPEED_M_PER_S = 0.7  # a walking performer's hips also move away steadily, by this speed
 VELOCITY_SHARE = 0.5
 """Share of the velocity between the last two keyframes with which the hips are extrapolated."""
 ROUGH_POSE_SHARE = 0.5
@@ -82,14 +72,10 @@ ROUGH_POSE_SHARE = 0.5
 class FramePrior:
     """A Gaussian prior of a posture, with starting points for the search."""
 
-    posture: Posture
-    """A single posture: the mean."""
-    std: Array
-    """(D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]."""
-    starts: Posture
-    """A batch of postures to start the search from, the first of them `posture`."""
-    depth_std_m: float = DEPTH_STD_M
-    """Standard deviation of each point's depth [m]."""
+    posture: Posture  # a single posture: the mean
+    std: Array  # (D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]
+    starts: Posture  # a batch of postures to start the search from, the first of them `posture`
+    depth_std_m: float = DEPTH_STD_M  # standard deviation of each point's depth [m]
     grounded: Posture | None = None
     """Postures of which at least one stands on the ground; None where the ground is unknown."""
 
@@ -105,10 +91,8 @@ def difference_std(skeleton: Skeleton, time_s: float) -> Array:
 def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> FramePrior:
     """Prior of a frame from the nearest keyframes before and after it.
 
-    Args:
-        keyframes: At least one, in order of frame; one at the frame itself counts only if there is no other.
-        index: Index of the frame in the clip.
-        fps: Frames per second.
+    `keyframes`: at least one, in order of frame; one at the frame itself counts only if there is no other;
+    `index`: index of the frame in the clip.
     """
     others = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
     before = [keyframe for keyframe in others if keyframe.index <= index][-1:]

@@ -27,12 +27,9 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
     frames adds nothing.
 
-    Args:
-        tracks: F frames of M regions; uneven time stamps are respected.
-        smoothing_frames: Standard deviation of a Gaussian filter over the sum [frames]; 0 for none.
-
-    Returns:
-        (F,) [px per frame of the clip's median duration].
+    `tracks`: F frames of M regions; uneven time stamps are respected; `smoothing_frames`: standard deviation
+    of a Gaussian filter over the sum [frames]; 0 for none.
+    Returns (F,) [px per frame of the clip's median duration].
     """
     time = frame_times(tracks.time_s)
     total = np.zeros(tracks.frame_count)
@@ -75,8 +72,7 @@ FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes
 class EvidenceSpeed:
     """V_sum, and what it was made from."""
 
-    values: Array
-    """(F,) [px per frame]."""
+    values: Array  # (F,) [px per frame]
     note: str = ""
     """What else than markers and keypoints had to be used, for people; empty where one of them is seen."""
 
@@ -86,14 +82,8 @@ def evidence_speed(
 ) -> Part[EvidenceSpeed]:
     """The summed speed of the performer's parts in the image.
 
-    Args:
-        tracks: The markers' regions, of F frames.
-        segments: The segment each marker is bound to.
-        keypoints: The performer's keypoints.
-        album: Pictures of the clip; None where there are none.
-
-    Yields:
-        The fraction done.
+    `tracks`: the markers' regions, of F frames; `segments`: the segment each marker is bound to; `keypoints`:
+    the performer's keypoints; `album`: pictures of the clip; None where there are none.
     """
     if keypoints.seen.any():
         return EvidenceSpeed(_speed_of_parts(tracks, segments, keypoints))
@@ -146,8 +136,7 @@ KEYFRAMES_PER_100_FRAMES = 10.0
 SNAP_SHARE = 0.35
 """Largest shift of a keyframe from its evenly spaced frame, in even gaps; below 0.5, so that none overtakes
 another."""
-GAP_SLACK = 1.5
-"""Default of the largest gap, in even gaps."""
+GAP_SLACK = 1.5  # default of the largest gap, in even gaps
 
 
 def propose_keyframes(
@@ -157,13 +146,10 @@ def propose_keyframes(
 
     The first and the last frame are always included.
 
-    Args:
-        speed: (F,) V_sum; a NaN is never chosen as a minimum.
-        count: Number of keyframes; 10 per 100 frames where None. `largest_gap` may require more.
-        largest_gap: Most frames from one keyframe to the next; 1.5 even gaps where None.
-
-    Returns:
-        (K,) increasing frame indices.
+    `speed`: (F,) V_sum; a NaN is never chosen as a minimum; `count`: number of keyframes; 10 per 100 frames
+    where None. `largest_gap` may require more; `largest_gap`: most frames from one keyframe to the next; 1.5
+    even gaps where None.
+    Returns (K,) increasing frame indices.
 
     Raises:
         InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.

@@ -13,12 +13,10 @@ from ..files.kinds import Number, Text
 from ..files.records import Record
 from .texts import COMPOSED
 
-DOUBTFUL = 0.5
-"""Confidence below which a found keyframe is doubtful: more likely wrong than about right."""
+DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: more likely wrong than about right
 
 
-LONGEST_NAME = 200
-"""Characters of a library's or a posture's name."""
+LONGEST_NAME = 200  # characters of a library's or a posture's name
 Name = Annotated[str, Text(LONGEST_NAME, f"a name of at most {LONGEST_NAME} characters")]
 
 
@@ -28,12 +26,9 @@ class Matched(Record):
 
     library: Name
     """Identifier of the library that was matched, or `COMPOSED` where parts of several are put together."""
-    posture: Name
-    """Name of the nearest posture of the library."""
-    mirrored: bool
-    """Whether left and right are exchanged."""
-    confidence: Annotated[float, Number(0.0, 1.0)]
-    """Probability that it is about right, 0 to 1."""
+    posture: Name  # name of the nearest posture of the library
+    mirrored: bool  # whether left and right are exchanged
+    confidence: Annotated[float, Number(0.0, 1.0)]  # probability that it is about right, 0 to 1
 
     @property
     def is_doubtful(self) -> bool:
@@ -50,14 +45,11 @@ class Matched(Record):
 class Keyframe:
     """A frame with a given posture."""
 
-    index: int
-    """Frame index in the clip, 0 for the first decoded frame."""
-    posture: Posture
-    """A single posture."""
+    index: int  # frame index in the clip, 0 for the first decoded frame
+    posture: Posture  # a single posture
     residual_m: float = 0.0
     """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
-    matched: Matched | None = None
-    """What was found; None for a keyframe that a person has posed or corrected."""
+    matched: Matched | None = None  # what was found; None for a keyframe that a person has posed or corrected
 
 
 # --- Turns between keyframes the other way round
@@ -78,10 +70,9 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     The heading is the monotone cubic (Fritsch & Carlson 1980) through the keyframes' headings unwound with
     these turns instead of without; leans and all else stay those of the interpolation, seen from the body.
 
-    Args:
-        prior: F postures that pass through the keyframes and turn the short way round.
-        keyframes: (K,) their frames, increasing.
-        turns: (K - 1,) turns added in each gap, counterclockwise seen from above; 0 for none.
+    `prior`: F postures that pass through the keyframes and turn the short way round; `keyframes`: (K,) their
+    frames, increasing; `turns`: (K - 1,) turns added in each gap, counterclockwise seen from above; 0 for
+    none.
     """
     if not turns.any():
         return prior
@@ -111,12 +102,8 @@ def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
     """The a priori posture of every frame.
 
-    Args:
-        keyframes: At least two, in order of frame.
-        frame_count: Frames F of the clip.
-
-    Returns:
-        A batch of F postures that passes through every keyframe.
+    `keyframes`: at least two, in order of frame; `frame_count`: frames F of the clip.
+    Returns a batch of F postures that passes through every keyframe.
     """
     return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
@@ -135,14 +122,10 @@ def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
 # --- Performer offset
 
 
-CONSTANT_SHARE = 0.5
-"""Share of the offset's variance that is constant over the clip."""
-CORRELATION_TIME_S = 0.5
-"""Correlation time of the rest."""
-POSED_VARIANCE = 0.1
-"""Variance of a person's own error, relative to the offset's."""
-LEAST_VARIANCE = 0.05
-"""Share of the offset's variance that remains beside any posed keyframe."""
+CONSTANT_SHARE = 0.5  # share of the offset's variance that is constant over the clip
+CORRELATION_TIME_S = 0.5  # correlation time of the rest
+POSED_VARIANCE = 0.1  # variance of a person's own error, relative to the offset's
+LEAST_VARIANCE = 0.05  # share of the offset's variance that remains beside any posed keyframe
 BEYOND_S = 0.1
 """Time outside the matched keyframes over which the nearest of them ceases to stand for the library."""
 
@@ -150,13 +133,9 @@ BEYOND_S = 0.1
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
     """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
 
-    Args:
-        keyframes: Posed and matched ones, in order of frame.
-        fps: Frames per second.
-
-    Returns:
-        The keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1 where
-        nothing was posed, less near posed keyframes, and 0 at these.
+    `keyframes`: posed and matched ones, in order of frame.
+    Returns the keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1
+    where nothing was posed, less near posed keyframes, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
@@ -181,12 +160,8 @@ def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tupl
 
     Rasmussen & Williams (2006), eq. 5.12.
 
-    Args:
-        keyframes: Posed and matched ones, at least one of either.
-        fps: Frames per second.
-
-    Returns:
-        (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
+    `keyframes`: posed and matched ones, at least one of either.
+    Returns (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]

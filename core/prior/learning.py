@@ -12,18 +12,12 @@ from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
-FEWEST, MOST = 10, 40
-"""Default bounds of the number of postures."""
-DISTINCT_M = 0.06
-"""Postures are added until every frame is this near to one of them in shape."""
-TIME_SHARE = 0.5
-"""Weight of even coverage in time relative to distance in shape."""
-STILL_M = 0.01
-"""Largest change in shape of a motion that counts as standing still."""
-SLOW_M_S = 0.15
-"""Vertical speed of the lower ankle below which its foot rests on the floor."""
-LIFTED_M = 0.08
-"""Height of a foot above the other from which it counts as lifted."""
+FEWEST, MOST = 10, 40  # default bounds of the number of postures
+DISTINCT_M = 0.06  # postures are added until every frame is this near to one of them in shape
+TIME_SHARE = 0.5  # weight of even coverage in time relative to distance in shape
+STILL_M = 0.01  # largest change in shape of a motion that counts as standing still
+SLOW_M_S = 0.15  # vertical speed of the lower ankle below which its foot rests on the floor
+LIFTED_M = 0.08  # height of a foot above the other from which it counts as lifted
 DECIMALS_S = 3
 
 
@@ -33,10 +27,8 @@ class LibraryMetadata:
 
     title: str
     author: str
-    license: str = "LicenseRef-Proprietary"
-    """SPDX expression; by default all rights are reserved."""
-    identifier: str = ""
-    """By default derived from the title."""
+    license: str = "LicenseRef-Proprietary"  # SPDX expression; by default all rights are reserved
+    identifier: str = ""  # by default derived from the title
 
 
 def learn_library(
@@ -46,12 +38,9 @@ def learn_library(
 
     A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
 
-    Args:
-        body: The performer; the library keeps the proportions.
-        posture: A batch of F postures.
-        time_s: (F,) rising times [s].
-        about: Title, author and license.
-        count: Number of postures; by default as many as are distinct, from 10 to 40.
+    `body`: the performer; the library keeps the proportions; `posture`: a batch of F postures; `time_s`: (F,)
+    rising times [s]; `about`: title, author and license; `count`: number of postures; by default as many as
+    are distinct, from 10 to 40.
 
     Raises:
         InputError: The motion has fewer frames than the postures asked for, or stands still.
@@ -120,15 +109,10 @@ def spread_frames(
 ) -> IndexArray:
     """Frames spread over shape and time by farthest point sampling.
 
-    Args:
-        shape: (F, N) the body's shape in each frame [m].
-        time_s: (F,) times from 0, rising [s].
-        duration_s: Duration of the motion [s].
-        count: Number of frames; by default as many as are distinct, from 10 to 40.
-        cyclic: Whether the first frame follows the last; else both are chosen.
-
-    Returns:
-        (K,) frames, rising.
+    `shape`: (F, N) the body's shape in each frame [m]; `time_s`: (F,) times from 0, rising [s]; `duration_s`:
+    duration of the motion [s]; `count`: number of frames; by default as many as are distinct, from 10 to 40;
+    `cyclic`: whether the first frame follows the last; else both are chosen.
+    Returns (K,) frames, rising.
     """
     wanted = min(len(shape), MOST if count is None else count)
     pace = _typical_change(shape, time_s, duration_s)  # [m] in a tenth of the motion

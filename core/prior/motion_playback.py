@@ -45,36 +45,28 @@ def ankle_heights(body: Body, posture: Posture) -> Array:
 # --- Periodic motions
 
 
-FEWEST_CYCLES = 1.9
-"""Cycles a motion must contain: two, but for what is cut off at the clip's ends."""
+FEWEST_CYCLES = 1.9  # cycles a motion must contain: two, but for what is cut off at the clip's ends
 SHORTEST_S = 0.25
-MOST_UNLIKE = 0.2
-"""Largest normalized difference of shapes one period apart."""
+MOST_UNLIKE = 0.2  # largest normalized difference of shapes one period apart
 AS_GOOD = 0.05
 """Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples."""
-STILL_M = 0.02
-"""Variation of the body's shape below which it counts as motionless."""
+STILL_M = 0.02  # variation of the body's shape below which it counts as motionless
 
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
     """One cycle of a motion."""
 
-    posture: Posture
-    """A batch of N postures at equal intervals, the first at the cycle's beginning."""
-    time_s: Array
-    """(N,) from the cycle's beginning [s]."""
+    posture: Posture  # a batch of N postures at equal intervals, the first at the cycle's beginning
+    time_s: Array  # (N,) from the cycle's beginning [s]
     duration_s: float
-    travel: Travel
-    """Displacement of a cycle, and its turn about the world's vertical axis."""
+    travel: Travel  # displacement of a cycle, and its turn about the world's vertical axis
 
 
 def find_period_s(shape: Array, time_s: Array) -> float | None:
     """Period of a motion; None if it is not periodic, or shows fewer than two cycles.
 
-    Args:
-        shape: (F, N) the body's shape in each frame [m].
-        time_s: (F,) rising times [s].
+    `shape`: (F, N) the body's shape in each frame [m]; `time_s`: (F,) rising times [s].
     """
     count = len(shape)
     if count < 8:
@@ -114,11 +106,8 @@ def _unlikeness(rows: Array) -> Array:
 def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) -> Cycle:
     """The mean of a motion's whole cycles, closed so that its end meets the next cycle's beginning.
 
-    Args:
-        body: The performer.
-        posture: A batch of F postures.
-        time_s: (F,) rising times [s].
-        period_s: The period, from `find_period_s`.
+    `body`: the performer; `posture`: a batch of F postures; `time_s`: (F,) rising times [s]; `period_s`: the
+    period, from `find_period_s`.
     """
     shape = shape_vectors(body, posture)
     begin_s, cycles = _whole_cycles(shape, time_s, period_s)
@@ -170,8 +159,7 @@ def _mean(batches: list[Posture]) -> Posture:
 # --- Playback of a library's motion
 
 
-NEIGHBORS = 2
-"""Postures before and after a cycle that the spline within it depends on."""
+NEIGHBORS = 2  # postures before and after a cycle that the spline within it depends on
 
 
 def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -> Posture:
@@ -181,14 +169,9 @@ def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: A
     its first posture before its beginning and its last one after its end. Between two steps the lowest sole
     stays between its heights in both of them: a foot on the floor stays there.
 
-    Args:
-        library: The library.
-        motion: One of its motions.
-        body: The body that the postures are fitted to.
-        time_s: (T,) times from the motion's beginning [s].
-
-    Returns:
-        A batch of T postures.
+    `motion`: one of its motions; `body`: the body that the postures are fitted to; `time_s`: (T,) times from
+    the motion's beginning [s].
+    Returns a batch of T postures.
     """
     posed = Posture.stack([library.by_name[step.posture].posture for step in motion.steps])
     knots = np.array([step.time_s for step in motion.steps])
@@ -212,10 +195,8 @@ def after_cycles(posture: Posture, motion: LibraryMotion, cycles: Array) -> Post
 
     A cycle turns a point about the world's origin by the travel's heading, then shifts it by x and y.
 
-    Args:
-        posture: A batch of N postures.
-        motion: A cyclic motion.
-        cycles: (N,) whole numbers, negative for earlier cycles.
+    `posture`: a batch of N postures; `motion`: a cyclic motion; `cycles`: (N,) whole numbers, negative for
+    earlier cycles.
     """
     *way, heading = motion.travel
     angle = np.asarray(cycles) * heading

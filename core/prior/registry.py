@@ -21,10 +21,8 @@ class RegisteredLibrary:
     """A library file in a registered folder."""
 
     path: Path
-    library: Library | None
-    """The library; None if the file is invalid."""
-    problem: str = ""
-    """The sentence of the error that makes it invalid."""
+    library: Library | None  # the library; None if the file is invalid
+    problem: str = ""  # the sentence of the error that makes it invalid
 
     @property
     def identifier(self) -> str:

@@ -12,8 +12,7 @@ from ..files.control_characters import is_control_character
 from ..files.json_file import shown
 from ..files.kinds import Items, Text
 
-EVERY_LIBRARY = "auto"
-"""Stands for all libraries where one is named; hence no valid identifier."""
+EVERY_LIBRARY = "auto"  # stands for all libraries where one is named; hence no valid identifier
 COMPOSED = "composed"
 """Stands for the library of a posture put together from parts of several; hence no valid identifier."""
 
@@ -22,8 +21,7 @@ COMPOSED = "composed"
 
 
 LONGEST_IDENTIFIER = 64
-LONGEST_NAME = 60
-"""Characters of a name at most; the name of a Blender data-block holds 63 bytes."""
+LONGEST_NAME = 60  # characters of a name at most; the name of a Blender data-block holds 63 bytes
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
     "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "
@@ -31,8 +29,7 @@ IDENTIFIER_RULE = (
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
-_FILE = re.compile(r".*\.json", re.ASCII)
-"""A name like this is a path where a library is named."""
+_FILE = re.compile(r".*\.json", re.ASCII)  # a name like this is a path where a library is named
 
 
 def is_identifier(text: object) -> bool:

@@ -16,8 +16,7 @@ from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, unique_name
 
-SAME_M = 1e-6
-"""Lengths that differ by less are equal; files keep fewer digits than memory does."""
+SAME_M = 1e-6  # lengths that differ by less are equal; files keep fewer digits than memory does
 
 
 def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
@@ -26,13 +25,9 @@ def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> 
     Both scale with the length of the legs. Height is that of the lowest sole, so that a foot on the floor
     z = 0 stays on it.
 
-    Args:
-        posture: A posture of a library, or any posture or batch of them.
-        actor: The actor it was posed on: the library's.
-        body: The body to transfer it to.
-
-    Returns:
-        The transferred posture; the very same object where both have the same proportions.
+    `posture`: a posture of a library, or any posture or batch of them; `actor`: the actor it was posed on:
+    the library's; `body`: the body to transfer it to.
+    Returns the transferred posture; the very same object where both have the same proportions.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
     if _same(actor, body.actor):
@@ -62,8 +57,7 @@ def _same(first: Actor, second: Actor) -> bool:
 MIRRORED = "mirrored"
 _SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")
 _OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
-ALIKE = 1e-6
-"""Tolerance of equal postures: meters, radians, and elements of rotation matrices."""
+ALIKE = 1e-6  # tolerance of equal postures: meters, radians, and elements of rotation matrices
 
 
 def mirrored_name(name: str) -> str:

@@ -33,18 +33,14 @@ from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
+# Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else determines.
 LARGEST_VARIATION = 20.0
-"""Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else
-determines."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
     """The terms of one window of a clip, but for its contours.
 
-    Args:
-        clip: The whole clip's problem.
-        window: The window.
-        state: Any state of it, by which its prior and frames are known.
+    `state`: any state of it, by which its prior and frames are known.
     """
     frames = window.frames
     step_s = clip.step_s[window.first : window.last - 1]
@@ -91,13 +87,10 @@ def frame_terms(
 ) -> list[Term]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
-    Args:
-        evidence: The markers' model, as calibrated on keyframes or of average proportions.
-        observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: Prior belief in the posture.
-        noise: Noise of the regions' features.
-        width_px: (1, M) half-width of each marker's limb [px].
-        points: The keypoints of this one frame, (1, N); None without any.
+    `evidence`: the markers' model, as calibrated on keyframes or of average proportions; `observed`: the
+    regions of this one frame, (1, M) of them; NaN where a marker is hidden; `belief`: prior belief in the
+    posture; `width_px`: (1, M) half-width of each marker's limb [px]; `points`: the keypoints of this one
+    frame, (1, N); None without any.
     """
     model, starts = evidence.model, belief.starts.batch[0]
     bias_std = noise.bias_std(width_px).reshape(1, -1)
@@ -128,17 +121,11 @@ def free_frame_terms(
 ) -> tuple[Term, list[Term]]:
     """The terms of one frame of which nothing is believed but that a person stands before the camera.
 
-    Args:
-        evidence: The models of markers and keypoints.
-        observed: The regions of this one frame, (1, M).
-        starts: Number of states of it, S.
-        floor_m: Height of the floor [m]; None where it is not known.
-        noise: Noise of the regions' features.
-        width_px: (1, M) half-width of each marker's limb [px].
-        points: The keypoints of this one frame, (1, N); None without any.
-
-    Returns:
-        The belief of each descent in its own start, and all else.
+    `evidence`: the models of markers and keypoints; `observed`: the regions of this one frame, (1, M);
+    `starts`: number of states of it, S; `floor_m`: height of the floor [m]; None where it is not known;
+    `width_px`: (1, M) half-width of each marker's limb [px]; `points`: the keypoints of this one frame, (1,
+    N); None without any.
+    Returns the belief of each descent in its own start, and all else.
     """
     model, body = evidence.model, evidence.model.body
     bias_std = noise.bias_std(width_px).reshape(1, -1)

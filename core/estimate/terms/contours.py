@@ -12,15 +12,11 @@ from ..clip_state import ClipState
 from .motion import add_drift, drift, drift_cost
 from .term import DEGREES, NormalEquations
 
-SURFACE_SHARE = 0.2
-"""Standard deviation of a part's contour as a whole, of its half-width: clothes, muscles."""
-PIXEL_STD = 0.6
-"""The same in pixels of the pictures: blur and light."""
-ALIKE = len(SHARES) * len(SIDES)
-"""The samples of a part err together: all of them weigh as much as one."""
+SURFACE_SHARE = 0.2  # standard deviation of a part's contour as a whole, of its half-width: clothes, muscles
+PIXEL_STD = 0.6  # the same in pixels of the pictures: blur and light
+ALIKE = len(SHARES) * len(SIDES)  # the samples of a part err together: all of them weigh as much as one
 
-FEWEST_SEEN = 3
-"""Edges of a part that tell where it is: those of one side alone, or of one end, do not."""
+FEWEST_SEEN = 3  # edges of a part that tell where it is: those of one side alone, or of one end, do not
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,12 +24,9 @@ class ContourTerm:
     """Compares every contour sample with the edge found near it."""
 
     model: ContourModel
-    edge: Array
-    """(F, N, 2) where the edge lies [px]; NaN where none was found."""
-    normal: Array
-    """(F, N, 2) across it."""
-    variance: Array
-    """(F, N) [px²]."""
+    edge: Array  # (F, N, 2) where the edge lies [px]; NaN where none was found
+    normal: Array  # (F, N, 2) across it
+    variance: Array  # (F, N) [px²]
     robust: ClassVar[bool] = True
 
     def parts_seen(self) -> BoolArray:
@@ -73,16 +66,11 @@ class AxialTerm:
     """Compares where parts are along their axes with where their colors are seen."""
 
     axes: LimbAxes
-    share: Array
-    """(F, O) the point of each part's length that the colors say most of."""
-    place: Array
-    """(F, O) where it is seen, along the direction [px]; NaN where nothing was found."""
-    direction: Array
-    """(F, O, 2) unit direction of the axis."""
-    variance: Array
-    """(F, O) [px²]."""
-    kept: Array
-    """(F - 1, 1) share of an error that is left in the next frame."""
+    share: Array  # (F, O) the point of each part's length that the colors say most of
+    place: Array  # (F, O) where it is seen, along the direction [px]; NaN where nothing was found
+    direction: Array  # (F, O, 2) unit direction of the axis
+    variance: Array  # (F, O) [px²]
+    kept: Array  # (F - 1, 1) share of an error that is left in the next frame
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

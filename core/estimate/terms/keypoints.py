@@ -14,10 +14,8 @@ from ..clip_state import ClipState
 from .motion import Drift, add_drift, drift, drift_cost
 from .term import DEGREES, NormalEquations
 
-PIXEL_STD = 0.35
-"""Standard deviation of a perfect detection, as of a region's centroid [px]."""
-LEAST_CONFIDENCE = 0.1
-"""A doubtful detection errs by up to ten times as much as a sure one."""
+PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
+LEAST_CONFIDENCE = 0.1  # a doubtful detection errs by up to ten times as much as a sure one
 SURE_QUANTILE = 0.9
 """A source's sure detections have at least this quantile of its scores, whose scale is its own."""
 
@@ -26,12 +24,9 @@ SURE_QUANTILE = 0.9
 class ObservedKeypoints:
     """N keypoints in F frames, with their confidence relative to the source's sure ones."""
 
-    pixel: Array
-    """(F, N, 2) [px], NaN where not seen."""
-    confidence: Array
-    """(F, N) 0.1 to 1; 0 where not seen."""
-    depth_m: Array
-    """(F, N) guessed distance behind the hips' middle [m]; NaN where there is none."""
+    pixel: Array  # (F, N, 2) [px], NaN where not seen
+    confidence: Array  # (F, N) 0.1 to 1; 0 where not seen
+    depth_m: Array  # (F, N) guessed distance behind the hips' middle [m]; NaN where there is none
 
     @classmethod
     def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
@@ -73,10 +68,8 @@ class KeypointTerm:
 
     model: KeypointModel
     observed: ObservedKeypoints
-    std_m: Array
-    """(N,) error of a sure detection along each axis [m]; infinite for what is not believed."""
-    kept: Array
-    """(F - 1, N) share of an error that is left in the next frame."""
+    std_m: Array  # (N,) error of a sure detection along each axis [m]; infinite for what is not believed
+    kept: Array  # (F - 1, N) share of an error that is left in the next frame
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -114,8 +107,7 @@ class KeypointTerm:
 class FrameKeypointTerm:
     """Compares every keypoint of a frame with its prediction in each state."""
 
-    clip_term: KeypointTerm
-    """Of the same keypoints in as many frames as there are states."""
+    clip_term: KeypointTerm  # of the same keypoints in as many frames as there are states
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -137,10 +129,8 @@ class FrameDepthTerm:
 
     model: KeypointModel
     links: DepthLinks
-    expected: Array
-    """(L,) depth of each link by its guess [m]; NaN where there is none."""
-    std_m: Array
-    """(L,) its error."""
+    expected: Array  # (L,) depth of each link by its guess [m]; NaN where there is none
+    std_m: Array  # (L,) its error
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -188,12 +178,9 @@ class DepthHintTerm:
 
     model: KeypointModel
     links: DepthLinks
-    expected: Array
-    """(F, L) depth of each link by its guess [m]; NaN where there is none."""
-    std_m: Array
-    """(F, L) its error; infinite for what is not believed."""
-    kept: Array
-    """(F - 1, 1) share of an error that is left in the next frame."""
+    expected: Array  # (F, L) depth of each link by its guess [m]; NaN where there is none
+    std_m: Array  # (F, L) its error; infinite for what is not believed
+    kept: Array  # (F - 1, 1) share of an error that is left in the next frame
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

@@ -23,8 +23,7 @@ SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 class SmoothnessTerm:
     """Second differences of the unknowns z, whose usual size is one at 30 frames a second."""
 
-    std: float
-    """Usual size at the clip's own pace."""
+    std: float  # usual size at the clip's own pace
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -63,8 +62,7 @@ class BeliefTerm:
     """Independent normal distributions of the unknowns z, of unit size, and of the biases."""
 
     quadratic: QuadraticTerm
-    bias_std: Array
-    """(1, B) [px]."""
+    bias_std: Array  # (1, B) [px]
     robust: ClassVar[bool] = False
 
     @classmethod
@@ -92,24 +90,18 @@ class BeliefTerm:
 class Drift:
     """Weights of N groups of G rows each in F frames."""
 
-    level: Array
-    """(F, N) weight as errors too large, 0 to 1; 0 for what is not seen."""
-    own: Array
-    """(F, N) information of the rows of a frame by themselves."""
-    across: Array
-    """(F - 1, N) information that couples the rows of a frame to those of the next."""
-    pull: Array
-    """(F, N, G) derivative of half the sum of squares by the errors."""
+    level: Array  # (F, N) weight as errors too large, 0 to 1; 0 for what is not seen
+    own: Array  # (F, N) information of the rows of a frame by themselves
+    across: Array  # (F - 1, N) information that couples the rows of a frame to those of the next
+    pull: Array  # (F, N, G) derivative of half the sum of squares by the errors
 
 
 def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) -> Drift:
     """The information that lasting errors have.
 
-    Args:
-        error: (F, N, G) errors over their standard deviations.
-        used: (F, N) which of them are known.
-        kept: (F - 1, 1) or (F - 1, N) share φ of an error that is left in the next frame.
-        temperature: Factor of all variances.
+    `error`: (F, N, G) errors over their standard deviations; `used`: (F, N) which of them are known; `kept`:
+    (F - 1, 1) or (F - 1, N) share φ of an error that is left in the next frame; `temperature`: factor of all
+    variances.
     """
     error = np.where(used[..., None], error, 0.0)
     size = error.shape[-1]
@@ -150,12 +142,8 @@ def drift_cost(error: Array, used: BoolArray, kept: Array) -> Array:
 def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:
     """Add rows with lasting errors.
 
-    Args:
-        equations: The equations.
-        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the
-            posture's tangent.
-        rows: Their weights.
-        tangent_jacobian: (F, D, D) derivative of that by the leading unknowns.
+    `jacobian`: (F, N, G, D) derivative of the errors, over their standard deviations, by the posture's
+    tangent; `rows`: their weights; `tangent_jacobian`: (F, D, D) derivative of that by the leading unknowns.
     """
     frames, points, size, dofs = jacobian.shape
     flat = jacobian.reshape(frames, points * size, dofs) @ tangent_jacobian
@@ -203,10 +191,8 @@ class DepthTerm:
     """d(θ) against d(θ_p)."""
 
     camera: Camera
-    prior_depth: Array
-    """(F, P) [m]."""
-    std_m: float | Array = depths.DEPTH_STD_M
-    """One for all or (F, 1)."""
+    prior_depth: Array  # (F, P) [m]
+    std_m: float | Array = depths.DEPTH_STD_M  # one for all or (F, 1)
     robust: ClassVar[bool] = False
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

@@ -17,15 +17,11 @@ from ...numerics.robust import student_cost, student_weight
 from ..clip_state import ClipState
 from .term import DEGREES, NormalEquations
 
-FEATURES = 5
-"""Rows of one marker: centroid x, y and three of shape."""
-GROUPS = (slice(0, 2), slice(2, FEATURES))
-"""Rows that are outliers together: centroid and shape."""
-CONTRADICTED = 20.0
-"""Cost of a marker that is seen where it should be hidden."""
+FEATURES = 5  # rows of one marker: centroid x, y and three of shape
+GROUPS = (slice(0, 2), slice(2, FEATURES))  # rows that are outliers together: centroid and shape
+CONTRADICTED = 20.0  # cost of a marker that is seen where it should be hidden
 SMALLEST_DEVIATION_PX = 0.6
-AREA_TOLERANCE = 0.25
-"""Share of an area that may be missing for other reasons than occlusion."""
+AREA_TOLERANCE = 0.25  # share of an area that may be missing for other reasons than occlusion
 
 
 @dataclass(frozen=True)
@@ -37,14 +33,12 @@ class RegionNoise:
     """
 
     pixel_std_px: float = 0.35
-    surface_centroid_share: float = 0.10
-    """Of the segment's mean half-width, like the three that follow."""
+    surface_centroid_share: float = 0.10  # of the segment's mean half-width, like the three that follow
     surface_shape_share: float = 0.07
     bias_centroid_share: float = 0.20
     bias_shape_share: float = 0.14
     bias_time_s: float = 0.67
-    least_visible: float = 0.15
-    """Least predicted visibility of a region that is compared."""
+    least_visible: float = 0.15  # least predicted visibility of a region that is compared
 
     def surface_std(self, width: Array) -> Array:
         """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
@@ -63,19 +57,13 @@ def _per_feature(centroid: float, shape: float) -> Array:
 class ObservedRegions:
     """Tracks with the axes and deviations that residuals need."""
 
-    centroid: Array
-    """(F, M, 2), NaN where hidden."""
+    centroid: Array  # (F, M, 2), NaN where hidden
     second_moment: Array
-    axes: Array
-    """(F, M, 2, 2) columns are the observed axes."""
-    deviation: Array
-    """(F, M, 2) standard deviation of the region along them [px]."""
-    area: Array
-    """(F, M) [px], NaN where hidden."""
-    quality: Array
-    """(F, M)."""
-    variance: Array
-    """(F, M, 5) of the features beyond that of tracked regions [px²]."""
+    axes: Array  # (F, M, 2, 2) columns are the observed axes
+    deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
+    area: Array  # (F, M) [px], NaN where hidden
+    quality: Array  # (F, M)
+    variance: Array  # (F, M, 5) of the features beyond that of tracked regions [px²]
 
     @classmethod
     def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
@@ -169,10 +157,9 @@ def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction
     A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
     a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
 
-    Args:
-        area: (F, M) area of the regions seen [px].
-        area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, occlusion by the body itself included.
+    `area`: (F, M) area of the regions seen [px]; `area_ratio`: (M,) or a number: area of an unhidden region,
+    relative to the predicted one; `predicted`: the regions' prediction, occlusion by the body itself
+    included.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
@@ -188,10 +175,8 @@ class RegionTerm:
     model: RegionModel
     observed: ObservedRegions
     noise: RegionNoise
-    width_px: Array
-    """(F, M) mean half-width of each marker's limb in the image [px]."""
-    distrust: Array
-    """(M,) factor of the noise of each marker's regions."""
+    width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
+    distrust: Array  # (M,) factor of the noise of each marker's regions
     area_ratio: Array
     """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
     robust: ClassVar[bool] = True
