@@ -96,11 +96,9 @@ def measure_standing(
 ) -> MeasuredActor:
     """Measure the lengths and the place of a performer who stands.
 
-    `crown_px`: (2,) top of the head in the picture [px]; `ground_px`: (2,) the ground between the feet [px];
-    `regions`: the markers' regions in this frame, as tracks of one frame; None for none; `segments`: the
-    segment each marker is bound to; `arms_stretched`: whether the performer holds the arms out sideways,
-    across the view; `keypoints`: those of this frame alone; without them and regions the lengths are average
-    ones.
+    `crown_px` and `ground_px` (2,) are the top of the head and the ground between the feet [px], `regions`
+    and `keypoints` those of this frame alone; without both the lengths are average ones. `arms_stretched`:
+    the arms are held out sideways, across the view.
 
     Raises:
         InputError: The height is out of range, or the two points cannot be a person's.

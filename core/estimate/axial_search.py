@@ -75,10 +75,7 @@ def find_shifts(
 ) -> Shifts:
     """Search for the shifts of all parts near predicted postures.
 
-    `pose`: forward kinematics of the F predicted postures; `frame`: (F,) their indices in the clip;
-    `pictures`: (F, rows, columns, 3) small pictures of the frames; `factor`: pixels of the camera to one of
-    the pictures; `appearance`: the look of the background in them; `colors`: the colors along each part;
-    `search`: how far from the prediction shifts are looked for.
+    `pictures` (F, rows, columns, 3) are small ones, `factor` pixels of the camera to one of theirs.
     """
     outlines = model.part_outlines(pose, frame)
     size = pictures.shape[2], pictures.shape[1]

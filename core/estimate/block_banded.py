@@ -43,8 +43,8 @@ class BlockBanded:
     def add_rows(self, jacobians: tuple[Array, ...]) -> None:
         """Add JᵀJ of whitened rows that touch one frame or two consecutive ones.
 
-        `jacobians`: one (R, m, n) array for each frame a row touches, n ≤ size (the leading unknowns of a
-        frame); row r touches frames r and r + 1.
+        One (R, m, n) array for each frame a row touches, about its leading n unknowns; row r touches frames r
+        and r + 1.
         """
         rows, n = len(jacobians[0]), jacobians[0].shape[-1]
         turned = [np.swapaxes(jacobian, -1, -2) for jacobian in jacobians]
@@ -58,9 +58,8 @@ class BlockBanded:
     ) -> None:
         """Add independent rows, each a combination of one unknown over consecutive frames: Σ_k c_k x[t + k].
 
-        `columns`: the n unknowns, one row for each in every frame; `coefficients`: c_k for the K + 1 frames
-        of a row, at most three, each a number or (R, 1) or (R, n); `information`: inverse variance of the
-        rows, broadcastable to (R, n), R = F - K.
+        `coefficients`: c_k of at most three frames, each a number or (R, 1) or (R, n) for n columns;
+        `information`: inverse variance, broadcastable to (R, n), R = F - K.
         """
         index = np.arange(self.size)[columns]
         rows = self.frames - len(coefficients) + 1

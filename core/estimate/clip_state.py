@@ -34,8 +34,7 @@ class Window:
 def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
     """Windows whose kept parts follow each other without a gap.
 
-    `frames`: frames of the clip; `length`: frames kept of a window; a clip up to 1.5 times as long stays
-    whole; `margin`: frames solved beyond the kept ones on either side, where the clip has them.
+    A clip up to 1.5 times `length` stays whole; `margin` frames on either side are solved but not kept.
     """
     count = max(1, round(frames / length))
     edges = [frames * i // count for i in range(count + 1)]
@@ -109,8 +108,7 @@ class ClipState:
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and the largest change of its postures.
 
-        `step`: step of all unknowns; `largest`: largest change of a deviation's component; a frame's step is
-        shortened to it.
+        A frame's step is shortened so that no component of its deviation changes by more than `largest`.
         """
         count = self.variation.shape[1]
         moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)

@@ -56,11 +56,7 @@ class ContourEvidence:
     def measure(
         self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
     ) -> Generator[float, None, ContourTerm]:
-        """Measure the edges near the contours of F postures; yields the fraction done.
-
-        `posture`: the F postures; `frame`: (F,) their indices in the clip; `search`: how far from the
-        contours.
-        """
+        """Measure the edges near the contours of F postures; yields the fraction done."""
         model, album = self.model, self.album
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
@@ -93,8 +89,7 @@ class ContourEvidence:
     ) -> Generator[float, None, AxialTerm]:
         """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
 
-        `posture`: the F postures; `frame`: (F,) their indices in the clip; `search`: how far from the
-        prediction; `step_s`: times between all of the clip's frames [s].
+        `step_s`: times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
         kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
@@ -130,13 +125,8 @@ def learn_contours(
 ) -> Generator[None, None, ContourEvidence | None]:
     """Learn the look of performer and background, and the shapes of the performer's parts.
 
-    It yields now and then, so that a job can be canceled.
-
-    `posture`: the postures of all F frames, by their markers; `keyframes`: frames whose posture is known
-    best; `schedule`: how far from the contours edges are to be looked for; a wide one says that only the
-    keyframes' postures are known.
-    Returns None where no background can be trusted: before a moving camera, or where most pictures are
-    missing.
+    `keyframes`: frames whose posture is known best; a wide `schedule` says that only these are known. None
+    where no background can be trusted: before a moving camera, or where most pictures are missing.
     """
     seen = np.array([index in album for index in range(posture.batch[0])])
     keyframes = keyframes[seen[keyframes]]
@@ -245,11 +235,7 @@ ROWS = HALVES * len(SIDES)  # rows of a part
 
 
 def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray) -> EvidenceRows:
-    """A row for either side of both halves of each part, with the part's shape as parameters.
-
-    `contours`: edges and appearance, learned at the keyframes; `posture`: the J judged postures; `frame`:
-    (J,) their indices in the clip.
-    """
+    """A row for either side of both halves of each part, with the part's shape as parameters."""
     model, factor = contours.model, contours.album.factor
     predicted, edges = contours.near(posture, frame, contours.schedule.judging)
     average = replace(model, shape=np.zeros_like(model.shape))

@@ -57,10 +57,7 @@ def find_edges(
 ) -> Edges:
     """Search for the edges near predicted contours.
 
-    `pose`: forward kinematics of the F postures it was made from; `frame`: (F,) their indices in the clip;
-    `pictures`: (F, rows, columns, 3) small pictures of the frames; `factor`: pixels of the camera to one of
-    the pictures; `appearance`: the look of parts and background in them; `search`: how far from the
-    prediction edges are looked for.
+    `pictures` (F, rows, columns, 3) are small ones, `factor` pixels of the camera to one of theirs.
     """
     behind, shown = _occlusion(model, predicted, model.part_outlines(pose, frame), factor)
     offset = np.arange(-search.reach, search.reach + 1.0)
@@ -192,9 +189,8 @@ def contour_schedule(
 ) -> Schedule:
     """The looks for a clip.
 
-    `factor`: pixels of the camera to one of the pictures; `marked`: the segments that markers are bound to;
-    `prior`: F postures, by which the performer's distance is known; `keypoints`: of the performer in the F
-    frames.
+    `factor`: pixels of the camera to one of the pictures; `marked`: the segments with markers; the prior
+    tells the performer's distance.
     """
     if all_located(body, marked):
         return BY_MARKERS

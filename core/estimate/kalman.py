@@ -214,9 +214,7 @@ class FuzzyKalmanFilter:
     def correct(self, state: State, frame: int, observed: Array, quality: Array) -> Correction:
         """Correct a predicted state by its observations (paper, eqs. 12 and 14 to 18).
 
-        `state`: the prediction for `frame`; `frame`: index of the frame; `observed`: (M, 4) characteristics
-        as `observed_characteristics` gives them; NaN brings no row; `quality`: (M,) in 0..1 how far each
-        region can be trusted.
+        `observed` (M, 4) as `observed_characteristics` gives them, NaN brings no row; `quality` (M,) in 0..1.
         """
         body, camera = self.line_ends.body, self.line_ends.camera
         pose = body.pose(state.mean)
@@ -234,9 +232,8 @@ class FuzzyKalmanFilter:
     def noise_std(self, predicted: Array, observed: Array, quality: Array, width_px: Array) -> Array:
         """Standard deviations (..., M, 4) of the characteristics: the square roots of R's diagonal.
 
-        `predicted`: (..., M, 4) characteristics; `observed`: (..., M, 4) characteristics; `quality`: (..., M)
-        in 0..1, about the share of the region that is seen; divides the variance; `width_px`: (..., M) width
-        of each segment in the image [px].
+        Characteristics (..., M, 4); `quality` (..., M) in 0..1, about the share of the region that is seen,
+        divides the variance; `width_px` (..., M) of each segment.
         """
         options = self.options
         std = np.empty(np.broadcast_shapes(predicted.shape, observed.shape))
@@ -284,10 +281,7 @@ def filter_clip(
 ) -> Part[FilterResult]:
     """Estimate every frame of a clip by the paper's method.
 
-    `tracks`: the markers' regions in F frames; `marker_segments`: segment of each of the M markers, in the
-    tracks' order; `prior`: a batch of F a priori postures; `keyframes`: increasing indices of the keyframes,
-    at least one.
-    Returns posture and covariance of every frame.
+    `prior`: F postures; `keyframes`: increasing indices, at least one.
 
     Raises:
         InputError: a marker's segment is unknown.

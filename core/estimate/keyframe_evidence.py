@@ -100,10 +100,7 @@ class SeenAtKeyframes:
 def read_keyframes(
     model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes
 ) -> Generator[None, None, KeyframeEvidence]:
-    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them.
-
-    It yields now and then, so that a job can be canceled.
-    """
+    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them."""
     posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)

@@ -130,8 +130,7 @@ class KeyframeRows:
     def stacked(cls, parts: Sequence[EvidenceRows], posing: Array, velocity: Array) -> "KeyframeRows":
         """The rows of several kinds of evidence, one after the other.
 
-        `posing`: (J, D, D) usual posing error at the keyframes; `velocity`: (J, D) change of their postures
-        per frame.
+        `posing` (J, D, D) is the usual posing error, `velocity` (J, D) the change of the postures per frame.
         """
         judged = len(posing)
         rows = [part.residual.shape[1] for part in parts]
@@ -192,8 +191,8 @@ class KeyframeRows:
     def noise(self, weight: Array, scale: float, timing: float) -> Array:
         """(J, R, R) covariance of the rows without the parameters' own.
 
-        `weight`: (J, R) of each row, 1 for one that is no outlier; `scale`: size of the posing error relative
-        to a person's usual one; `timing`: standard deviation of the timing error [frames].
+        `weight` (J, R) is 1 for a row that is no outlier, `scale` the posing error's size relative to a usual
+        one, `timing` the timing error's standard deviation [frames].
         """
         total = scale**2 * self.posing + timing**2 * self.velocity[:, :, None] * self.velocity[:, None, :]
         rows = np.arange(total.shape[-1])

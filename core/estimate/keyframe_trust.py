@@ -31,8 +31,8 @@ def read_mixed_keyframes(
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
-    `at`: the K keyframes; `match_scale`: (K,) size of the matched ones' error, relative to a usual difference
-    between performers; 0 for posed ones.
+    `match_scale` (K,): size of the matched ones' error, relative to a usual difference between performers; 0
+    for posed ones.
     """
     if not match_scale.any():
         return (yield from read_keyframes(model, noise, at))
@@ -72,11 +72,7 @@ def select_keyframes(
     fps: float,
     keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
-    """The posed keyframes, and those matched ones that are better than interpolation between them.
-
-    `keyframes`: posed and matched ones, in order of frame; `tracks`: the regions seen; `keypoints`: the
-    performer's; None for none.
-    """
+    """The posed keyframes, and those matched ones that are better than interpolation between them."""
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)
     if len(posed) < FEWEST_POSED or len(posed) == len(compared):

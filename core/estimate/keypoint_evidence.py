@@ -65,9 +65,7 @@ def read_depths(
 ) -> DepthEvidence:
     """The evidence as K posed keyframes have it.
 
-    `evidence`: the usual one; `model`: the points' calibrated model; `pose`: the keyframes' poses; `frame`:
-    (K,) their frames; `depth`: (K, N) the points' guessed depths there [m]; `posing_std_m`: error of a posed
-    point [m].
+    `depth` (K, N): the points' guessed depths there [m]; `posing_std_m`: error of a posed point [m].
     """
     links = evidence.links
     guessed, true = links.guessed(depth), links.depths(model, pose, frame)
@@ -175,9 +173,8 @@ def keypoint_rows(
 ) -> EvidenceRows:
     """Two rows a keypoint, with three parameters each, its place.
 
-    `model`: the points at the places found so far, before the lens found so far; `usual`: the points at their
-    usual places, before the stated lens, which parameters count from; `known`: the keypoints seen; `std_m`:
-    (N,) error of a sure detection.
+    `model` has the places and the lens found so far, `usual` the usual ones, which parameters count from;
+    `std_m` (N,) is the error of a sure detection.
     """
     pixel = model.pixels(known.pose, known.frame)
     by_place = model.place_jacobian(known.pose, known.frame)
@@ -227,9 +224,8 @@ def learned_std(
 
     A step of expectation maximization, in which the rows' error is what is not known.
 
-    `model`: the points' model; `known`: the keypoints seen at J keyframes; `usual_m`: (N,) usual errors;
-    `std_m`: (N,) the errors so far; `left`: (J, 2 N) rows that the calibrated places leave; `noise`: (J, 2 N,
-    2 N) their covariance.
+    `usual_m` and `std_m` (N,) are the usual errors and those so far, `left` (J, 2 N) the rows that the
+    calibrated places leave, `noise` (J, 2 N, 2 N) their covariance.
     """
     judged, points = known.observed.confidence.shape
     scale = _scale(model, known) / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)

@@ -45,11 +45,7 @@ def keypoint_fit(
     swapped: BoolArray,
     posture: Posture,
 ) -> KeypointFit:
-    """Compare keypoints with an estimate.
-
-    `evidence`: what the keyframes say of them; `keypoints`: as they are compared; `points`: the same, with
-    their confidence; `swapped`: (F, N) those exchanged with their mirror image; `posture`: the F postures.
-    """
+    """Compare keypoints with an estimate."""
     model, frame = evidence.model, np.arange(posture.batch[0])
     pose = model.body.pose(posture)
     term = KeypointTerm(model, points, evidence.error_m, np.zeros((max(len(frame) - 1, 0), 1)))

@@ -48,8 +48,7 @@ def keypoint_trust(
 ) -> KeypointTrust:
     """Compare keypoints with posed keyframes.
 
-    `model`: the points at their usual places; `sources`: (N,) what saw each; `points`: those seen in all F
-    frames; `pose`: poses of the K posed keyframes; `frame`: (K,) their frames.
+    `points` are those of all F frames, `pose` and `frame` (K,) the posed keyframes'.
     """
     predicted, depth = model.camera.project(model.world(pose), frame[:, None])
     predicted *= np.maximum(depth, 0.1)[..., None] / model.camera.focal_px  # to meters across the view
@@ -119,8 +118,7 @@ def find_swaps(
 ) -> BoolArray:
     """(F, N) which keypoints are exchanged with their mirror image.
 
-    `predicted`: (F, N, 2) where the interpolated keyframes have them [px]; `scale`: (F,) pixels of a meter on
-    the performer; `keyframes`: (K,) frames of the keyframes; `time_s`: (F,) times of the frames [s].
+    `predicted` (F, N, 2): where the interpolated keyframes have them [px]; `scale` (F,): pixels of a meter.
     """
     swapped = np.zeros(keypoints.seen.shape, dtype=bool)
     away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
@@ -172,11 +170,7 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
 
 
 def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:
-    """The keypoints without their confidence and hints in frames near a change of what is exchanged.
-
-    `keypoints`: the performer's, exchanged back; `swapped`: (F, N) which of them were exchanged; `time_s`:
-    (F,) times of the frames [s].
-    """
+    """The keypoints without their confidence and hints in frames near a change of what is exchanged."""
     doubted = np.zeros_like(swapped)
     for frame in np.flatnonzero((swapped[1:] != swapped[:-1]).any(axis=1)):
         changed = (swapped[frame + 1] != swapped[frame]) & keypoints.seen[[frame, frame + 1]].all(axis=0)

@@ -64,8 +64,7 @@ def match_covariance(posture: Posture, camera: Camera, frame: IndexArray) -> Arr
 def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
 
-    `index`: (K,) the keyframes' indices in the clip, in order; `matched`: (K,) which of them are matched;
-    `frames`: frames of the clip, F.
+    `index` (K,): the keyframes' frames, in order; `matched` (K,): which of them are matched.
     """
     share = np.interp(np.arange(frames), index, matched.astype(np.float64))
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
@@ -76,7 +75,7 @@ def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    `points`: (F, P, 3) in the world [m]; `ankles`: (F,) heights of the lower ankle [m].
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m].
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)
@@ -99,9 +98,8 @@ def undetermined_covariance(
 ) -> Array:
     """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
-    `points`: places in the world [m]; `index`: (K,) the keyframes' indices in the clip, in order;
-    `match_scale`: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones;
-    `confidence`: (K,) probability that each is about right; `place_std_m`: (F,) error of the whole
+    Of K keyframes: `index` in the clip, in order; `match_scale`, size of the error relative to a usual one, 0
+    for posed ones; `confidence`, probability that each is about right. `place_std_m` (F,): error of the whole
     performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
@@ -136,9 +134,8 @@ def unobserved_variance(
 ) -> Array:
     """(F, D) variance of postures beyond their covariance, where nothing observes them [m², rad²].
 
-    `skeleton`: the body's; `segments`: (M,) the segment each marker is bound to, or the joint each keypoint
-    moves with; an unknown name counts for the trunk; `visible`: (F, M) whether each marker or keypoint is
-    seen; `keyframes`: (K,) frames whose posture is known; `time_s`: (F,) time stamps.
+    `segments` (M,): the segment of each marker, or the joint of each keypoint; an unknown name counts for the
+    trunk; `visible` (F, M); `keyframes` (K,): frames whose posture is known.
     """
     trunk, *limbs = skeleton.limbs
     joint = {one.name: index for index, one in enumerate(skeleton.joints)}

@@ -32,8 +32,7 @@ SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on i
 def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
     """(F,) usual height of the lower ankle [m].
 
-    `matched`: K matched postures, as the library has them; `index`: (K,) their indices in the clip, in order;
-    `frames`: frames of the clip, F.
+    `matched`: K postures as the library has them; `index` (K,): their indices in the clip, in order.
     """
     soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)
     floor = np.percentile(soles, TOUCHING_PERCENT)
@@ -55,9 +54,8 @@ def found_ankle_m(
 
     Their rigid feet may point into the floor, so that their soles tell nothing of it.
 
-    `found`: K postures put together from parts and held against the footage; `index`: (K,) their indices in
-    the clip, in order; `frames`: frames of the clip, F; `floor_m`: height of the floor; by the ankles
-    themselves where None.
+    `found`: K postures put together from parts and held against the footage, at `index` (K,), in order;
+    `floor_m`: by the ankles themselves where None.
     """
     points = body.points(body.pose(found))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
@@ -105,10 +103,8 @@ def place_standing(
 ) -> Posture:
     """A body that stands upright where the performer is, facing the camera.
 
-    `regions`: the markers' regions in this frame, as tracks of one frame; where none is seen, the body goes
-    to the picture's middle; `segments`: the segment each marker is bound to; `keypoints`: those of this frame
-    alone; markers are not asked where its hips or shoulders are seen.
-    Returns a single posture.
+    `regions` and `keypoints` are those of this frame alone; markers are not asked where hips or shoulders are
+    seen. Where nothing is seen, the body goes to the picture's middle.
     """
     rotation, _ = camera.pose(frame)
     heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
@@ -146,8 +142,8 @@ def _by_size(
 ) -> Posture:
     """The standing body where it is as large in the picture as what was seen.
 
-    `standing`: the body that stands anywhere; `center`: (2,) middle of what was seen [px]; `shown_from`:
-    middle (2,) [px] of the same of a body that stands somewhere, and the ratio of its size to the one seen.
+    `center` (2,) is the middle of what was seen [px]; `shown_from` gives the middle of the same of a body
+    that stands somewhere, and the ratio of its size to the one seen.
     """
     _, location = camera.pose(frame)
     _, direction = camera.rays(center, frame)
@@ -195,7 +191,7 @@ def ground_place(
 ) -> Array:
     """The ground, (3,) in the world [m], between the feet of someone who stands there upright.
 
-    `crown_px`: (2,) top of the head in the picture [px]; `ground_px`: (2,) the ground between the feet [px].
+    `crown_px` and `ground_px` (2,): top of the head, and the ground between the feet [px].
 
     Raises:
         InputError: The two points in the picture cannot be a person's.
@@ -273,8 +269,7 @@ def _largest_size(logarithms: Array, errors: Array) -> float:
 def _floor_step(above_m: float, down: float, distance: float) -> float:
     """Correction along the line of sight that brings the soles to the floor [m].
 
-    `above_m`: height of the soles by the region's size [m]; `down`: vertical share of the line of sight;
-    `distance`: by the region's size [m].
+    `above_m`: height of the soles by size; `down`: vertical share of the line of sight.
     """
     variance = (SIZE_STD * distance) ** 2
     spread = FLOOR_STD_M**2 + variance * down**2

@@ -80,11 +80,9 @@ def reconstruct(
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
-    `take`: a validated take with at least two keyframes; `method`: `map` (the whole clip at once), `ekf` (the
-    paper's filter) or `interpolation`; `reading`: data that `read_footage` or an earlier reconstruction has
-    read from the same clip, which is then not opened again; `earlier`: a reconstruction to start from; parts
-    that no longer hold are recognized and not used.
-    Returns the motion of every frame of the clip.
+    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
+    what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
+    that still hold. Closing the generator cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -312,7 +310,7 @@ def _motion(
 def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
 
-    `posture`: F postures; `more`: (F, D) variances added to it.
+    `more` (F, D): variances added to it.
     """
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))

@@ -53,13 +53,9 @@ def adapted(
 ) -> Generator[None, None, tuple[ClipProblem, list[ClipState]]]:
     """The problem with sizes learned from its states, and the states that follow from it.
 
-    It yields now and then, so that a job can be canceled.
-
-    `problem`: the clip's problem, with sizes as the keyframes tell them; `states`: the state of each by the
-    markers; `among`: (F,) frames in whose gaps it is asked how far the prior misses; `earlier`: the problem
-    of an earlier estimate, whose limbs keep their sizes, and which knows how far the prior misses in all
-    other gaps; None without one.
-    Returns the same problem and states where the markers or keypoints do not show the whole body.
+    `among` (F,): frames in whose gaps it is asked how far the prior misses; `earlier`: the problem of an
+    earlier estimate, which knows the limbs' sizes and all other gaps. Nothing changes where neither markers
+    nor keypoints show the whole body.
     """
     segments = tuple(one.segment for one in problem.evidence.model.placements)
     if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
@@ -79,10 +75,7 @@ def adapted(
 
 
 def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
-    """(D,) factor on the usual accelerations of each degree of freedom's limb.
-
-    `spans`: windows that keep all of its frames; `states`: the state of each.
-    """
+    """(D,) factor on the usual accelerations of each degree of freedom's limb."""
     kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
     pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
     variation = np.concatenate(kept)
@@ -139,12 +132,9 @@ def refine(
 ) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
     """Learn from the footage what the keyframes could not tell.
 
-    `states`: the state of each by its markers; `album`: pictures of all frames; None where contours are left
-    out; `anew`: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in;
-    `contours`: what is known of contours already; None to learn it; `earlier`: the problem of an earlier
-    estimate, which knows the rest; None without one.
-    Returns problem and states with all that was learned, and the look of performer and background; None where
-    no background can be trusted.
+    `anew` (F,): the frames that are decided anew, and with them the gaps they lie in; `album` and `contours`
+    None leave contours out, or to be learned; `earlier`: the problem of an earlier estimate, which knows the
+    rest.
     """
     problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
     problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)

@@ -101,10 +101,8 @@ class Search:
     ) -> Generator[float, None, tuple[ObservedRegions, IndexArray]]:
         """Look for what is missed; yields the fraction done.
 
-        `posture`: postures of the frames, by what was observed so far; `frame`: (N,) ascending frames that
-        are looked at; in others nothing changes.
-        Returns the observed regions with those found, and the frames of finds that are far from the
-        prediction.
+        `frame` (N,): ascending frames that are looked at. The regions observed with those found, and the
+        frames of finds that are far from the prediction.
         """
         album, observed = self.contours.album, problem.observed[frame]
         expected = _Expected.of(problem, posture, frame)
@@ -155,9 +153,7 @@ def find_lost(
 ) -> Part[ClipProblem]:
     """The problem with lost markers observed where they are found; states follow those that are far off.
 
-    `states`: the state of each by the markers so far; those with far finds are replaced; `contours`: the look
-    of performer and background, and the clip's pictures; `among`: (F,) frames that are looked at; the others
-    keep what is observed in them.
+    `among` (F,): frames that are looked at; states with far finds are replaced.
     """
     if not spans or not among.any():
         return problem
@@ -255,9 +251,7 @@ class _Expected:
     ) -> tuple[ObservedRegions, BoolArray]:
         """Finds (N, M), and which of them hold against the frames beside them and against markers alike.
 
-        `observed`: what is observed already, in the N frames; `moments`: (N, M, 6) raw moments of the finds,
-        NaN for none; `certainty`: (N, M); `alike`: pairs of markers of one color; `factor`: pixels of the
-        clip to one of the album.
+        `moments` (N, M, 6): raw moments of the finds, NaN for none; `alike`: pairs of markers of one color.
         """
         centroid, second = centroid_and_second_moment(moments)
         area, known = moments[..., 0], np.isfinite(observed.centroid[..., 0])

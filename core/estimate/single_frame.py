@@ -47,8 +47,7 @@ def frame_residuals(
 ) -> FrameResiduals:
     """Compare a posture with what is seen of one frame.
 
-    `evidence`: the models of markers and keypoints; `observed`: the regions of this one frame, (1, M);
-    `points`: the keypoints of this one frame, (1, N); None for none.
+    Regions (1, M) and keypoints (1, N) are those of this one frame.
     """
     model, index = evidence.model, np.array([frame])
     pose = model.body.pose(Posture.stack([posture]))
@@ -81,9 +80,8 @@ def descend(
 ) -> tuple[ClipState, Array]:
     """Descend from every start of a state.
 
-    `state`: the starts; where each descent's prior lies elsewhere is a candidate, too; `terms`: the frame's
-    terms, for as many states of it; `temperatures`: factors of the image noise, one a step.
-    Returns the best state of each descent, never less probable than its prior's mean, and their costs (S,).
+    `terms` are the frame's, for as many states of it; where a start's prior lies elsewhere it is a candidate,
+    too. The best state of each descent, never less probable than its prior's mean, and their costs (S,).
     """
     best = replace(state, variation=np.zeros_like(state.variation))
     least = total_cost(terms, best)
@@ -141,9 +139,7 @@ def fit_frame(
 ) -> FrameFit:
     """The most probable posture of one frame.
 
-    `evidence`: the models of markers and keypoints, as calibrated on keyframes or of average proportions
-    (`uncalibrated`); `observed`: the regions of this one frame, (1, M) of them; NaN where a marker is hidden;
-    `belief`: prior belief in the posture; `points`: the keypoints of this one frame, (1, N); None for none.
+    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
     noise = noise or RegionNoise()
     fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
@@ -174,9 +170,7 @@ def calibrated(
 ) -> KeyframeEvidence:
     """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
-    `observed`: regions observed at the K keyframes; `keyframes`: the K postures; `frame`: (K,) their indices
-    in the clip; `keypoints`: usual evidence of the N keypoints; None for none; `points`: those seen at the
-    keyframes, (K, N).
+    Regions and keypoints are those seen at the K keyframes.
     """
     if len(frame) < CALIBRATED_FROM:
         found = uncalibrated(model)

@@ -40,11 +40,7 @@ def alternative(
 ) -> Generator[None, None, Alternative | None]:
     """Solve a stretch of consecutive frames once more from where it is, and about another prior.
 
-    It yields now and then, so that a job can be canceled.
-
-    `state`: its solution in the stretch, cut from that of a window; `other`: the problem about the other
-    prior.
-    Returns None where the other prior is hopeless.
+    `state` is the solution in the stretch, cut from a window's. None where the other prior is hopeless.
     """
     first, last = int(state.frame[0]), int(state.frame[-1]) + 1
     window = Window(first, last, first, last)
@@ -60,11 +56,7 @@ def alternative(
 
 
 def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipState | None:
-    """The state of the frames `first` to `last - 1` and a margin around them; None where no window has all.
-
-    `states`: of windows, in order, which may overlap; `first`: a frame of the clip; `last`: one past another;
-    `margin`: frames more on either side, where the window has them.
-    """
+    """The state of frames `first` to `last - 1` and a margin around them; None where no window has all."""
     for state in states:
         begin, end = int(state.frame[0]), int(state.frame[-1]) + 1
         if begin <= first and last <= end:
@@ -98,8 +90,8 @@ class DoubtedTurn:
 def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
-    `cost`: (F,) what each marker seen costs on average in each frame, the short way round; `among`: (K - 1,)
-    the gaps that are asked for.
+    `cost` (F,): what each marker seen costs on average, the short way round; `among` (K - 1,): the gaps asked
+    for.
     """
     keyframes = problem.keyframes
     step = heading_steps_rad(problem.interpolated[keyframes])
@@ -125,9 +117,7 @@ def choose_turns(
 ) -> Part[tuple[ClipProblem, list[ClipState]]]:
     """Turn the other way round where that costs less.
 
-    `problem`: the clip's problem, which turns the short way in these gaps; `states`: windows of it, solved;
-    they may overlap; `among`: (K - 1,) the gaps that are asked for.
-    Returns the problem with the turns chosen, and its windows, solved.
+    `states` are windows, solved, which may overlap; `among` (K - 1,) the gaps that are asked for.
     """
     states = list(states)
     margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0

@@ -176,8 +176,8 @@ def _observations_differ(
 def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
     """Windows around changed frames (F,), in order; their kept frames do not overlap.
 
-    `length`: largest number of frames kept of a window; `margin`: frames over which a change, or the end of a
-    window, may have an effect.
+    `length`: most frames kept of a window; `margin`: frames over which a change, or a window's end, has an
+    effect.
     """
     count = len(changed)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
@@ -204,8 +204,6 @@ def blend_weight(changed: BoolArray, margin: int) -> Array:
     """(F,) weight of the new estimate against the earlier one, so that they blend without a jump.
 
     Farther away from a change than the margin both are right.
-
-    `changed`: (F,) the changed frames; `margin`: as for the windows.
     """
     if not changed.any():
         return np.zeros(len(changed))

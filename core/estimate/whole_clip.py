@@ -116,8 +116,8 @@ def estimate_whole_clip(
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
-    `believed`: the keyframes, and the motion through them; `earlier`: an estimate of the same pictures,
-    reused for frames that have not changed since, within the tolerances of `warm_start`.
+    `earlier`: an estimate of the same pictures, reused for frames that have not changed since, within the
+    tolerances of `warm_start`. Yields the fraction done and previews of windows.
     """
     options = options or WholeClipOptions()
     tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, believed.prior
@@ -236,9 +236,8 @@ def _solve_windows(
 ) -> Part[WholeClipResult]:
     """Estimate the frames that windows keep.
 
-    `spans`: the windows; without an earlier estimate they keep all of the clip's frames; `anew`: (F,) the
-    frames that are decided anew; `earlier`: an estimate of all other frames; `contours`: what was learned of
-    them already; None to learn it once the markers are followed.
+    `anew` (F,): the frames decided anew; of all others `earlier` knows the estimate; `contours` None: to be
+    learned once the markers are followed.
     """
     total = max(sum(window.keep_last - window.keep_first for window in spans), 1)
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])

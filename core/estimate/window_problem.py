@@ -62,11 +62,10 @@ class WindowProblem:
         yield from self._gauss_newton(CONVERGING_TEMPERATURES, 0.0, 1.0)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
-        """Gauss-Newton steps with the terms there are; it yields now and then.
+        """Gauss-Newton steps with the terms there are.
 
-        `temperatures`: factor of the image's variance in each step.
-        Returns (F,) negative logarithm of the probability of each frame where the steps end, up to a
-        constant.
+        (F,) negative logarithm of each frame's probability where the steps end, up to a constant;
+        `temperatures` are factors of the image's variance.
         """
         for _ in self._gauss_newton(temperatures, 0.0, 1.0):
             yield
@@ -109,10 +108,7 @@ class WindowProblem:
         return term.parts_seen()[self.window.kept]
 
     def solution(self) -> Generator[None, None, tuple[Posture, Array, Array]]:
-        """Postures, their covariance and the centroids' residuals of the frames the window keeps.
-
-        It yields now and then, so that a job can be canceled.
-        """
+        """Postures, their covariance and the centroids' residuals of the frames the window keeps."""
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
@@ -149,7 +145,7 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
 
     A keypoint has two of a marker's five rows and counts as much less.
 
-    `states`: of windows, in order; where two overlap, the later one counts.
+    Where states overlap, the later one counts.
     """
     cost = np.zeros(clip.frames)
     for state in states:

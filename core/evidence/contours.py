@@ -140,9 +140,8 @@ CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
 def part_map(parts: PartOutlines, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
     """Draw the body of one frame, the farthest part first.
 
-    `parts`: outlines of the O parts in all frames; `frame`: index of the frame to draw; `size`: columns and
-    rows of the map; `factor`: pixels of the camera to one of the map.
-    Returns (rows, columns) index of the visible part, -1 for none.
+    (rows, columns) index of the visible part, -1 for none; `size`: columns and rows; `factor`: pixels of the
+    camera to one of the map.
     """
     labels = np.full((size[1], size[0]), NO_PART, dtype=np.uint8)
     outlines = _outlines(parts, frame) / factor - 0.5
@@ -213,11 +212,7 @@ class LimbAxes:
         return world, self.camera.project(world, frame[:, None])[0]
 
     def jacobian(self, pose: Pose, frame: IndexArray, world: Array, direction: Array) -> Array:
-        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad].
-
-        `pose`: forward kinematics of F postures; `frame`: (F,) their indices in the clip; `world`: (F, O, 3)
-        the points [m]; `direction`: (F, O, 2) unit directions in the image.
-        """
+        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad]."""
         slope = self.camera.project_jacobian(world, frame[:, None])
         force = (direction[..., None, :] @ slope)[..., 0, :]
         return pose.along_jacobian(self.parts.joint, world, force)

@@ -145,8 +145,7 @@ class KeypointModel:
     def pixels_jacobian(self, pose: Pose, frame: IndexArray, factor: Array | None = None) -> Array:
         """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad].
 
-        `pose`: forward kinematics of F postures; `frame`: (F,) their indices in the clip; `factor`: (F, N)
-        factor on each point's rows, zero for one that does not count; None for 1.
+        `factor` (F, N) on each point's rows, zero for one that does not count; None for 1.
         """
         rows, world = self._rows(pose, frame)
         if factor is not None:
@@ -192,10 +191,7 @@ class DepthLinks:
 
     @classmethod
     def between(cls, names: Sequence[str], sources: Sequence[str]) -> "DepthLinks":
-        """All links between points that one source has.
-
-        `names`: (N,) the body points; `sources`: (N,) what saw each.
-        """
+        """All links between points that one source has."""
         found: list[tuple[str, str, Array]] = []
         for source in dict.fromkeys(sources):
             index = {n: i for i, (n, s) in enumerate(zip(names, sources, strict=True)) if s == source}
@@ -259,9 +255,7 @@ DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
 def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
     """Depths of the principal points along the viewing axis (paper, eq. 9).
 
-    `pose`: the body's pose, of any batch shape; `frame`: index of each pose's camera, integers of the batch
-    shape; a fixed camera ignores it.
-    Returns (..., P) [m], positive in front of the camera.
+    (..., P) [m], positive in front of the camera, of poses of any batch shape; `frame` of the batch shape.
     """
     return camera.depth(body.points(pose), _per_point(frame))
 

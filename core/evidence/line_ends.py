@@ -79,9 +79,8 @@ class LineEnds:
         rectangle's sides (eq. 6 is the square of Figure 4's a/b) when seen from the side, and 1, a round
         region, when seen end on.
 
-        `pose`: the body's pose, of any batch shape; `frame`: index of each pose's camera, integers of the
-        batch shape; a fixed camera ignores it.
-        Returns (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
+        (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO, of poses of any batch shape; NaN for a segment not in
+        front of the camera.
         """
         pixels, depth = self.camera.project(self._world_ends(pose), _per_end(frame))  # (..., M, 2, 2)
         line = pixels[..., 1, :] - pixels[..., 0, :]

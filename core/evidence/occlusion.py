@@ -193,10 +193,8 @@ def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArr
 def visible_share(pixels: Array, depth: Array, parts: PartOutlines, own: BoolArray) -> Array:
     """Visible share of each sample, 0 to 1.
 
-    `pixels`: (F, Q, S, 2) image points of the samples of Q pieces [px]; `depth`: (F, Q, S) camera depths [m];
-    `parts`: the O parts of the body; `own`: (Q, O) whether a part belongs to the piece's own marker and
-    cannot occlude it.
-    Returns (F, Q, S).
+    (F, Q, S) of samples `pixels` (F, Q, S, 2) at camera depths `depth` [m]; `own` (Q, O): whether a part
+    belongs to the piece's own marker and cannot occlude it.
     """
     seen = np.ones(depth.shape)
     frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)

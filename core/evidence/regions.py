@@ -33,8 +33,7 @@ class EdgeCut(NamedTuple):
 def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
     """(F, Q) which pieces the edge of a picture (columns, rows) cuts, or leaves out.
 
-    `pixels`: (F, Q, S, 2) the pieces' samples; `area`: (F, Q, S) of the cells they stand for [px²]; `size`:
-    columns and rows.
+    `pixels` (F, Q, S, 2): the pieces' samples; `area` (F, Q, S) of the cells they stand for [px²].
     """
     reach = 0.5 * np.sqrt(np.maximum(area.max(axis=-1), SMALLEST_CELL_PX**2))
     outside = np.zeros(area.shape[:2], dtype=np.bool_)
@@ -47,7 +46,7 @@ def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
 def edge_cut(pixels: Array, area: Array, size: tuple[int, int]) -> EdgeCut:
     """What the edge of a picture leaves of square cells.
 
-    `pixels`: (..., 2) their centers [px]; `area`: (...) [px²]; `size`: columns and rows of the picture.
+    `pixels` (..., 2): their centers; `area` (...) [px²]; `size`: columns and rows of the picture.
     """
     side = np.sqrt(np.maximum(area, SMALLEST_CELL_PX**2))
     share, slope = np.ones(area.shape), np.zeros(pixels.shape)
@@ -187,10 +186,8 @@ class RegionModel:
     def evaluate(self, pose: Pose, frame: IndexArray, jacobian: bool = False) -> RegionPrediction:
         """Predict every marker's region.
 
-        `pose`: forward kinematics of F postures; `frame`: (F,) index of each posture's frame in the clip, for
-        a moving camera; `jacobian`: whether to compute Jacobians of centroid and moments by the posture's
-        tangent as well.
-        Returns the prediction; wholly hidden markers keep the moments of their whole silhouette.
+        `jacobian`: with those of centroid and moments by the posture's tangent. Wholly hidden markers keep
+        the moments of their whole silhouette.
         """
         if not self.placements:
             dofs = pose.posture.skeleton.dof_count if jacobian else None

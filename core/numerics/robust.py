@@ -16,8 +16,7 @@ Floats = TypeVar("Floats", Array, SingleArray)
 def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:
     """Weight of groups of rows whose t gets `degrees` for each row; 1 at zero.
 
-    `squared`: sum of squared whitened residuals of each group; `degrees`: degrees of freedom; fewer forgive
-    more; `count`: rows in each group.
+    `squared` sums `count` whitened residuals of a group; fewer `degrees` forgive more.
     """
     return np.asarray(degrees / (degrees + squared / np.maximum(count, 1)))
 
@@ -60,10 +59,8 @@ def levenberg_marquardt(
 ) -> State:
     """Lower the cost of N problems together.
 
-    `equations`: cost, normal matrix and gradient of each at a state; `start`: the state to start from;
-    `plus`: a state changed by steps (N, D); `choose`: of each problem the first state where a mask (N,)
-    holds, else the second; `iterations`: steps at most; `converged`: share of its cost below which a step's
-    gain ends a problem.
+    `plus` changes a state by steps (N, D); `choose` takes of each problem the first state where a mask (N,)
+    holds, else the second; a step that gains less than `converged` of the cost ends a problem.
     """
     state = start
     cost, normal, gradient = equations(state)

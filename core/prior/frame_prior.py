@@ -26,8 +26,7 @@ CORRELATED_SHARE, INDEPENDENT_SHARE = 6.0, 2.5
 def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
     """Cholesky factor L (D, D) of the covariance L Lᵀ of the deviation's second differences.
 
-    `keyframes`: K postures in order of time; `time_s`: (K,) their times.
-    Returns lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
+    Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
     """
     skeleton = keyframes.skeleton
     covariance = np.diag((NATURAL_SHARE * skeleton.deviations) ** 2)
@@ -91,8 +90,7 @@ def difference_std(skeleton: Skeleton, time_s: float) -> Array:
 def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> FramePrior:
     """Prior of a frame from the nearest keyframes before and after it.
 
-    `keyframes`: at least one, in order of frame; one at the frame itself counts only if there is no other;
-    `index`: index of the frame in the clip.
+    One at the frame itself counts only if there is no other.
     """
     others = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
     before = [keyframe for keyframe in others if keyframe.index <= index][-1:]

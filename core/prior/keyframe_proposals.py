@@ -27,9 +27,8 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
     frames adds nothing.
 
-    `tracks`: F frames of M regions; uneven time stamps are respected; `smoothing_frames`: standard deviation
-    of a Gaussian filter over the sum [frames]; 0 for none.
-    Returns (F,) [px per frame of the clip's median duration].
+    (F,) [px per frame of the clip's median duration]; uneven time stamps are respected; `smoothing_frames`:
+    deviation of a Gaussian filter over the sum.
     """
     time = frame_times(tracks.time_s)
     total = np.zeros(tracks.frame_count)
@@ -80,11 +79,7 @@ class EvidenceSpeed:
 def evidence_speed(
     tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints, album: Album | None = None
 ) -> Part[EvidenceSpeed]:
-    """The summed speed of the performer's parts in the image.
-
-    `tracks`: the markers' regions, of F frames; `segments`: the segment each marker is bound to; `keypoints`:
-    the performer's keypoints; `album`: pictures of the clip; None where there are none.
-    """
+    """The summed speed of the performer's parts in the image."""
     if keypoints.seen.any():
         return EvidenceSpeed(_speed_of_parts(tracks, segments, keypoints))
     if tracks.visible.any():
@@ -146,10 +141,8 @@ def propose_keyframes(
 
     The first and the last frame are always included.
 
-    `speed`: (F,) V_sum; a NaN is never chosen as a minimum; `count`: number of keyframes; 10 per 100 frames
-    where None. `largest_gap` may require more; `largest_gap`: most frames from one keyframe to the next; 1.5
-    even gaps where None.
-    Returns (K,) increasing frame indices.
+    `count`: by default 10 per 100 frames, and more where `largest_gap` wants it, which is 1.5 even gaps by
+    default.
 
     Raises:
         InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.

@@ -70,9 +70,7 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     The heading is the monotone cubic (Fritsch & Carlson 1980) through the keyframes' headings unwound with
     these turns instead of without; leans and all else stay those of the interpolation, seen from the body.
 
-    `prior`: F postures that pass through the keyframes and turn the short way round; `keyframes`: (K,) their
-    frames, increasing; `turns`: (K - 1,) turns added in each gap, counterclockwise seen from above; 0 for
-    none.
+    `turns` (K - 1,): counterclockwise seen from above, 0 for none.
     """
     if not turns.any():
         return prior
@@ -100,11 +98,7 @@ def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
 
 
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """The a priori posture of every frame.
-
-    `keyframes`: at least two, in order of frame; `frame_count`: frames F of the clip.
-    Returns a batch of F postures that passes through every keyframe.
-    """
+    """The a priori posture of every frame."""
     return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
 
@@ -133,9 +127,8 @@ BEYOND_S = 0.1
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
     """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
 
-    `keyframes`: posed and matched ones, in order of frame.
-    Returns the keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1
-    where nothing was posed, less near posed keyframes, and 0 at these.
+    With (K,) the offset's remaining standard deviation relative to its prior one: 1 where nothing was posed,
+    less near posed keyframes, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
@@ -160,8 +153,7 @@ def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tupl
 
     Rasmussen & Williams (2006), eq. 5.12.
 
-    `keyframes`: posed and matched ones, at least one of either.
-    Returns (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
+    (P, D), and (P,) their weights: less, the farther one lies from matched keyframes.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]

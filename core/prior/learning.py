@@ -38,9 +38,7 @@ def learn_library(
 
     A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
 
-    `body`: the performer; the library keeps the proportions; `posture`: a batch of F postures; `time_s`: (F,)
-    rising times [s]; `about`: title, author and license; `count`: number of postures; by default as many as
-    are distinct, from 10 to 40.
+    `count` of postures: by default as many as are distinct, from 10 to 40.
 
     Raises:
         InputError: The motion has fewer frames than the postures asked for, or stands still.
@@ -109,10 +107,8 @@ def spread_frames(
 ) -> IndexArray:
     """Frames spread over shape and time by farthest point sampling.
 
-    `shape`: (F, N) the body's shape in each frame [m]; `time_s`: (F,) times from 0, rising [s]; `duration_s`:
-    duration of the motion [s]; `count`: number of frames; by default as many as are distinct, from 10 to 40;
-    `cyclic`: whether the first frame follows the last; else both are chosen.
-    Returns (K,) frames, rising.
+    `shape` (F, N) [m] at times (F,) from 0; `count`: by default as many as are distinct, from 10 to 40;
+    `cyclic`: the first frame follows the last; else both are chosen.
     """
     wanted = min(len(shape), MOST if count is None else count)
     pace = _typical_change(shape, time_s, duration_s)  # [m] in a tenth of the motion

@@ -41,8 +41,7 @@ def merge_versions(mine: Library, theirs: Library, replaces: bool | None = None)
     The header is that of the higher version. The result's version is one above both, unless it equals one
     of them.
 
-    `mine`: the present library; `theirs`: another one of the same identifier; `replaces`: whether theirs
-    replaces what is in both and differs; None where nothing does.
+    `replaces`: whether theirs replaces what is in both and differs; None where nothing does.
 
     Raises:
         InputError: Some differ and nothing says which counts, or the libraries have different identifiers.

@@ -66,7 +66,7 @@ class Cycle:
 def find_period_s(shape: Array, time_s: Array) -> float | None:
     """Period of a motion; None if it is not periodic, or shows fewer than two cycles.
 
-    `shape`: (F, N) the body's shape in each frame [m]; `time_s`: (F,) rising times [s].
+    `shape` (F, N) is the body's in each frame [m].
     """
     count = len(shape)
     if count < 8:
@@ -104,11 +104,7 @@ def _unlikeness(rows: Array) -> Array:
 
 
 def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) -> Cycle:
-    """The mean of a motion's whole cycles, closed so that its end meets the next cycle's beginning.
-
-    `body`: the performer; `posture`: a batch of F postures; `time_s`: (F,) rising times [s]; `period_s`: the
-    period, from `find_period_s`.
-    """
+    """The mean of a motion's whole cycles, closed so that its end meets the next cycle's beginning."""
     shape = shape_vectors(body, posture)
     begin_s, cycles = _whole_cycles(shape, time_s, period_s)
     count = max(8, round(period_s * (len(time_s) - 1) / (time_s[-1] - time_s[0])))
@@ -168,10 +164,6 @@ def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: A
     A cyclic motion continues without end, before time 0 too, and travels with every cycle; any other holds
     its first posture before its beginning and its last one after its end. Between two steps the lowest sole
     stays between its heights in both of them: a foot on the floor stays there.
-
-    `motion`: one of its motions; `body`: the body that the postures are fitted to; `time_s`: (T,) times from
-    the motion's beginning [s].
-    Returns a batch of T postures.
     """
     posed = Posture.stack([library.by_name[step.posture].posture for step in motion.steps])
     knots = np.array([step.time_s for step in motion.steps])
@@ -195,8 +187,7 @@ def after_cycles(posture: Posture, motion: LibraryMotion, cycles: Array) -> Post
 
     A cycle turns a point about the world's origin by the travel's heading, then shifts it by x and y.
 
-    `posture`: a batch of N postures; `motion`: a cyclic motion; `cycles`: (N,) whole numbers, negative for
-    earlier cycles.
+    `cycles` (N,): whole numbers, negative for earlier ones.
     """
     *way, heading = motion.travel
     angle = np.asarray(cycles) * heading

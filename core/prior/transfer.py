@@ -25,9 +25,7 @@ def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> 
     Both scale with the length of the legs. Height is that of the lowest sole, so that a foot on the floor
     z = 0 stays on it.
 
-    `posture`: a posture of a library, or any posture or batch of them; `actor`: the actor it was posed on:
-    the library's; `body`: the body to transfer it to.
-    Returns the transferred posture; the very same object where both have the same proportions.
+    `actor`: the one it was posed on. The very same object where both have the same proportions.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
     if _same(actor, body.actor):

@@ -38,10 +38,7 @@ LARGEST_VARIATION = 20.0
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
-    """The terms of one window of a clip, but for its contours.
-
-    `state`: any state of it, by which its prior and frames are known.
-    """
+    """The terms of one window of a clip, but for its contours."""
     frames = window.frames
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
@@ -87,10 +84,7 @@ def frame_terms(
 ) -> list[Term]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
-    `evidence`: the markers' model, as calibrated on keyframes or of average proportions; `observed`: the
-    regions of this one frame, (1, M) of them; NaN where a marker is hidden; `belief`: prior belief in the
-    posture; `width_px`: (1, M) half-width of each marker's limb [px]; `points`: the keypoints of this one
-    frame, (1, N); None without any.
+    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
     model, starts = evidence.model, belief.starts.batch[0]
     bias_std = noise.bias_std(width_px).reshape(1, -1)
@@ -121,11 +115,8 @@ def free_frame_terms(
 ) -> tuple[Term, list[Term]]:
     """The terms of one frame of which nothing is believed but that a person stands before the camera.
 
-    `evidence`: the models of markers and keypoints; `observed`: the regions of this one frame, (1, M);
-    `starts`: number of states of it, S; `floor_m`: height of the floor [m]; None where it is not known;
-    `width_px`: (1, M) half-width of each marker's limb [px]; `points`: the keypoints of this one frame, (1,
-    N); None without any.
-    Returns the belief of each descent in its own start, and all else.
+    `starts`: number of states of it; `floor_m`: None where it is not known. The belief of each descent in its
+    own start, and all else.
     """
     model, body = evidence.model, evidence.model.body
     bias_std = noise.bias_std(width_px).reshape(1, -1)

@@ -99,9 +99,8 @@ class Drift:
 def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) -> Drift:
     """The information that lasting errors have.
 
-    `error`: (F, N, G) errors over their standard deviations; `used`: (F, N) which of them are known; `kept`:
-    (F - 1, 1) or (F - 1, N) share φ of an error that is left in the next frame; `temperature`: factor of all
-    variances.
+    `error` (F, N, G) over standard deviations; `used` (F, N): which are known; `kept` (F - 1, 1) or (F - 1,
+    N): share φ of an error that is left in the next frame.
     """
     error = np.where(used[..., None], error, 0.0)
     size = error.shape[-1]
@@ -142,8 +141,8 @@ def drift_cost(error: Array, used: BoolArray, kept: Array) -> Array:
 def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:
     """Add rows with lasting errors.
 
-    `jacobian`: (F, N, G, D) derivative of the errors, over their standard deviations, by the posture's
-    tangent; `rows`: their weights; `tangent_jacobian`: (F, D, D) derivative of that by the leading unknowns.
+    `jacobian` (F, N, G, D) of the errors, over their standard deviations, by the posture's tangent;
+    `tangent_jacobian` (F, D, D) of that by the leading unknowns.
     """
     frames, points, size, dofs = jacobian.shape
     flat = jacobian.reshape(frames, points * size, dofs) @ tangent_jacobian

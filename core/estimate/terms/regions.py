@@ -157,9 +157,7 @@ def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction
     A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
     a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
 
-    `area`: (F, M) area of the regions seen [px]; `area_ratio`: (M,) or a number: area of an unhidden region,
-    relative to the predicted one; `predicted`: the regions' prediction, occlusion by the body itself
-    included.
+    `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
     """
     expected = np.maximum(predicted.area * area_ratio, 1.0)
     missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)

@@ -25,8 +25,8 @@ class NormalEquations:
     def add_rows(self, residual: Array, *jacobians: Array) -> None:
         """Add rows that touch one frame or two consecutive ones.
 
-        `residual`: (R, m) whitened residuals, row r touching frames r, r + 1, ; `jacobians`: one (R, m, n)
-        array a touched frame, whitened alike, about its leading unknowns.
+        `residual` (R, m), row r touching frames r, r + 1, ...; one Jacobian (R, m, n) a touched frame, both
+        whitened.
         """
         self.matrix.add_rows(jacobians)
         for offset, jacobian in enumerate(jacobians):
@@ -36,9 +36,8 @@ class NormalEquations:
     def add_biased_rows(self, residual: Array, jacobian: Array, bias_weight: Array) -> None:
         """Add rows that each have a bias of their own; the biases are the last unknowns of a frame.
 
-        `residual`: (F, m) whitened residuals, their biases included; `jacobian`: (F, m, n) by the leading
-        unknowns, whitened alike; n + m is all of a frame's unknowns; `bias_weight`: (F, m) derivative of each
-        row by its bias.
+        `residual` (F, m) with biases, `jacobian` (F, m, n) by the leading unknowns, both whitened;
+        `bias_weight` (F, m): derivative of each row by its bias.
         """
         self.add_rows(residual, jacobian)
         n, block = jacobian.shape[-1], self.matrix.diagonal
@@ -111,8 +110,7 @@ class QuadraticBuilder:
     def add(self, columns: slice, coefficients: tuple[Array | float, ...], std: Array | float) -> None:
         """Add one row a frame and unknown, as `BlockBanded.add_combination` does.
 
-        `columns`: the unknowns; `coefficients`: of the consecutive frames; `std`: standard deviation;
-        infinite switches a row off.
+        An infinite `std` switches a row off.
         """
         self.matrix.add_combination(columns, coefficients, np.asarray(std, dtype=np.float64) ** -2.0)
 
