@@ -36,7 +36,7 @@ from .keyframe_rows import (
     placements_from,
 )
 from .performer_placement import ground_place
-from .single_frame import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
+from .single_frame import MISPLACED
 from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
 from .terms.term import DEGREES
@@ -45,8 +45,6 @@ MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_widt
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
 PROPORTION_STD = 0.045
 """Spread of the logarithm of a person's proportions about the average (Gordon et al. 2014)."""
-HEIGHT_STD = 0.005
-"""Share within which the lengths add up to the height during the descent; the result does so exactly."""
 LENGTH_DIFFERENCE = 1e-3
 # Standard deviation of a standing person from the standing posture [m, rad]; arms may be anywhere.
 STANDING_STD = {
@@ -66,10 +64,8 @@ STANDING_STD = {
 STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
 """The same for arms that are held out sideways as well as one can."""
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
-MOST_DEVIATIONS = 3.0  # largest deviation of trunk or legs, in standard deviations, of someone who stands
 ARMS_RAISED_RAD = (0.0, 0.65, 1.3)  # starts of the descent: arms hanging, half raised and stretched out
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
-LARGEST_STEP = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +200,7 @@ class _Problem:
         for temperature in TEMPERATURES:
             normal, gradient = self._equations(x, temperature)
             step = -np.linalg.solve(normal, gradient)
-            x = x + step * min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
+            x = x + step * min(1.0, 0.4 / max(float(np.abs(step).max()), 1e-12))
         return x
 
     def cost(self, x: Array) -> float:
@@ -233,13 +229,13 @@ class _Problem:
         predicted = model.evaluate(self._pose(x, model.body), self.frame)
         apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
         width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
-        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX)
+        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED.widths * width, MISPLACED.px)
         misfits = np.nan_to_num(np.linalg.norm(self._off_px(x)[0], axis=-1))
-        near = misfits <= np.maximum(MISPLACED_M * self._scale, MISPLACED_PX)
-        sure = self.points.confidence[0] >= SURE
+        near = misfits <= np.maximum(MISPLACED.m * self._scale, MISPLACED.px)
+        sure = self.points.confidence[0] >= MISPLACED.sure
         upright = [name.split(".")[0] in UPRIGHT_PARTS for name in HUMAN.dof_names]
         deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
-        return bool(explained.all() and near[sure].all() and deviations.max() <= MOST_DEVIATIONS)
+        return bool(explained.all() and near[sure].all() and deviations.max() <= 3.0)
 
     def _off_px(self, x: Array) -> tuple[Array, Array]:
         """Differences (N, 2) of predicted and seen keypoints [px], and their variances (N,) [px²]."""
@@ -269,7 +265,7 @@ class _Problem:
         variance = noise.pixel_std_px**2 + noise.surface_std(width) ** 2
         usable = np.isfinite(residual).all(-1) & (predicted.visible > noise.least_visible)
         trust = np.where(usable, np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0), 0.0)
-        height = np.log(standing_height_m(model.body) / self.height_m) / HEIGHT_STD
+        height = np.log(standing_height_m(model.body) / self.height_m) / 0.005
         off, spread = self._off_px(x)
         seen = np.isfinite(off).all(axis=-1)
         return _Rows(

@@ -19,10 +19,7 @@ from ..footage.surface_colors import BANDS, BandColors, band_cells, learn_band_c
 from ..footage.surface_colors import LEVELS_BAND_COLORS as LEVELS
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
-LINES = np.array([-0.4, 0.0, 0.4])
-"""Lines along a part on which pixels are looked at, in half-widths from its axis."""
 STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis
-FINE_REACH = 8  # shifts up to this reach are tried pixel by pixel, in wider searches every other one [px]
 CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))
 """Logarithm of the levels³ in a cell: the background's densities are those per level³."""
 SHORTEST_PX = 8.0  # least length of a part in the pictures; shorter ones are seen end on
@@ -92,7 +89,7 @@ def find_shifts(
     )
     samples = len(model.part_of) // shape[1]
     joined = np.concatenate([model.adjoining[::samples], np.ones((shape[1], 1), dtype=np.bool_)], axis=1)
-    step = 1.0 if search.reach <= FINE_REACH else 2.0
+    step = 1.0 if search.reach <= 8 else 2.0
     offset = step * np.arange(-(search.reach // step), search.reach // step + 1.0)
     for part in range(shape[1]):
         use = np.flatnonzero(lines.length[:, part] >= SHORTEST_PX)
@@ -193,7 +190,8 @@ class _Lines:
         direction, length = self.direction[use, part], self.length[use, part]
         across = np.stack([-direction[:, 1], direction[:, 0]], axis=-1)
         run = np.arange(-reach, length.max() + reach, STEP_PX)
-        aside = LINES[:, None] * (self.half_width[use, part, None, None] * across[:, None])  # (U, lines, 2)
+        lines = np.array([-0.4, 0.0, 0.4])[:, None]  # in half-widths from the axis
+        aside = lines * (self.half_width[use, part, None, None] * across[:, None])  # (U, lines, 2)
         place = self.start[use, part][:, None] + run[:, None] * direction[:, None]
         column, row = np.moveaxis(np.floor(place[:, :, None] + aside[:, None]).astype(np.intp), -1, 0)
         inside = (column >= 0) & (column < size[0]) & (row >= 0) & (row < size[1])

@@ -26,20 +26,27 @@ from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, AxialTerm, ContourTerm
 from .terms.term import DEGREES
 
-APPEARANCE_FRAMES = 32
 CHUNK_FRAMES = 50
-MOST_KEYFRAMES = 60  # largest number of keyframes that shapes are fitted to, evenly spread in time
-SHAPE_ROUNDS = 3
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
 """Standard deviation of a performer's parts from average ones: thickness at both ends, and place."""
-EDGE_STD_M = 0.012
-FEWEST_EDGES = 20
-AXIAL_STD_PX = 2.0
-AXIAL_STD_M = 0.03  # standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm
-AXIAL_MEMORY_S = 0.3
-"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
-toward or away from the camera."""
-LEAST_FRAME_SHARE = 0.1  # least share of frames with a picture
+
+
+@dataclass(frozen=True)
+class ContourOptions:
+    """Errors of edges and of colors along limbs."""
+
+    edge_std_m: float = 0.012
+    # Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors.
+    keyframe_edge_std_m: float = 0.003
+    fewest_edges: int = 20
+    axial_std_px: float = 2.0
+    axial_std_m: float = 0.03  # standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm
+    # Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
+    # toward or away from the camera.
+    axial_memory_s: float = 0.3
+
+
+CONTOURS = ContourOptions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +99,7 @@ class ContourEvidence:
         `step_s`: times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
-        kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
+        kept = np.exp(-step_s[frame[:-1]] / CONTOURS.axial_memory_s)[:, None]
         axes = LimbAxes(model.parts, model.camera)
         assert self.along is not None
         shape = len(frame), len(model.parts.segments)
@@ -109,7 +116,7 @@ class ContourEvidence:
             at = np.sum(pixel * found.direction, axis=-1) + found.distance
             share[chunk], direction[chunk] = found.share, found.direction
             place[chunk] = np.where(usable, at, np.nan)
-            spread = (AXIAL_STD_PX * album.factor) ** 2 + (AXIAL_STD_M * found.scale) ** 2
+            spread = (CONTOURS.axial_std_px * album.factor) ** 2 + (CONTOURS.axial_std_m * found.scale) ** 2
             variance[chunk] = np.where(usable, found.variance, 1.0) + spread
             yield (chunk[-1] + 1) / len(frame)
         return AxialTerm(axes, share, place, direction, variance, kept)
@@ -130,11 +137,11 @@ def learn_contours(
     """
     seen = np.array([index in album for index in range(posture.batch[0])])
     keyframes = keyframes[seen[keyframes]]
-    if camera.is_moving or np.mean(seen) < LEAST_FRAME_SHARE or len(keyframes) == 0:
+    if camera.is_moving or np.mean(seen) < 0.1 or len(keyframes) == 0:
         return None
     frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
-    known = keyframes[evenly_spread(keyframes, MOST_KEYFRAMES)]
+    known = keyframes[evenly_spread(keyframes, 60)]
     appearance = yield from _learn_appearance(model, album, posture[frame], frame)
     if schedule.is_wide:
         labeled = yield from _labeled(model, album, posture[known], known)
@@ -151,7 +158,7 @@ def learn_contours(
 def _learn_appearance(
     model: ContourModel, album: Album, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, Appearance]:
-    count = min(APPEARANCE_FRAMES, len(frame))
+    count = min(32, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
     images, labels = yield from _labeled(model, album, posture[chosen], frame[chosen])
     return learn_appearance(images, labels, len(model.parts.segments))
@@ -193,7 +200,7 @@ def _fit_shapes(
     """The model with shapes fitted to the edges at the best known postures."""
     stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)
     pictures = [album.pictures(frame[chunk]) for chunk in stretches]
-    for _ in range(SHAPE_ROUNDS):
+    for _ in range(3):
         known = []
         for chunk, seen in zip(stretches, pictures, strict=True):
             yield
@@ -212,12 +219,13 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
     shape = np.zeros_like(model.shape)
     for part in np.unique(model.part_of):
         own = (model.part_of == part) & np.isfinite(variance)
-        if np.count_nonzero(own) < FEWEST_EDGES:
+        if np.count_nonzero(own) < CONTOURS.fewest_edges:
             continue
         rows, noise = rate[own], variance[own]
         wanted = distance[own] + rows @ model.shape[part]
         scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a meter
-        weight = student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES, 1) / noise
+        spread = noise + (CONTOURS.edge_std_m * scale) ** 2
+        weight = student_weight(distance[own] ** 2 / spread, DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
     assert shape.shape[1] == SHAPE
@@ -228,8 +236,6 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
 
 
 LENS_DIFFERENCE = 1e-3
-EDGE_STD_M_CONTOUR_KEYFRAMES = 0.003
-"""Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors."""
 HALVES = 2
 ROWS = HALVES * len(SIDES)  # rows of a part
 
@@ -249,7 +255,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     own_shape = np.sum(predicted.shape_rate * model.shape[model.part_of], axis=-1)
     residual = -edges.distance - own_shape
     scale = np.linalg.norm(predicted.shape_rate[..., :2], axis=-1)
-    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (EDGE_STD_M_CONTOUR_KEYFRAMES * scale) ** 2
+    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (CONTOURS.keyframe_edge_std_m * scale) ** 2
     weight = np.where(found, 1.0 / np.where(found, variance, 1.0), 0.0)
     groups = _groups(model)
     total = weight @ groups  # (J, G)

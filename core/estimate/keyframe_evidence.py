@@ -37,21 +37,29 @@ from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
 from .terms.term import DEGREES
 
-LEAST_TRUSTED = 0.3  # least visibility and quality of a region that judges a keyframe
-MOST_JUDGED = 60
-"""Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters."""
-ITERATIONS = 4
+
+@dataclass(frozen=True)
+class CalibrationOptions:
+    """Which regions judge keyframes, and priors of what these are judged by."""
+
+    least_trusted: float = 0.3  # least visibility and quality of a region that judges a keyframe
+    # Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
+    most_judged: int = 60
+    scale_median: float = 0.7  # log-normal prior of the size
+    scale_spread: float = 1.2
+    timing_mean: float = 0.7  # mean of its exponential prior [frames]
+    # Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
+    # keyframes, with their errors, which hides about a quarter of these.
+    learned_share: float = 1.3
+    most_distrust: float = 10.0
+
+
+CALIBRATION = CalibrationOptions()
 SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
-SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2  # log-normal prior of the size
 TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
-TIMING_MEAN = 0.7  # mean of its exponential prior [frames]
-LEARNED_SHARE = 1.3
-"""Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
-keyframes, with their errors, which hides about a quarter of these."""
 LENS_DIFFERENCE = 1e-3
 PARAMETER_COUNT = len(PRIOR_STD)
-MOST_DISTRUST = 10.0
 
 
 ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
@@ -107,10 +115,10 @@ def read_keyframes(
     keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
     if not model.placements and not believed and contours is None:
-        information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
-        found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
+        information = keyframe_information(posing, velocity, CALIBRATION.scale_median, 0.0)
+        found = replace(uncalibrated(model), posing_scale=CALIBRATION.scale_median, information=information)
         return replace(found, keypoints=keypoints)
-    judged = evenly_spread(frame, MOST_JUDGED)
+    judged = evenly_spread(frame, CALIBRATION.most_judged)
     pose = model.body.pose(posture[judged])
     known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
@@ -129,8 +137,8 @@ def read_keyframes(
     weight = np.ones((len(judged), int(size.sum())))
     markers = len(model.placements)
     distrust = np.ones(markers)
-    scale, timing = SCALE_MEDIAN, 0.0
-    for iteration in range(ITERATIONS):
+    scale, timing = CALIBRATION.scale_median, 0.0
+    for iteration in range(4):
         yield
         parts, area_ratio = [], np.ones(0)
         if markers:
@@ -162,7 +170,7 @@ def read_keyframes(
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     if outlines is not None and not markers and seen_points is None:
-        scale *= LEARNED_SHARE
+        scale *= CALIBRATION.learned_share
     information = keyframe_information(posing, velocity, scale, timing)
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)
@@ -225,8 +233,8 @@ def _region_rows(
     residual = residual + (parameter_jacobian @ change[..., None])[..., 0] + by_lens * lens_change
     usable = (
         np.isfinite(residual).all(-1)
-        & (predicted.visible > LEAST_TRUSTED)
-        & (known.observed.quality > LEAST_TRUSTED)
+        & (predicted.visible > CALIBRATION.least_trusted)
+        & (known.observed.quality > CALIBRATION.least_trusted)
     )
     area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
     variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
@@ -279,7 +287,10 @@ def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, Non
     for row, scale in zip(logarithm, SCALES, strict=True):
         row[:] = _log_likelihoods(seen, seen.noise(weight, scale, 0.0))
         yield
-    logarithm -= 0.5 * (np.log(SCALES[:, None] / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 + TIMINGS / TIMING_MEAN
+    logarithm -= (
+        0.5 * (np.log(SCALES[:, None] / CALIBRATION.scale_median) / CALIBRATION.scale_spread) ** 2
+        + TIMINGS / CALIBRATION.timing_mean
+    )
     probability = np.exp(logarithm - logarithm.max())
     probability /= probability.sum()
     scale = np.exp(probability.sum(axis=1) @ np.log(SCALES))
@@ -317,4 +328,4 @@ def _distrust(squared: Array, usable: BoolArray) -> Array:
     for marker, (values, used) in enumerate(zip(squared.T, usable.T, strict=True)):
         if used.any():
             ratio[marker] = np.sqrt(np.median(values[used]) / usual)
-    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, MOST_DISTRUST))
+    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, CALIBRATION.most_distrust))

@@ -16,9 +16,6 @@ from ..footage.keypoints.keypoints import Keypoints
 from .keypoint_evidence import KeypointEvidence
 from .terms.keypoints import KeypointTerm, ObservedKeypoints
 
-THROWN_OUT = 0.25
-"""Weight below which a keypoint counts as thrown out: it is off by more than three standard deviations."""
-
 
 @dataclass(frozen=True, eq=False)
 class KeypointFit:
@@ -66,7 +63,7 @@ def keypoint_fit(
         residual,
         std_px,
         weight,
-        points.seen & (weight < THROWN_OUT) | doubted,
+        points.seen & (weight < 0.25) | doubted,
         swapped,
         evidence.trust,
         MappingProxyType(trust),
@@ -89,11 +86,6 @@ def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
 # --- Notes on keypoints for people
 
 
-THROUGHOUT = 0.5  # share of the frames from which on sides are exchanged throughout
-MANY_THROWN_OUT = 0.2  # share of a source's keypoints that are thrown out which gets a note
-MOST_NAMED = 4  # largest number of points that a note names
-
-
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
     """Notes on each source of keypoints that was not taken as it stands."""
     notes: list[str] = []
@@ -105,13 +97,13 @@ def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
         notes += _exchanged(source, fit.swapped[:, own])
         doubted = np.flatnonzero(own & (fit.trust == 0.0))
         if len(doubted):
-            named = listed([fit.keypoints.names[i] for i in doubted], MOST_NAMED)
+            named = listed([fit.keypoints.names[i] for i in doubted], 4)
             notes.append(
                 f"keypoints of {source} that lie elsewhere than in the keyframes are left out: {named}"
             )
         seen = fit.keypoints.seen & own & (fit.trust > 0.0)
         share = fit.thrown_out[seen].mean() if seen.any() else 0.0
-        if share > MANY_THROWN_OUT:
+        if share > 0.2:
             notes.append(
                 f"{share:.0%} of the keypoints of {source} lie far from where everything else has "
                 "the performer and are thrown out; check whom and what they follow"
@@ -136,7 +128,7 @@ def _exchanged(source: str, swapped: BoolArray) -> list[str]:
     frames = int(swapped.any(axis=1).sum())
     if not frames:
         return []
-    if frames > THROUGHOUT * len(swapped):
+    if frames > 0.5 * len(swapped):
         return [f"{source} takes left for right throughout; the estimate exchanged its keypoints back"]
     return [
         (f"{source} takes left for right in {pluralize(frames, 'frame')}; the estimate exchanged them back")

@@ -5,6 +5,8 @@ them; a person who poses a keyframe errs in the joints' places instead (`posing_
 line of sight follows from where the markers are seen, the one along it from little.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
@@ -117,12 +119,21 @@ def undetermined_covariance(
 # time
 
 
-GRACE_S = 0.25  # time for which the estimate's own covariance holds
-TIME_CONSTANT_S = 0.35  # time constant at which a limb approaches the variance of anywhere in reach
-TRUNK_STD_RAD, LIMB_STD_RAD = 0.15, 0.5  # standard deviation of joints anywhere in reach [rad]
-WALKING_SPEED_M_PER_S = 0.5
-"""Growth of the place's standard deviation along each axis: the performer may stand or walk."""
-FARTHEST_M = 2.0
+@dataclass(frozen=True)
+class UnobservedOptions:
+    """How postures become uncertain where nothing observes them."""
+
+    grace_s: float = 0.25  # time for which the estimate's own covariance holds
+    # time constant at which a limb approaches the variance of anywhere in reach
+    time_constant_s: float = 0.35
+    trunk_std_rad: float = 0.15  # standard deviation of joints anywhere in reach [rad]
+    limb_std_rad: float = 0.5
+    # Growth of the place's standard deviation along each axis: the performer may stand or walk.
+    walking_speed_m_per_s: float = 0.5
+    farthest_m: float = 2.0
+
+
+UNOBSERVED = UnobservedOptions()
 
 
 def unobserved_variance(
@@ -149,22 +160,22 @@ def unobserved_variance(
         # Anything visible also locates the trunk.
         observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
         unknown = _unobserved_time_s(observed, time_s)
-        std[:, part] = (
-            -np.expm1(-unknown / TIME_CONSTANT_S) * (TRUNK_STD_RAD if part is trunk else LIMB_STD_RAD)
-        )[:, None]
+        reach = UNOBSERVED.trunk_std_rad if part is trunk else UNOBSERVED.limb_std_rad
+        std[:, part] = (-np.expm1(-unknown / UNOBSERVED.time_constant_s) * reach)[:, None]
         if part is trunk:
-            std[:, :3] = np.minimum(WALKING_SPEED_M_PER_S * unknown, FARTHEST_M)[:, None]
+            walked = UNOBSERVED.walking_speed_m_per_s * unknown
+            std[:, :3] = np.minimum(walked, UNOBSERVED.farthest_m)[:, None]
     return std**2
 
 
 def _unobserved_time_s(observed: BoolArray, time_s: Array) -> Array:
     """(F,) time from the nearest observed frame beyond the grace [s]."""
     if not observed.any():
-        return np.full(len(time_s), FARTHEST_M / WALKING_SPEED_M_PER_S)
+        return np.full(len(time_s), UNOBSERVED.farthest_m / UNOBSERVED.walking_speed_m_per_s)
     known = time_s[observed]
     after = np.searchsorted(known, time_s)
     gap = np.minimum(
         np.abs(time_s - known[np.minimum(after, len(known) - 1)]),
         np.abs(time_s - known[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(np.maximum(gap - GRACE_S, 0.0))
+    return np.asarray(np.maximum(gap - UNOBSERVED.grace_s, 0.0))

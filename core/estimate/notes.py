@@ -9,10 +9,6 @@ from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
 from .keyframe_evidence import KeyframeEvidence
 
-DOUBTED_LENS = 0.03  # difference of the calibrated from the stated lens, as a share, that gets a note
-DOUBTED_TIMING_FRAMES = 1.0
-DOUBTED_POSING = 2.0  # size of the posing error, in usual ones, that gets a note
-DOUBTED_MARKER = 3.0  # distrust of a marker that gets a note
 MOST_NAMED = 3  # largest number of frames that a note names
 
 
@@ -35,23 +31,23 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     """Notes where the footage at the keyframes contradicts the take: lens, timing, posing, markers."""
     notes = []
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
-    if abs(lens / stated - 1.0) > DOUBTED_LENS:
+    if abs(lens / stated - 1.0) > 0.03:
         notes.append(
             f"the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that "
             f"instead of {stated:.1f} mm as stated; check the camera"
         )
-    if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
+    if evidence.timing_frames > 1.0:
         notes.append(
             f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the "
             "footage; check the frames they are set at"
         )
-    if evidence.posing_scale > DOUBTED_POSING:
+    if evidence.posing_scale > 2.0:
         notes.append(
             "the keyframes differ from the footage by much more than the usual posing error; check "
             f"the camera, the actor's lengths{_and_what_is_seen(take)}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
-        if distrust > DOUBTED_MARKER:
+        if distrust > 3.0:
             notes.append(
                 f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
                 "check whether another thing has its color"

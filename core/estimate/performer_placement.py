@@ -5,6 +5,7 @@ and not from the library's own ankles, which are raised by feet that cannot bend
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -69,12 +70,24 @@ def found_ankle_m(
 # --- Placement of a standing performer before the camera, before any keyframe is posed
 
 
-FILLED_SHARE = 0.7  # share of the picture's height that a body fills where no region is seen
-SIZE_STD = 0.08  # standard deviation of a distance by size in the picture, as a share
-TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
-"""The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
-bend)."""
-AGREEING = 1.5  # largest difference, in standard deviations, of sizes that agree on a distance
+@dataclass(frozen=True)
+class SizeOptions:
+    """How exactly sizes in the picture tell a distance, as shares of it."""
+
+    filled_share: float = 0.7  # share of the picture's height that a body fills where no region is seen
+    size_std: float = 0.08  # standard deviation of a distance by size in the picture, as a share
+    # The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
+    # bend).
+    trunk_area_std: float = 0.12
+    limb_area_std: float = 0.2
+    legs_std: float = 0.08
+    agreeing: float = 1.5  # largest difference, in standard deviations, of sizes that agree on a distance
+    floor_std_m: float = 0.05  # standard deviation of the soles' height above the floor [m]
+    floor_doubted: float = 3.0  # standard deviations beyond which the ground is not at z = 0
+    least_height_px: float = 20.0
+
+
+SIZES = SizeOptions()
 TRUNK = ("trunk", "chest", "pelvis")
 PAIR_SPANS = {("shoulder", "hip"): 0.12, ("hip", "ankle"): 0.1, ("shoulder", "ankle"): 0.08}
 """Standard deviation of a distance by that of two pairs of keypoints in the picture, as a share: trunks lean,
@@ -86,11 +99,6 @@ LIMB_SPANS = {
     ("elbow", "wrist"): 0.15,
 }  # the same by single limbs, of which one lies across the view even in someone who bends or sits
 _TRUNK_POINTS = np.array([name.split(".")[0] in ("hip", "shoulder") for name in HUMAN.point_names])
-FLOOR_STD_M = 0.05  # standard deviation of the soles' height above the floor [m]
-FLOOR_DOUBTED = 3.0  # standard deviations beyond which the ground is not at z = 0
-ROUNDS = 6
-LEAST_DEPTH_M = 0.3
-LEAST_HEIGHT_PX = 20.0
 
 
 def place_standing(
@@ -148,12 +156,12 @@ def _by_size(
     _, location = camera.pose(frame)
     _, direction = camera.rays(center, frame)
     distance, offset = _usual_distance(body, camera), np.zeros(3)
-    for _ in range(ROUNDS):
+    for _ in range(6):
         shown, ratio = shown_from(_at(standing, location + distance * direction))
         # What is seen has its middle off the hips, by the same offset there as here.
         _, ray = camera.rays(shown, frame)
         offset = (ray - direction) * distance
-        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
+        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), 0.3)
     return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
 
 
@@ -197,10 +205,10 @@ def ground_place(
         InputError: The two points in the picture cannot be a person's.
     """
     crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
-    if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
+    if np.linalg.norm(crown - ground) < SIZES.least_height_px:
         raise InputError(
             f"top of the head and ground are {np.linalg.norm(crown - ground):.0f} pixels apart in the "
-            f"picture; at least {LEAST_HEIGHT_PX:.0f} are needed to measure by"
+            f"picture; at least {SIZES.least_height_px:.0f} are needed to measure by"
         )
     location, up = camera.rays(crown, frame)
     _, down = camera.rays(ground, frame)
@@ -250,19 +258,19 @@ def _relative_size(
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
     measured = known | shins
     logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
-    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[measured]
+    errors = np.where(_bound(segments, *TRUNK), SIZES.trunk_area_std, SIZES.limb_area_std)[measured]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
         logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
-        errors = np.append(errors, LEGS_STD)
+        errors = np.append(errors, SIZES.legs_std)
     return _largest_size(logarithms, errors)
 
 
 def _largest_size(logarithms: Array, errors: Array) -> float:
     """Ratio by all sizes that agree with the largest, given the logarithms of each one's ratio."""
     nearest = int(np.argmin(logarithms))
-    fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
+    fits = logarithms - logarithms[nearest] <= SIZES.agreeing * np.hypot(errors, errors[nearest])
     return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
 
 
@@ -271,16 +279,16 @@ def _floor_step(above_m: float, down: float, distance: float) -> float:
 
     `above_m`: height of the soles by size; `down`: vertical share of the line of sight.
     """
-    variance = (SIZE_STD * distance) ** 2
-    spread = FLOOR_STD_M**2 + variance * down**2
-    if above_m**2 > FLOOR_DOUBTED**2 * spread:
+    variance = (SIZES.size_std * distance) ** 2
+    spread = SIZES.floor_std_m**2 + variance * down**2
+    if above_m**2 > SIZES.floor_doubted**2 * spread:
         return 0.0
     return -above_m * down * variance / spread
 
 
 def _usual_distance(body: Body, camera: Camera) -> float:
     """Distance at which the body fills the usual share of the picture's height [m]."""
-    return body.actor.stature_m * camera.focal_px / (FILLED_SHARE * camera.resolution[1])
+    return body.actor.stature_m * camera.focal_px / (SIZES.filled_share * camera.resolution[1])
 
 
 def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) -> Posture:
@@ -291,7 +299,7 @@ def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) ->
     stature = body.actor.stature_m
     hips = middle + np.array([0.0, 0.0, hip_height_m(body) - 0.5 * stature])
     soles = float(hips[2]) - hip_height_m(body)
-    off_the_picture = 0.5 * (1.0 / FILLED_SHARE - 1.0) * stature
+    off_the_picture = 0.5 * (1.0 / SIZES.filled_share - 1.0) * stature
     if abs(soles) <= off_the_picture:
         hips[2] -= soles
     return _at(standing, hips)

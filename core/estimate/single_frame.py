@@ -21,11 +21,19 @@ from .terms.keypoints import ObservedKeypoints
 from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from .terms.term import NormalEquations, Term, total_cost
 
-MISPLACED_WIDTHS = 1.5  # a marker farther off than this many of its limb's half-widths is misplaced ...
-MISPLACED_PX = 4.0  # ... unless it is nearer than this [px]
-MISPLACED_M = 0.12
-"""A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
-SURE = 0.5  # least confidence of a keypoint that is called misplaced
+
+@dataclass(frozen=True)
+class MisplacedOptions:
+    """When a posture does not explain what is seen."""
+
+    widths: float = 1.5  # a marker farther off than this many of its limb's half-widths is misplaced ...
+    px: float = 4.0  # ... unless it is nearer than this [px]
+    # A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less.
+    m: float = 0.12
+    sure: float = 0.5  # least confidence of a keypoint that is called misplaced
+
+
+MISPLACED = MisplacedOptions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,15 +61,15 @@ def frame_residuals(
     pose = model.body.pose(Posture.stack([posture]))
     off = np.linalg.norm(model.evaluate(pose, index).centroid - observed.centroid, axis=-1)[0]
     width = limb_widths(model, posture.translation[None], index)[0]
-    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX))
+    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED.widths * width, MISPLACED.px))
     if points is None:
         return FrameResiduals(off, np.zeros(0), tuple(map(int, markers)), ())
     own = evidence.keypoints.model
     depth = own.camera.depth(own.world(pose), index[:, None])[0]
-    far_px = MISPLACED_M * own.camera.focal_px / np.maximum(depth, 0.1)
+    far_px = MISPLACED.m * own.camera.focal_px / np.maximum(depth, 0.1)
     point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
-    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED_PX)
-    misplaced = np.flatnonzero(far & (points.confidence[0] >= SURE))
+    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED.px)
+    misplaced = np.flatnonzero(far & (points.confidence[0] >= MISPLACED.sure))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 
@@ -71,8 +79,6 @@ def frame_residuals(
 
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 """From a start that may be far off; image noise is widened by these factors."""
-LARGEST_STEP = 0.4  # largest change of a posture's unknown in one step [m, rad]
-CONVERGED = 2e-3
 
 
 def descend(
@@ -90,7 +96,7 @@ def descend(
         for term in terms:
             term.add_to(equations, state, temperature)
         step = equations.matrix.factorize().solve(-equations.gradient)
-        state, moved = state.stepped(step, LARGEST_STEP)
+        state, moved = state.stepped(step, 0.4)
         if temperature > 1.0:
             continue
         costs = total_cost(terms, state)
@@ -101,7 +107,7 @@ def descend(
             bias=np.where(better[:, None], state.bias, best.bias),
         )
         least = np.minimum(costs, least)
-        if moved < CONVERGED:
+        if moved < 2e-3:
             break
     return best, least
 
@@ -109,7 +115,6 @@ def descend(
 # --- One frame's posture from that frame's marker regions and keypoints
 
 
-CALIBRATED_FROM = 5  # fewest keyframes that calibrate: their placements are better than average ones
 EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
 EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
@@ -172,7 +177,7 @@ def calibrated(
 
     Regions and keypoints are those seen at the K keyframes.
     """
-    if len(frame) < CALIBRATED_FROM:
+    if len(frame) < 5:
         found = uncalibrated(model)
         return found if keypoints is None else replace(found, keypoints=keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)

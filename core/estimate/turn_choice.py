@@ -17,9 +17,30 @@ from .window_problem import WindowProblem, image_cost
 
 BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)
 """Factors of the image's variance in an alternative's first steps: enough to tell a hopeless one."""
-HOPELESS_SHARE, HOPELESS_COST = 0.3, 50.0
-"""An alternative that costs more than the estimate by more than this share of it and this much besides is
-given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth."""
+
+
+@dataclass(frozen=True)
+class TurnOptions:
+    """When another turn between two keyframes is tried, and when it is taken."""
+
+    # An alternative that costs more than the estimate by more than this share of it and this much besides is
+    # given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
+    hopeless_share: float = 0.3
+    hopeless_cost: float = 50.0
+    # a turn between keyframes from which on the other way round is tried
+    large_step_rad: float = np.radians(60.0)
+    # Nobody turns faster between two keyframes: dancers make two to three turns a second.
+    fastest_rad_per_s: float = 3.0 * FULL_TURN
+    long_s: float = 0.3  # gaps of this time and longer ...
+    # ... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
+    # would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well.
+    doubted_cost: float = 0.5
+    margin_s: float = 0.2  # how far beyond its keyframes, which hold it, a stretch is solved
+    # another turn is taken where it costs less by so much: it is twenty times as probable
+    cheaper: float = 3.0
+
+
+TURNS = TurnOptions()
 GONE_ON = tuple(1.0 for _ in range(10))
 """An alternative's other steps, which are needed where it departs as far from the prior as in long gaps."""
 SETTLED = tuple(1.0 for _ in range(4))
@@ -48,7 +69,7 @@ def alternative(
     there = WindowProblem(other, window, other.start(window))
     known = yield from here.descend(())
     begun = yield from there.descend(BEGUN)
-    if begun.sum() > (1.0 + HOPELESS_SHARE) * known.sum() + HOPELESS_COST:
+    if begun.sum() > (1.0 + TURNS.hopeless_share) * known.sum() + TURNS.hopeless_cost:
         return None
     settled = yield from here.descend(SETTLED)
     ended = yield from there.descend(GONE_ON)
@@ -65,17 +86,6 @@ def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipStat
 
 
 # --- Which way round the body turns between two keyframes
-
-
-LARGE_STEP_RAD = np.radians(60.0)  # a turn between keyframes from which on the other way round is tried
-FASTEST_RAD_PER_S = 3.0 * FULL_TURN
-"""Nobody turns faster between two keyframes: dancers make two to three turns a second."""
-LONG_S = 0.3  # gaps of this time and longer ...
-DOUBTED_COST = 0.5
-"""... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
-would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well."""
-MARGIN_S = 0.2  # how far beyond its keyframes, which hold it, a stretch is solved
-CHEAPER = 3.0  # another turn is taken where it costs less by so much: it is twenty times as probable
 
 
 @dataclass(frozen=True)
@@ -102,11 +112,12 @@ def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[D
             continue
         time_s = float(problem.step_s[first:last].sum())
         misfit = float(cost[first + 1 : last].mean())
-        doubted = time_s >= LONG_S and misfit > DOUBTED_COST
-        if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
+        doubted = time_s >= TURNS.long_s and misfit > TURNS.doubted_cost
+        if abs(step[gap]) < TURNS.large_step_rad and not doubted:
             continue
         ways = (-1, 1) if doubted else (-1 if step[gap] > 0.0 else 1,)
-        possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= FASTEST_RAD_PER_S * time_s]
+        farthest = TURNS.fastest_rad_per_s * time_s
+        possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= farthest]
         if possible:
             found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
     return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
@@ -120,7 +131,7 @@ def choose_turns(
     `states` are windows, solved, which may overlap; `among` (K - 1,) the gaps that are asked for.
     """
     states = list(states)
-    margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0
+    margin = round(TURNS.margin_s / float(np.median(problem.step_s))) if len(problem.step_s) else 0
     seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
     for number, doubt in enumerate(doubts):
@@ -130,7 +141,7 @@ def choose_turns(
             continue
         trying = _best(problem, state, doubt)
         best = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
-        if best is not None and best.gain > CHEAPER:
+        if best is not None and best.gain > TURNS.cheaper:
             before, problem = problem, best.problem
             turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
             for index, one in enumerate(states):

@@ -9,7 +9,7 @@ Of 100 s with a keyframe moved or added, measured against estimating all anew: 0
 99 of 100 points within 1.2 mm, a few in frames that hardly anything determines by up to 14 mm.
 """
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
@@ -24,16 +24,27 @@ from .keypoint_evidence import KeypointEvidence
 from .terms.keypoints import ObservedKeypoints
 from .terms.regions import ObservedRegions
 
-SAME = 1e-7  # differences of a posture's unknowns [m, rad] from reading it from Blender once more
-SAME_PLACEMENT = 0.06  # difference of placements in standard deviations of their prior: 0.3 mm on average
-SAME_LENS = 5e-4  # difference of the focal length's logarithm
-# Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in frames.
-SAME_SIZE = 0.1
-SAME_ANKLE_HEIGHT_M = 2e-3  # difference of the lower ankle's usual height
-SAME_PLACE_M = 2e-3  # difference of keypoints' places
-SAME_GAIN = 0.1  # difference of the depth hints' gains, and of offsets in links' errors
-SAME_FACTOR = 0.15
-"""Difference of the accelerations' log covariance, in the direction of the largest difference."""
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Differences up to which an earlier estimate still holds."""
+
+    # differences of a posture's unknowns [m, rad] from reading it from Blender once more
+    posture: float = 1e-7
+    # difference of placements in standard deviations of their prior: 0.3 mm on average
+    placement: float = 0.06
+    lens: float = 5e-4  # difference of the focal length's logarithm
+    # Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in
+    # frames.
+    size: float = 0.1
+    ankle_height_m: float = 2e-3  # difference of the lower ankle's usual height
+    place_m: float = 2e-3  # difference of keypoints' places
+    gain: float = 0.1  # difference of the depth hints' gains, and of offsets in links' errors
+    # Difference of the accelerations' log covariance, in the direction of the largest difference.
+    factor: float = 0.15
+
+
+SAME = Tolerances()
 
 
 def continued(earlier: ClipProblem, now: ClipProblem) -> tuple[ClipProblem, BoolArray] | None:
@@ -108,10 +119,10 @@ def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
     sizes -= np.log([other.posing_scale, *other.distrust, *other.area_ratio])
     lens = np.log(one.model.camera.lens_mm / other.model.camera.lens_mm)
     return bool(
-        np.abs(placed / PRIOR_STD).max(initial=0.0) < SAME_PLACEMENT
-        and abs(lens) < SAME_LENS
-        and np.abs(sizes).max() < SAME_SIZE
-        and abs(one.timing_frames - other.timing_frames) < SAME_SIZE
+        np.abs(placed / PRIOR_STD).max(initial=0.0) < SAME.placement
+        and abs(lens) < SAME.lens
+        and np.abs(sizes).max() < SAME.size
+        and abs(one.timing_frames - other.timing_frames) < SAME.size
     )
 
 
@@ -131,20 +142,20 @@ def _same_keypoints(one: KeypointEvidence, other: KeypointEvidence) -> bool:
     )
     return bool(
         np.array_equal(one.trust, other.trust)
-        and moved < SAME_PLACE_M
-        and sizes < SAME_SIZE
-        and (hints < SAME_GAIN).all()
+        and moved < SAME.place_m
+        and sizes < SAME.size
+        and (hints < SAME.gain).all()
     )
 
 
 def _same_factor(one: Array, other: Array) -> bool:
     ratio = np.linalg.solve(one, other)
-    return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME_FACTOR)
+    return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME.factor)
 
 
 def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) whether a frame's prior, keyframe or observations differ."""
-    changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
+    changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME.posture)
     changed |= _observations_differ(earlier.tracked, now.tracked)
     changed |= _observations_differ(earlier.points, now.points)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
@@ -159,7 +170,7 @@ def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
 def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     if earlier.ankle_height_m is None or now.ankle_height_m is None:
         return np.full(now.frames, earlier.ankle_height_m is not now.ankle_height_m)
-    return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME_ANKLE_HEIGHT_M
+    return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME.ankle_height_m
 
 
 def _observations_differ(

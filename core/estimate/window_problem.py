@@ -21,19 +21,12 @@ TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
 """Of a first descent: what is learned from its postures changes the problem before they have converged."""
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-SETTLING_TEMPERATURES = (1.0, 1.0)  # of the steps from postures that were found with less knowledge
-CONVERGING_TEMPERATURES = tuple(1.0 for _ in range(9))  # of the last steps where no contours follow
-CONTOUR_TEMPERATURES = (1.0, 1.0)
-"""Of the steps with contours, once the markers have brought these within reach of their edges."""
-LARGEST_STEP = 0.5  # largest change of a posture's unknown in one step [m, rad]
-CONVERGED = 3e-3  # converged once no unknown of any posture changes by more in a step [m, rad]
 MOST_UNPACKED = 256 << 20
 """Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
 UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
 for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
 other side."""
-MEASURING_SHARE = 0.5  # share of following the contours that measuring their edges is
 
 
 @dataclass(eq=False)
@@ -55,11 +48,11 @@ class WindowProblem:
 
     def settle(self) -> Part[None]:
         """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
-        yield from self._gauss_newton(SETTLING_TEMPERATURES, 0.0, 1.0)
+        yield from self._gauss_newton((1.0, 1.0), 0.0, 1.0)
 
     def converge(self) -> Part[None]:
         """Gauss-Newton to the end with the terms there are; yields likewise."""
-        yield from self._gauss_newton(CONVERGING_TEMPERATURES, 0.0, 1.0)
+        yield from self._gauss_newton(tuple(1.0 for _ in range(9)), 0.0, 1.0)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
         """Gauss-Newton steps with the terms there are.
@@ -78,7 +71,7 @@ class WindowProblem:
         looks = len(contours.schedule.looks)
         for number, search in enumerate(contours.schedule.looks):
             measuring = contours.measure(self.state.posture, self.state.frame, search)
-            begun, measured = number / looks, (number + MEASURING_SHARE) / looks
+            begun, measured = number / looks, (number + 0.5) / looks
             term = yield from scaled(measuring, begun, measured)
             self.terms = with_contours(others, term)
             if contours.along is not None:
@@ -86,7 +79,7 @@ class WindowProblem:
                     self.state.posture, self.state.frame, search, self.clip.step_s
                 )
                 self.terms.append((yield from scaled(shifts, measured, measured)))
-            yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
+            yield from self._gauss_newton((1.0, 1.0), measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
         """Gauss-Newton steps until convergence."""
@@ -96,10 +89,10 @@ class WindowProblem:
             for _ in self._assemble(equations, temperature):
                 yield done
             step = equations.matrix.factorize().solve(-equations.gradient)
-            self.state, moved = self.state.stepped(step, LARGEST_STEP)
+            self.state, moved = self.state.stepped(step, 0.5)
             yield begun + (ended - begun) * (i + 1) / len(temperatures)
             yield Preview(self.window.keep_first, self.state.posture[self.window.kept])
-            if temperature == 1.0 and moved < CONVERGED:
+            if temperature == 1.0 and moved < 3e-3:
                 break
 
     def outlined(self) -> BoolArray:

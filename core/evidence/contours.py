@@ -130,7 +130,6 @@ def _between(view: View, part: IndexArray, share: Array) -> Array:
 # --- Part segmentation of the body
 
 
-NO_PART = 255  # -1 as a signed byte
 SUBPIXEL_BITS = 4  # fractional bits of the coordinates that outlines are drawn with
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
@@ -143,7 +142,7 @@ def part_map(parts: PartOutlines, frame: int, size: tuple[int, int], factor: flo
     (rows, columns) index of the visible part, -1 for none; `size`: columns and rows; `factor`: pixels of the
     camera to one of the map.
     """
-    labels = np.full((size[1], size[0]), NO_PART, dtype=np.uint8)
+    labels = np.full((size[1], size[0]), 255, dtype=np.uint8)
     outlines = _outlines(parts, frame) / factor - 0.5
     whole = np.isfinite(outlines).all(axis=(1, 2))
     corners = np.round(np.where(whole[:, None, None], outlines, 0.0) * 2**SUBPIXEL_BITS).astype(np.int32)

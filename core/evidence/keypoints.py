@@ -37,8 +37,6 @@ JOINT_PLACE_STD_M, WIDE_PLACE_STD_M = 0.02, 0.035
 """Of limbs' joints; and of hips, shoulders, head and trunk, which detectors define as they please [m]."""
 JOINT_ERROR_STD_M = 0.02
 """An error of a fifth of a limb's length at most, as detectors have; also what annotators differ by."""
-WRIST_TURN_RAD, ANKLE_TURN_RAD = 0.35, 0.35
-"""How far hands and feet usually turn about wrist and ankle, which no posture tells [rad]."""
 NECK_HEAD = "neck_head"
 # Heights and breadths of the head over `neck_head`, from averages of adults (Gordon et al. 2014, as in
 # `body_volume`): pupils level with the head's center and 32 mm off the middle, tragus 15 mm below it.
@@ -87,12 +85,12 @@ def _usual_places() -> dict[str, UsualPlace]:
         length = HUMAN_LENGTHS_M["hand"]
         for name, (along, back, up) in HAND.items():
             placement = {f"forearm.{side}": (sign, 0.0, 0.0), f"hand.{side}": (sign * along, back, up)}
-            turned = WRIST_TURN_RAD * length * along
+            turned = 0.35 * length * along
             places[f"{name}.{side}"] = _at_an_extremity(f"forearm.{side}", placement, turned)
         length = HUMAN_LENGTHS_M["foot"]
         for name, (out, back, up) in FOOT.items():
             placement = {f"shin.{side}": (0.0, 0.0, -1.0), f"foot.{side}": (sign * out, back, up)}
-            turned = ANKLE_TURN_RAD * length * float(np.hypot(back, up))
+            turned = 0.35 * length * float(np.hypot(back, up))
             places[f"{name}.{side}"] = _at_an_extremity(f"shin.{side}", placement, turned)
     return places
 

@@ -43,10 +43,6 @@ def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Flo
 State = TypeVar("State")
 Equations = tuple[Array, Array, Array]
 """Of N problems in D unknowns: cost (N,), normal matrix (N, D, D) and gradient (N, D)."""
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
-REWARD, PENALTY = 0.2, 8.0
-"""Factors on the damping after a step that lowers the cost, and after one that does not."""
-RIDGE = 1e-9  # added to the diagonal, so that what nothing determines stays
 
 
 def levenberg_marquardt(
@@ -64,12 +60,12 @@ def levenberg_marquardt(
     """
     state = start
     cost, normal, gradient = equations(state)
-    damping = np.full(len(cost), FIRST_DAMPING)
+    damping = np.full(len(cost), 1e-3)
     diagonal = np.arange(gradient.shape[-1])
     for _ in range(iterations):
         damped = normal.copy()
         damped[:, diagonal, diagonal] *= 1.0 + damping[:, None]
-        damped[:, diagonal, diagonal] += RIDGE
+        damped[:, diagonal, diagonal] += 1e-9
         trial = plus(state, -np.linalg.solve(damped, gradient[..., None])[..., 0])
         trial_cost, trial_normal, trial_gradient = equations(trial)
         better = trial_cost < cost
@@ -78,7 +74,7 @@ def levenberg_marquardt(
         cost = np.where(better, trial_cost, cost)
         normal = np.where(better[:, None, None], trial_normal, normal)
         gradient = np.where(better[:, None], trial_gradient, gradient)
-        damping = np.clip(np.where(better, damping * REWARD, damping * PENALTY), LEAST_DAMPING, 1e9)
-        if np.all(np.where(better, gain < converged, damping > MOST_DAMPING)):
+        damping = np.clip(np.where(better, damping * 0.2, damping * 8.0), 1e-9, 1e9)
+        if np.all(np.where(better, gain < converged, damping > 1e6)):
             break
     return state

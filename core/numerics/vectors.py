@@ -5,13 +5,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, IndexArray
 
-SHORTEST = 1e-12  # length below which a vector has no direction
-
 
 def unit(vectors: Array) -> Array:
     """Vectors (..., N) made one long; those without a direction stay short."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, SHORTEST))
+    return np.asarray(vectors / np.maximum(length, 1e-12))
 
 
 def across(vector: Array) -> Array:

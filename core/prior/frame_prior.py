@@ -59,10 +59,7 @@ UNRELATED_STD = {
     "knee": 0.60,
     "shin": 0.05,
 }
-CORRELATION_TIME_S = 0.3  # time after which postures differ by two thirds of that
 SPEED_M_PER_S = 0.7  # a walking performer's hips also move away steadily, by this speed
-VELOCITY_SHARE = 0.5
-"""Share of the velocity between the last two keyframes with which the hips are extrapolated."""
 ROUGH_POSE_SHARE = 0.5
 """Standard deviation of a pose roughly set by the animator, as a share of `UNRELATED_STD`."""
 
@@ -81,7 +78,7 @@ class FramePrior:
 
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
     """(D,) standard deviation [m, rad] of the difference between postures a time apart."""
-    share = 1.0 - np.exp(-abs(time_s) / CORRELATION_TIME_S)
+    share = 1.0 - np.exp(-abs(time_s) / 0.3)
     std = share * unrelated_std(skeleton)
     std[:3] = np.maximum(std[:3], SPEED_M_PER_S * abs(time_s))
     return np.maximum(std, 1e-3)
@@ -117,7 +114,7 @@ def _extrapolated(keyframes: Sequence[Keyframe], index: int) -> Posture:
         return last.posture
     step = np.zeros(last.posture.skeleton.dof_count)
     time = (index - last.index) / (last.index - other[0].index)
-    step[:2] = VELOCITY_SHARE * time * (last.posture.translation - other[0].posture.translation)[:2]
+    step[:2] = 0.5 * time * (last.posture.translation - other[0].posture.translation)[:2]
     return last.posture.plus(step)
 
 

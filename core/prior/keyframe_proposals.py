@@ -59,8 +59,6 @@ def point_speed(centroid: Array, time: Array) -> Array:
 # --- V_sum of whatever shows the performer
 
 
-OUTLIER_S = 0.17
-"""Time of which a keypoint's path is the median: less than half of it a detector may be wrong."""
 JITTER_S = 0.067
 """Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
 FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
@@ -117,7 +115,7 @@ def _cleaned(pixel: Array, time_s: Array) -> Array:
     within = np.arange(seen[0], seen[-1] + 1)
     frames = np.arange(len(pixel))
     path = columns_at(within, seen, pixel[seen])
-    half = max(1, round(0.5 * OUTLIER_S / usual_step(time_s)))
+    half = max(1, round(0.5 * 0.17 / usual_step(time_s)))
     calm = median_filter(path, size=(2 * half + 1, 1), mode="nearest")
     cleaned = np.full((len(frames), 2), np.nan)
     cleaned[within] = gaussian(calm, JITTER_S / usual_step(time_s))
@@ -125,13 +123,6 @@ def _cleaned(pixel: Array, time_s: Array) -> Array:
 
 
 # --- Frames proposed as keyframes, from the markers' summed speed V_sum
-
-
-KEYFRAMES_PER_100_FRAMES = 10.0
-SNAP_SHARE = 0.35
-"""Largest shift of a keyframe from its evenly spaced frame, in even gaps; below 0.5, so that none overtakes
-another."""
-GAP_SLACK = 1.5  # default of the largest gap, in even gaps
 
 
 def propose_keyframes(
@@ -157,12 +148,12 @@ def propose_keyframes(
         )
     if largest_gap is not None and largest_gap < 1:
         raise InputError(f"largest keyframe gap is {largest_gap} frames; a gap of 1 frame or more is valid")
-    wanted = count if count is not None else round(frames * KEYFRAMES_PER_100_FRAMES / 100.0)
+    wanted = count if count is not None else round(frames * 10.0 / 100.0)
     if largest_gap is not None:
         wanted = max(wanted, math.ceil((frames - 1) / largest_gap) + 1)
     even = np.rint(np.linspace(0, frames - 1, min(max(wanted, 2), frames))).astype(np.intp)
     gap = (frames - 1) / (len(even) - 1)
-    return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(GAP_SLACK * gap))
+    return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(1.5 * gap))
 
 
 def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
@@ -172,7 +163,7 @@ def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
     minimum = np.isfinite(V) & (V <= padded[:-2]) & (V <= padded[2:])
     spacing = np.diff(even)
     # Within this reach the next keyframe's evenly spaced frame stays allowed for any choice of this one.
-    reach = min(int(SNAP_SHARE * spacing.min()), largest_gap - int(spacing.max()))
+    reach = min(int(0.35 * spacing.min()), largest_gap - int(spacing.max()))
     chosen = even.copy()
     for i in range(1, len(even) - 1):
         last = min(even[i] + reach, chosen[i - 1] + largest_gap)

@@ -116,12 +116,19 @@ def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
 # --- Performer offset
 
 
-CONSTANT_SHARE = 0.5  # share of the offset's variance that is constant over the clip
-CORRELATION_TIME_S = 0.5  # correlation time of the rest
-POSED_VARIANCE = 0.1  # variance of a person's own error, relative to the offset's
-LEAST_VARIANCE = 0.05  # share of the offset's variance that remains beside any posed keyframe
-BEYOND_S = 0.1
-"""Time outside the matched keyframes over which the nearest of them ceases to stand for the library."""
+@dataclass(frozen=True)
+class OffsetOptions:
+    """How a performer differs from a library."""
+
+    constant_share: float = 0.5  # share of the offset's variance that is constant over the clip
+    correlation_time_s: float = 0.5  # correlation time of the rest
+    posed_variance: float = 0.1  # variance of a person's own error, relative to the offset's
+    least_variance: float = 0.05  # share of the offset's variance that remains beside any posed keyframe
+    # Time outside the matched keyframes over which the nearest of them ceases to stand for the library.
+    beyond_s: float = 0.1
+
+
+OFFSET = OffsetOptions()
 
 
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
@@ -141,7 +148,7 @@ def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyf
     known = _known(at, beyond_s)
     across = _covariance(at, wanted)
     share = np.linalg.solve(known, across).T  # (found, posed)
-    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), LEAST_VARIANCE))
+    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), OFFSET.least_variance))
     step = np.where([[key in matched] for key in found], share @ difference, 0.0)
     changed = Posture.stack([key.posture for key in found]).plus(step)
     both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
@@ -159,13 +166,14 @@ def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tupl
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
     difference, beyond_s = _differences(posed, matched, fps)
     information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
-    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
+    weight = 1.0 / (1.0 + (beyond_s / OFFSET.beyond_s) ** 2)
     return (information @ difference) / np.diag(information)[:, None], weight
 
 
 def _known(at: Array, beyond_s: Array) -> Array:
     """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
-    return np.asarray(_covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2))
+    noise = OFFSET.posed_variance + (beyond_s / OFFSET.beyond_s) ** 2
+    return np.asarray(_covariance(at, at) + np.diag(noise))
 
 
 def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:
@@ -181,5 +189,5 @@ def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> 
 
 
 def _covariance(one: Array, other: Array) -> Array:
-    apart = np.abs(one[:, None] - other)
-    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * np.exp(-apart / CORRELATION_TIME_S))
+    alike = np.exp(-np.abs(one[:, None] - other) / OFFSET.correlation_time_s)
+    return np.asarray(OFFSET.constant_share + (1.0 - OFFSET.constant_share) * alike)

@@ -14,9 +14,6 @@ from ..numerics.vectors import columns_at
 from .library import Library, LibraryMotion, Travel
 from .transfer import transferred
 
-ANKLE_OVER_SOLE = 0.36
-"""Height of an ankle over flat soles, as a share of the foot's length; as in the standing skeleton."""
-
 
 def shape_vectors(body: Body, posture: Posture) -> Array:
     """Shape vectors (F, 3 P); their distance is the root mean square distance of the points [m].
@@ -38,19 +35,27 @@ def ankle_heights(body: Body, posture: Posture) -> Array:
     """
     points = body.points(body.pose(posture))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-    below = [ANKLE_OVER_SOLE * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
+    below = [0.36 * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
     return np.asarray(points[..., ankles, 2] - below)
 
 
 # --- Periodic motions
 
 
-FEWEST_CYCLES = 1.9  # cycles a motion must contain: two, but for what is cut off at the clip's ends
-SHORTEST_S = 0.25
-MOST_UNLIKE = 0.2  # largest normalized difference of shapes one period apart
-AS_GOOD = 0.05
-"""Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples."""
-STILL_M = 0.02  # variation of the body's shape below which it counts as motionless
+@dataclass(frozen=True)
+class PeriodOptions:
+    """When a motion counts as periodic."""
+
+    # cycles a motion must contain: two, but for what is cut off at the clip's ends
+    fewest_cycles: float = 1.9
+    shortest_s: float = 0.25
+    most_unlike: float = 0.2  # largest normalized difference of shapes one period apart
+    # Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples.
+    as_good: float = 0.05
+    still_m: float = 0.02  # variation of the body's shape below which it counts as motionless
+
+
+PERIOD = PeriodOptions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,15 +80,15 @@ def find_period_s(shape: Array, time_s: Array) -> float | None:
     even = time_s[0] + step_s * np.arange(count)
     rows = columns_at(even, time_s, shape)
     rows -= rows.mean(axis=0)
-    if np.sqrt(np.sum(rows**2, axis=1).mean()) < STILL_M:
+    if np.sqrt(np.sum(rows**2, axis=1).mean()) < PERIOD.still_m:
         return None
-    unlike = _unlikeness(rows)[: int((count - 1) / FEWEST_CYCLES) + 1]
+    unlike = _unlikeness(rows)[: int((count - 1) / PERIOD.fewest_cycles) + 1]
     lags = np.arange(1, len(unlike) - 1)
     lowest = lags[(unlike[1:-1] <= unlike[:-2]) & (unlike[1:-1] < unlike[2:])]
-    lowest = lowest[(unlike[lowest] < MOST_UNLIKE) & (lowest * step_s >= SHORTEST_S)]
+    lowest = lowest[(unlike[lowest] < PERIOD.most_unlike) & (lowest * step_s >= PERIOD.shortest_s)]
     if not len(lowest):
         return None
-    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + AS_GOOD][0])
+    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + PERIOD.as_good][0])
     left, middle, right = unlike[lag - 1 : lag + 2]
     bend = left - 2.0 * middle + right
     return float(step_s * (lag + (0.5 * (left - right) / bend if bend > 0.0 else 0.0)))

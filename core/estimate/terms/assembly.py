@@ -33,8 +33,6 @@ from .regions import ObservedRegions, RegionNoise, RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
-# Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else determines.
-LARGEST_VARIATION = 20.0
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
@@ -183,7 +181,7 @@ def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTe
     size = noise.bias_std(width_px).reshape(frames, -1)
     builder = QuadraticBuilder(frames, dofs + size.shape[1])
     posture, bias = slice(0, dofs), slice(dofs, None)
-    builder.add(posture, (1.0,), LARGEST_VARIATION)
+    builder.add(posture, (1.0,), 20.0)
     factor = clip.accelerations
     information = factor.T @ clip.evidence.information[inside] @ factor
     builder.add_blocks(clip.keyframes[inside] - window.first, information)

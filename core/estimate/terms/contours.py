@@ -16,8 +16,6 @@ SURFACE_SHARE = 0.2  # standard deviation of a part's contour as a whole, of its
 PIXEL_STD = 0.6  # the same in pixels of the pictures: blur and light
 ALIKE = len(SHARES) * len(SIDES)  # the samples of a part err together: all of them weigh as much as one
 
-FEWEST_SEEN = 3  # edges of a part that tell where it is: those of one side alone, or of one end, do not
-
 
 @dataclass(frozen=True, eq=False)
 class ContourTerm:
@@ -32,7 +30,7 @@ class ContourTerm:
     def parts_seen(self) -> BoolArray:
         """(F, O) whether enough edges of each part were found."""
         found = np.isfinite(self.edge[..., 0])
-        return np.asarray(found.reshape(len(found), -1, ALIKE).sum(axis=-1) >= FEWEST_SEEN)
+        return np.asarray(found.reshape(len(found), -1, ALIKE).sum(axis=-1) >= 3)
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each edge."""

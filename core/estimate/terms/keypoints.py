@@ -16,8 +16,6 @@ from .term import DEGREES, NormalEquations
 
 PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
 LEAST_CONFIDENCE = 0.1  # a doubtful detection errs by up to ten times as much as a sure one
-SURE_QUANTILE = 0.9
-"""A source's sure detections have at least this quantile of its scores, whose scale is its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +34,7 @@ class ObservedKeypoints:
             own = np.array([name == source for name in keypoints.sources])
             scores = keypoints.score[:, own]
             if seen[:, own].any():
-                sure = max(float(np.quantile(scores[seen[:, own]], SURE_QUANTILE)), 1e-6)
+                sure = max(float(np.quantile(scores[seen[:, own]], 0.9)), 1e-6)
                 confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
         return cls(
             np.where(seen[..., None], keypoints.pixel, np.nan),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.estimate.match_error import GRACE_S, unobserved_variance
+from keymark.core.estimate.match_error import UNOBSERVED, unobserved_variance
 
 SEGMENTS = ("trunk", "forearm.L", "shin.L")
 TIME_S = np.arange(90) / 30.0
@@ -19,7 +19,7 @@ def open_of(visible: np.ndarray, keyframes: list[int]) -> np.ndarray:
 def test_nothing_is_open_where_markers_are_seen(keyframes: list[int]) -> None:
     """Nor where they are hidden for as long as limbs hide each other."""
     visible = np.ones((90, 3), dtype=bool)
-    visible[30 : 29 + int(2 * 30 * GRACE_S), 1] = False
+    visible[30 : 29 + int(2 * 30 * UNOBSERVED.grace_s), 1] = False
     seen = [HUMAN.dof_names.index(name) for name in ("elbow.L.flexion", "knee.L.flexion", "waist.rotation_x")]
     assert open_of(visible, keyframes)[:, seen].max() == 0.0
 
