@@ -20,13 +20,20 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
-from ..evidence.keypoints import USUAL_PLACES, KeypointModel
-from ..evidence.regions import MarkerPlacement, RegionModel
+from ..evidence.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
+from ..evidence.regions import (
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    feature_rows,
+    limb_widths,
+)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
-from ..numerics.robust import student_cost, student_weight
-from .keyframe_rows import (
+from ..numerics.robust import DEGREES, student_cost, student_weight
+from .keyframe_evidence import (
     LARGEST,
     PRIOR_STD,
     SMALLEST,
@@ -37,9 +44,6 @@ from .keyframe_rows import (
 )
 from .performer_placement import ground_place
 from .single_frame import MISPLACED
-from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
-from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
-from .terms.term import DEGREES
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""

@@ -7,14 +7,42 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
 from .clip_state import ClipState, Window
-from .keyframe_evidence import KeyframeEvidence
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise
+from .keypoint_evidence import KeypointEvidence
+
+
+@dataclass(frozen=True, eq=False)
+class KeyframeEvidence:
+    """The calibrated model and the trust that keyframes and markers deserve."""
+
+    model: RegionModel  # with the placements and the lens found
+    posing_scale: float  # size of the posing error relative to a person's usual one
+    timing_frames: float  # standard deviation of the keyframes' timing error [frames]
+    distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
+    area_ratio: Array
+    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
+    information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
+    keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
+
+
+def uncalibrated(model: RegionModel) -> KeyframeEvidence:
+    """Evidence before any keyframe is posed: average placements, full trust in all markers."""
+    markers, dofs = len(model.placements), model.body.skeleton.dof_count
+    return KeyframeEvidence(
+        model,
+        1.0,
+        0.0,
+        np.ones(markers),
+        np.ones(markers),
+        np.zeros((0, dofs, dofs)),
+        KeypointEvidence.usual(model.body, model.camera, (), ()),
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -116,3 +116,11 @@ class ClipState:
         variation = self.variation + step[:, :count] * shrink[:, None]
         bias = self.bias + step[:, count:]
         return replace(self, variation=variation, bias=bias), float((moved * shrink).max())
+
+
+def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
+    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
+    if len(frame) <= most:
+        return np.arange(len(frame))
+    wanted = np.linspace(frame[0], frame[-1], most)
+    return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))

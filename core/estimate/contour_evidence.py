@@ -18,13 +18,12 @@ from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.surface_colors import BandColors
-from ..numerics.robust import student_weight
+from ..numerics.robust import DEGREES, student_weight
 from .axial_search import find_shifts, learn_along
+from .clip_state import evenly_spread
 from .contour_search import BY_MARKERS, NARROW, Edges, Schedule, SearchRange, find_edges
-from .keyframe_evidence import evenly_spread
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, AxialTerm, ContourTerm
-from .terms.term import DEGREES
 
 CHUNK_FRAMES = 50
 SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])

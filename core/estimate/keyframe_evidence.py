@@ -8,34 +8,82 @@ a marker that never fits is distrusted in all frames.
 """
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
+from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..evidence.regions import RegionModel
-from ..numerics.robust import student_weight
-from .keyframe_rows import (
-    LARGEST,
-    POINT_STD_M,
-    PRIOR_STD,
-    SMALLEST,
-    UNUSED,
-    EvidenceRows,
-    KeyframeRows,
-    KnownFrames,
-    placement_jacobian,
-    placement_values,
-    placements_from,
-    posing_covariance,
-    velocities,
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import (
+    FEATURES,
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    feature_rows,
+    missing_variance,
 )
+from ..footage.camera import Camera
+from ..numerics.robust import DEGREES, student_weight
+from .clip_problem import KeyframeEvidence, uncalibrated
+from .clip_state import evenly_spread
+from .keyframe_error import POINT_STD_M, posing_covariance, velocities
+from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
-from .terms.term import DEGREES
+
+# --- Parameters of the markers' placement and the limbs' girth, as they are fitted
+
+
+PARAMETERS = tuple(field.name for field in fields(MarkerPlacement) if field.name != "segment")
+PRIOR_STD = np.array([0.08, 0.08, 0.012, 0.012, 0.20])
+"""First and last share of the segment, lateral and sagittal displacement [m], girth."""
+DIFFERENCE = np.array([1e-3, 1e-3, 1e-4, 1e-4, 1e-3])
+SMALLEST = np.array([-0.3, 0.3, -0.06, -0.06, 0.5])
+LARGEST = np.array([0.7, 1.3, 0.06, 0.06, 2.0])
+
+
+@dataclass(frozen=True, eq=False)
+class KnownFrames:
+    """Frames whose posture is known, and the regions seen there."""
+
+    pose: Pose  # forward kinematics of K postures
+    frame: IndexArray  # (K,) their indices in the clip
+    observed: ObservedRegions  # regions of those K frames
+
+
+def placement_values(placements: tuple[MarkerPlacement, ...]) -> Array:
+    """The parameters (M, P) of M placements, in the order of `PARAMETERS`."""
+    values = [[getattr(placement, name) for name in PARAMETERS] for placement in placements]
+    return np.array(values).reshape(len(placements), len(PARAMETERS))
+
+
+def placements_from(start: tuple[MarkerPlacement, ...], values: Array) -> tuple[MarkerPlacement, ...]:
+    """Placements on the segments of `start` with other parameters (M, P)."""
+    return tuple(
+        MarkerPlacement(placement.segment, *(float(v) for v in row))
+        for placement, row in zip(start, values, strict=True)
+    )
+
+
+def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: RegionModel) -> Array:
+    """Jacobian of the residuals of `feature_rows` by each marker's own parameters, (K, M, 5, P).
+
+    All differences are evaluated at once, as if each marker were worn several times.
+    """
+    start, values = model.placements, placement_values(model.placements)
+    variants = np.concatenate([values[None], values + np.diag(DIFFERENCE)[:, None]])  # (1 + P, M, P)
+    worn = tuple(placement for row in variants for placement in placements_from(start, row))
+    predicted = RegionModel(body, camera, worn).evaluate(known.pose, known.frame)
+    again = np.tile(np.arange(len(start)), len(variants))
+    rows, _ = feature_rows(known.observed[:, again], predicted)
+    rows = rows.reshape(len(rows), len(variants), len(start), -1)
+    return np.asarray((np.moveaxis(rows[:, 1:], 1, -1) - rows[:, 0, ..., None]) / DIFFERENCE)
+
+
+# --- Calibration
 
 
 @dataclass(frozen=True)
@@ -59,25 +107,10 @@ SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative
 TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
 """Standard deviations of the timing error tried [frames]."""
 LENS_DIFFERENCE = 1e-3
-PARAMETER_COUNT = len(PRIOR_STD)
 
 
 ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
 """Reads the rows of contours at posed postures in given frames."""
-
-
-@dataclass(frozen=True, eq=False)
-class KeyframeEvidence:
-    """The calibrated model and the trust that keyframes and markers deserve."""
-
-    model: RegionModel  # with the placements and the lens found
-    posing_scale: float  # size of the posing error relative to a person's usual one
-    timing_frames: float  # standard deviation of the keyframes' timing error [frames]
-    distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
-    information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
-    keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +189,7 @@ def read_keyframes(
         change, left = seen.calibrated(weight, scale, timing)
         squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
-        ends = markers * PARAMETER_COUNT
+        ends = markers * len(PRIOR_STD)
         calibrated = _changed(model, np.append(change[:ends], change[-1]))
         if markers:
             distrust = _distrust(squared[:, :markers], usable[:, :markers])
@@ -179,28 +212,6 @@ def read_keyframes(
         depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
         found_points = replace(found_points, depths=depths)
     return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
-
-
-def uncalibrated(model: RegionModel) -> KeyframeEvidence:
-    """Evidence before any keyframe is posed: average placements, full trust in all markers."""
-    markers, dofs = len(model.placements), model.body.skeleton.dof_count
-    return KeyframeEvidence(
-        model,
-        1.0,
-        0.0,
-        np.ones(markers),
-        np.ones(markers),
-        np.zeros((0, dofs, dofs)),
-        KeypointEvidence.usual(model.body, model.camera, (), ()),
-    )
-
-
-def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
-    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
-    if len(frame) <= most:
-        return np.arange(len(frame))
-    wanted = np.linspace(frame[0], frame[-1], most)
-    return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))
 
 
 def keyframe_information(posing: Array, velocity: Array, scale: float, timing: float) -> Array:
@@ -246,7 +257,7 @@ def _region_rows(
     return (
         EvidenceRows(
             np.where(usable[..., None], residual, 0.0).reshape(rows),
-            own.reshape(*rows, markers * PARAMETER_COUNT),
+            own.reshape(*rows, markers * len(PRIOR_STD)),
             np.where(usable[..., None], by_lens, 0.0).reshape(rows),
             np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, jacobian.shape[-1]),
             np.where(usable[..., None], variance, UNUSED).reshape(rows),
@@ -269,7 +280,7 @@ def _judging(
 
     The others, of face, hands and feet, err along with these.
     """
-    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * PARAMETER_COUNT, bool)
+    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * len(PRIOR_STD), bool)
     if used:
         points = np.array([name in HUMAN.point_names for name in keypoints.model.names])
         points |= not points.any()

@@ -12,16 +12,15 @@ import numpy as np
 
 from ..arrays import Array, chunks
 from ..body.posture import Posture
-from ..evidence.regions import RegionModel
+from ..evidence.regions import RegionModel, RegionNoise
 from ..footage.keypoints.keypoints import Keypoints, mirrored_point
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
-from .keyframe_rows import posing_covariance
-from .match_error import match_covariance
-from .terms.regions import RegionNoise
+from .clip_problem import KeyframeEvidence, uncalibrated
+from .keyframe_error import match_covariance, posing_covariance
+from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 
 FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
 

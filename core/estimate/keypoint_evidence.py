@@ -11,11 +11,17 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
-from ..evidence.keypoints import USUAL_PLACES, DepthLinks, KeypointModel
+from ..evidence.keypoints import (
+    LEAST_CONFIDENCE,
+    PIXEL_STD,
+    USUAL_PLACES,
+    DepthLinks,
+    KeypointModel,
+    ObservedKeypoints,
+)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import mirrored_point
 from .keyframe_rows import UNUSED, EvidenceRows
-from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 
 
 @dataclass(frozen=True)

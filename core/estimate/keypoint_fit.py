@@ -10,11 +10,11 @@ from ..arrays import Array, BoolArray
 from ..body.body_volume import TRUNK
 from ..body.posture import Posture
 from ..errors import pluralize
-from ..evidence.keypoints import USUAL_PLACES
+from ..evidence.keypoints import USUAL_PLACES, ObservedKeypoints
 from ..files.fields import listed
 from ..footage.keypoints.keypoints import Keypoints
 from .keypoint_evidence import KeypointEvidence
-from .terms.keypoints import KeypointTerm, ObservedKeypoints
+from .terms.keypoints import KeypointTerm
 
 
 @dataclass(frozen=True, eq=False)

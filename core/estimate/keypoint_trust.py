@@ -14,11 +14,9 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Pose
-from ..evidence.keypoints import USUAL_PLACES, KeypointModel
+from ..evidence.keypoints import USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.keypoints.keypoints import Keypoints, mirror_images
-from ..numerics.robust import multivariate_cost
-from .terms.keypoints import ObservedKeypoints
-from .terms.term import DEGREES
+from ..numerics.robust import DEGREES, multivariate_cost
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
-from .keyframe_evidence import KeyframeEvidence
+from .clip_problem import KeyframeEvidence
 
 MOST_NAMED = 3  # largest number of frames that a note names
 

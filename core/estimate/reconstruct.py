@@ -28,9 +28,9 @@ from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
+from .keyframe_error import place_depth_std_m, undetermined_covariance, unobserved_variance
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
-from .match_error import place_depth_std_m, undetermined_covariance, unobserved_variance
 from .notes import (
     contour_notes,
     evidence_notes,

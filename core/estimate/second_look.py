@@ -10,6 +10,7 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
 from ..body.human import limb_of
 from ..body.posture import Posture
+from ..evidence.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from ..footage.ignored_regions import is_ignored
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import centroid_and_second_moment
@@ -19,7 +20,6 @@ from ..progress import Part, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
-from .terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from .window_problem import WindowProblem
 
 

@@ -8,17 +8,17 @@ import numpy as np
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..evidence import keypoints as depths
-from ..evidence.regions import RegionModel
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.keypoints.keypoints import mirror_images
 from ..footage.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
+from .clip_problem import KeyframeEvidence, uncalibrated
 from .clip_state import ClipState
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
+from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from .terms.term import NormalEquations, Term, total_cost
 
 

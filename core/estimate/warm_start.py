@@ -15,14 +15,14 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import ObservedRegions
 from ..footage.camera import Camera
-from .clip_problem import ClipProblem
+from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
-from .keyframe_evidence import KeyframeEvidence, keyframe_information
-from .keyframe_rows import PRIOR_STD, placement_values, posing_covariance, velocities
+from .keyframe_error import posing_covariance, velocities
+from .keyframe_evidence import PRIOR_STD, keyframe_information, placement_values
 from .keypoint_evidence import KeypointEvidence
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import ObservedRegions
 
 
 @dataclass(frozen=True)

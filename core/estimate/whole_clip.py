@@ -15,8 +15,8 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.keypoints import KeypointModel
-from ..evidence.regions import MarkerPlacement, RegionModel
+from ..evidence.keypoints import KeypointModel, ObservedKeypoints
+from ..evidence.regions import MarkerPlacement, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.ignored_regions import IgnoredPixels
@@ -24,20 +24,18 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
-from .clip_problem import ClipProblem
+from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes
+from .keyframe_error import depth_std_m
+from .keyframe_evidence import SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
-from .match_error import depth_std_m
 from .performer_placement import lower_ankle_m
 from .refinement import refine
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.posture import Posture
+from ..evidence.regions import FEATURES
 from ..progress import Part, Preview, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
@@ -14,7 +15,7 @@ from .contour_evidence import ContourEvidence
 from .terms.assembly import window_terms, with_contours
 from .terms.contours import AxialTerm, ContourTerm
 from .terms.keypoints import KeypointTerm
-from .terms.regions import FEATURES, RegionTerm
+from .terms.regions import RegionTerm
 from .terms.term import NormalEquations, total_cost
 
 TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)

@@ -10,6 +10,9 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 
+DEGREES = 4.0
+"""Degrees of freedom of Student's t for all that is seen (Lange, Little & Taylor 1989); few forgive more."""
+
 Floats = TypeVar("Floats", Array, SingleArray)
 
 

@@ -12,24 +12,18 @@ import numpy as np
 from ...arrays import Array
 from ...body.kinematics import Body
 from ...evidence import keypoints as depths
+from ...evidence.keypoints import LEAST_CONFIDENCE, ObservedKeypoints
+from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
-from ..clip_problem import ClipProblem
+from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
-from ..keyframe_evidence import KeyframeEvidence
 from ..keypoint_evidence import KeypointEvidence
 from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
 from .contours import ContourTerm
-from .keypoints import (
-    LEAST_CONFIDENCE,
-    DepthHintTerm,
-    FrameDepthTerm,
-    FrameKeypointTerm,
-    KeypointTerm,
-    ObservedKeypoints,
-)
+from .keypoints import DepthHintTerm, FrameDepthTerm, FrameKeypointTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from .regions import ObservedRegions, RegionNoise, RegionTerm
+from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")

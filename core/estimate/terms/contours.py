@@ -7,10 +7,10 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...evidence.contours import SHARES, SIDES, ContourModel, ContourPrediction, LimbAxes
-from ...numerics.robust import student_cost, student_weight
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
 from .motion import add_drift, drift, drift_cost
-from .term import DEGREES, NormalEquations
+from .term import NormalEquations
 
 SURFACE_SHARE = 0.2  # standard deviation of a part's contour as a whole, of its half-width: clothes, muscles
 PIXEL_STD = 0.6  # the same in pixels of the pictures: blur and light

@@ -7,57 +7,11 @@ import numpy as np
 
 from ...arrays import Array, BoolArray, IndexArray
 from ...body.kinematics import Pose
-from ...evidence.keypoints import DepthLinks, KeypointModel
-from ...footage.keypoints.keypoints import Keypoints
-from ...numerics.robust import student_cost, student_weight
+from ...evidence.keypoints import LEAST_CONFIDENCE, PIXEL_STD, DepthLinks, KeypointModel, ObservedKeypoints
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
 from .motion import Drift, add_drift, drift, drift_cost
-from .term import DEGREES, NormalEquations
-
-PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
-LEAST_CONFIDENCE = 0.1  # a doubtful detection errs by up to ten times as much as a sure one
-
-
-@dataclass(frozen=True, eq=False)
-class ObservedKeypoints:
-    """N keypoints in F frames, with their confidence relative to the source's sure ones."""
-
-    pixel: Array  # (F, N, 2) [px], NaN where not seen
-    confidence: Array  # (F, N) 0.1 to 1; 0 where not seen
-    depth_m: Array  # (F, N) guessed distance behind the hips' middle [m]; NaN where there is none
-
-    @classmethod
-    def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
-        """The keypoints of a clip."""
-        seen, confidence = keypoints.seen, np.zeros(keypoints.score.shape)
-        for source in dict.fromkeys(keypoints.sources):
-            own = np.array([name == source for name in keypoints.sources])
-            scores = keypoints.score[:, own]
-            if seen[:, own].any():
-                sure = max(float(np.quantile(scores[seen[:, own]], 0.9)), 1e-6)
-                confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
-        return cls(
-            np.where(seen[..., None], keypoints.pixel, np.nan),
-            np.where(seen, confidence, 0.0),
-            np.where(seen, keypoints.hint_m[..., 2], np.nan),
-        )
-
-    @property
-    def seen(self) -> BoolArray:
-        """(F, N) whether each is seen."""
-        return np.asarray(self.confidence > 0.0)
-
-    def only(self, kept: BoolArray) -> "ObservedKeypoints":
-        """The same without those points that are not among `kept` (N,)."""
-        return ObservedKeypoints(
-            np.where(kept[:, None], self.pixel, np.nan),
-            np.where(kept, self.confidence, 0.0),
-            np.where(kept, self.depth_m, np.nan),
-        )
-
-    def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
-        """Those of some frames."""
-        return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])
+from .term import NormalEquations
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,9 +12,9 @@ import numpy as np
 from ...arrays import Array, BoolArray
 from ...evidence import keypoints as depths
 from ...footage.camera import Camera
-from ...numerics.robust import student_cost, student_weight
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
-from .term import DEGREES, NormalEquations, QuadraticBuilder, QuadraticTerm
+from .term import NormalEquations, QuadraticBuilder, QuadraticTerm
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 

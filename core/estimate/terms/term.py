@@ -10,9 +10,6 @@ from ...arrays import Array, IndexArray
 from ..block_banded import BlockBanded
 from ..clip_state import ClipState
 
-DEGREES = 4.0
-"""Degrees of freedom of Student's t for all that is seen (Lange, Little & Taylor 1989); few forgive more."""
-
 
 class NormalEquations:
     """H step = -g, gathered from terms: H = Σ JᵀJ and g = Σ Jᵀr of whitened rows."""

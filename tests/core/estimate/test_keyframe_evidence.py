@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes
-from keymark.core.estimate.keyframe_rows import posing_covariance, velocities
-from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
-from keymark.core.evidence.regions import MarkerPlacement, RegionModel
+from keymark.core.estimate.clip_problem import KeyframeEvidence
+from keymark.core.estimate.keyframe_error import posing_covariance, velocities
+from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
+from keymark.core.evidence.regions import (
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    limb_widths,
+)
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 

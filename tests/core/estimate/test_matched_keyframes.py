@@ -8,10 +8,7 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.body_volume import sole_heights_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes
-from keymark.core.estimate.keyframe_rows import placement_values
-from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
-from keymark.core.estimate.match_error import (
+from keymark.core.estimate.keyframe_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
     SURE_STD_M,
@@ -21,10 +18,12 @@ from keymark.core.estimate.match_error import (
     match_covariance,
     undetermined_covariance,
 )
+from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, placement_values
+from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
-from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import DEPTH_STD_M
+from keymark.core.evidence.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 

@@ -7,14 +7,12 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film, point_error_m
 from keymark.core.body.body_volume import standing_posture
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, uncalibrated
+from keymark.core.estimate.clip_problem import KeyframeEvidence, uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
 from keymark.core.estimate.performer_placement import place_standing
 from keymark.core.estimate.single_frame import FrameFit, fit_frame
-from keymark.core.estimate.terms.keypoints import ObservedKeypoints
-from keymark.core.estimate.terms.regions import ObservedRegions
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.evidence.regions import RegionModel
+from keymark.core.evidence.keypoints import KeypointModel, ObservedKeypoints
+from keymark.core.evidence.regions import ObservedRegions, RegionModel
 from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.frame_prior import (

@@ -10,16 +10,16 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.contact import GroundTerm, StillnessTerm
 from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from keymark.core.estimate.terms.regions import (
+from keymark.core.estimate.terms.regions import RegionTerm
+from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
+from keymark.core.evidence import keypoints as depths
+from keymark.core.evidence.regions import (
     FEATURES,
     ObservedRegions,
     RegionNoise,
-    RegionTerm,
     feature_rows,
     missing_variance,
 )
-from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
-from keymark.core.evidence import keypoints as depths
 from keymark.core.numerics.robust import student_weight
 from keymark.core.prior.frame_prior import process_noise_factor
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from keymark.core.body.human import HUMAN
-from keymark.core.estimate.match_error import UNOBSERVED, unobserved_variance
+from keymark.core.estimate.keyframe_error import UNOBSERVED, unobserved_variance
 
 SEGMENTS = ("trunk", "forearm.L", "shin.L")
 TIME_S = np.arange(90) / 30.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_rows import posing_covariance
+from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
