@@ -175,11 +175,7 @@ UNOBSERVED = UnobservedOptions()
 
 
 def unobserved_variance(
-    skeleton: Skeleton,
-    segments: tuple[str, ...],
-    visible: BoolArray,
-    keyframes: IndexArray,
-    time_s: Array,
+    skeleton: Skeleton, segments: tuple[str, ...], visible: BoolArray, keyframes: IndexArray, time_s: Array
 ) -> Array:
     """(F, D) variance of postures beyond their covariance, where nothing observes them [m², rad²].
 

@@ -31,14 +31,7 @@ from .kalman import filter_clip
 from .keyframe_error import place_depth_std_m, undetermined_covariance, unobserved_variance
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
-from .notes import (
-    contour_notes,
-    evidence_notes,
-    filter_notes,
-    found_notes,
-    left_out_notes,
-    marker_notes,
-)
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
@@ -73,10 +66,7 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take,
-    method: str = "map",
-    reading: Reading | None = None,
-    earlier: Reconstruction | None = None,
+    take: Take, method: str = "map", reading: Reading | None = None, earlier: Reconstruction | None = None
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 

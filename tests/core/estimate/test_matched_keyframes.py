@@ -48,10 +48,7 @@ def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResu
     prior = interpolate(keyframes, FRAMES)
     return run(
         estimate_whole_clip(
-            BODY,
-            CAMERA,
-            Seen(TRACKS, SEGMENTS),
-            Believed(prior, tuple(int(i) for i in INDEX), match_scale),
+            BODY, CAMERA, Seen(TRACKS, SEGMENTS), Believed(prior, tuple(int(i) for i in INDEX), match_scale)
         )
     )
 

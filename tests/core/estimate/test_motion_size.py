@@ -55,10 +55,7 @@ def about(clip: ClipProblem, posture: Posture, spans: list[Window]) -> list[Clip
     """States with these F postures."""
     starts = [clip.start(window) for window in spans]
     return [
-        replace(
-            start,
-            variation=np.linalg.solve(start.factor, posture[window.frames].minus(start.prior).T).T,
-        )
+        replace(start, variation=np.linalg.solve(start.factor, posture[window.frames].minus(start.prior).T).T)
         for start, window in zip(starts, spans, strict=True)
     ]
 

@@ -15,11 +15,7 @@ from keymark.core.evidence.keypoints import KeypointModel, ObservedKeypoints
 from keymark.core.evidence.regions import ObservedRegions, RegionModel
 from keymark.core.footage.keypoints.keypoints import Keypoints, mirrored_point
 from keymark.core.footage.region_tracks import RegionTracks
-from keymark.core.prior.frame_prior import (
-    FramePrior,
-    prior_from_keyframes,
-    prior_from_pose,
-)
+from keymark.core.prior.frame_prior import FramePrior, prior_from_keyframes, prior_from_pose
 from keymark.core.prior.keyframes import Keyframe
 
 TRUTH = exercise(45)

@@ -26,10 +26,7 @@ def turning(degrees: float) -> Posture:
 
 
 def estimate(
-    truth: Posture,
-    tracks: RegionTracks,
-    earlier: WholeClipResult | None = None,
-    off_rad: float = 0.0,
+    truth: Posture, tracks: RegionTracks, earlier: WholeClipResult | None = None, off_rad: float = 0.0
 ) -> tuple[WholeClipResult, int]:
     """The estimate from a keyframe every half second, and how many frames were estimated.
 
