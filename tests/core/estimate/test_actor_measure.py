@@ -59,7 +59,6 @@ def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> N
 
 
 def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
-    """Hanging arms may point anywhere; legs are told better."""
     found, _ = measured(someone(np.random.default_rng(3)), np.zeros(34))
     assert found.stands
     assert found.spread["shin"] < found.spread["shoulder_width"] <= 0.0451

@@ -12,14 +12,12 @@ def test_normalized_squares_by_hand() -> None:
 
 
 def test_normalized_squares_of_a_batch() -> None:
-    """Leading axes are kept."""
     errors = np.arange(12.0).reshape(2, 3, 2)
     batch = normalized_squared(errors, np.broadcast_to(np.diag([1.0, 4.0]), (2, 3, 2, 2)))
     np.testing.assert_allclose(batch, errors[..., 0] ** 2 + errors[..., 1] ** 2 / 4.0)
 
 
 def test_a_covariance_that_is_none_is_an_error() -> None:
-    """An indefinite matrix must not pass for a covariance."""
     with pytest.raises(np.linalg.LinAlgError):
         normalized_squared([1.0, 1.0], [[1.0, 2.0], [2.0, 1.0]])
 

@@ -75,7 +75,6 @@ def test_a_shaken_camera_changes_nothing() -> None:
 
 
 def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
-    """No contours are read where a picture's background cannot be the others'."""
     moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
     assert run(learn_contours(BODY, moving, album(), TRUTH, POSED)) is None
     assert run(learn_contours(BODY, CAMERA, Album(), TRUTH, POSED)) is None

@@ -36,7 +36,6 @@ STIFF = 1e-9
 def run_filter(
     line_ends: LineEnds, tracks: RegionTracks, prior: Posture, keyframes: list[int], options: FilterOptions
 ) -> FilterResult:
-    """The filter's result for a clip."""
     return run(
         filter_clip(line_ends.body, line_ends.camera, tracks, line_ends.segments, prior, keyframes, options)
     )
@@ -281,14 +280,12 @@ def test_every_covariance_is_symmetric_and_positive(line_ends: LineEnds, see: Se
 
 
 def test_progress_is_told_once_a_frame(line_ends: LineEnds, see: See) -> None:
-    """A caller can show and cancel it."""
     prior, truth = drifting(line_ends, 4)
     job = filter_clip(line_ends.body, line_ends.camera, see(truth), line_ends.segments, prior, [0, 3])
     assert list(job) == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> None:
-    """Frames, markers and keyframes must fit; a segment must exist."""
     prior, truth = drifting(line_ends, 4)
     tracks, body, camera = see(truth), line_ends.body, line_ends.camera
     for segments, frames, keyframes in (
@@ -312,7 +309,6 @@ def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> N
     ],
 )
 def test_impossible_options_are_refused_by_name(wrong: dict[str, float]) -> None:
-    """A zero or endless noise is no noise."""
     with pytest.raises(ValueError, match=next(iter(wrong))):
         FilterOptions(**wrong)
 

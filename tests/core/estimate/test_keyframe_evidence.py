@@ -35,7 +35,6 @@ TRUE = tuple(
 
 
 def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> KeyframeEvidence:
-    """The evidence of keyframes posed at `POSED`."""
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
     return run(read_keyframes(model, RegionNoise(), SeenAtKeyframes(POSED, posed, observed, width)))
@@ -70,7 +69,6 @@ def test_known_postures_tell_where_the_color_begins_and_how_thick_the_limb_is(wo
 
 
 def test_exact_keyframes_are_told_from_careless_ones(worn: RegionTracks) -> None:
-    """Whatever the placements are, the size of the posing error is found."""
     exact = read(MOTION[POSED], worn)
     careless = read(posed_by_hand(3), worn)
     assert exact.posing_scale < 0.3
@@ -88,7 +86,6 @@ def test_a_misstated_lens_is_found(factor: float) -> None:
 
 
 def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
-    """A person's errors do not look like a lens."""
     found = read(posed_by_hand(5), film(MOTION, 0.2)).model.camera
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.02)
 
@@ -115,7 +112,6 @@ def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
 
 
 def test_velocities_are_those_of_the_parabola() -> None:
-    """On a motion of constant acceleration the middle keyframes' velocities are exact."""
     frame = np.array([0, 4, 10, 13])
     vector = np.zeros((4, BODY.skeleton.dof_count))
     vector[:, 0] = 0.01 * frame + 0.002 * frame**2

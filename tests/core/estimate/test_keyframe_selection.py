@@ -40,7 +40,6 @@ def unlike() -> Posture:
 
 
 def test_a_library_of_the_motion_is_used_between_posed_keyframes_that_are_far_apart() -> None:
-    """Two posed keyframes know little of three seconds."""
     assert used([0, 90], alike()) == ([0, 90], list(range(5, FRAMES, 10)))
 
 
@@ -59,7 +58,6 @@ def test_a_library_of_another_motion_is_used_outside_posed_keyframes_only() -> N
 
 
 def test_with_one_posed_keyframe_or_none_all_are_used() -> None:
-    """Nothing lies between posed keyframes."""
     every = list(range(5, FRAMES, 10))
     assert used([], unlike()) == ([], every)
     assert used([40], unlike()) == ([40], every)

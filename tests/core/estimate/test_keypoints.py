@@ -40,7 +40,6 @@ def estimate(
     match_scale: np.ndarray | None = None,
     earlier: WholeClipResult | None = None,
 ) -> WholeClipResult:
-    """The estimate of the exercise."""
     worn = SEGMENTS if tracks.names else ()
     seen = Seen(tracks, worn, keypoints)
     believed = Believed(prior, POSED, match_scale)
@@ -56,24 +55,20 @@ def error_mm(result: WholeClipResult | Posture) -> float:
 
 @cache
 def with_good() -> WholeClipResult:
-    """By keypoints alone."""
     return estimate(GOOD)
 
 
 @cache
 def marked() -> WholeClipResult:
-    """By markers alone."""
     return estimate(None, MARKED)
 
 
 @cache
 def bare() -> WholeClipResult:
-    """By keyframes alone."""
     return estimate(None)
 
 
 def test_keypoints_alone_beat_interpolation_by_far() -> None:
-    """And the fit tells of a detector that is believed throughout."""
     assert error_mm(with_good()) < 0.4 * error_mm(PRIOR)
     fit = with_good().keypoints
     assert fit.trust.min() == 1.0
@@ -106,7 +101,6 @@ def test_keyframes_are_judged_without_any_marker() -> None:
 
 
 def test_markers_gain_and_do_not_change_without_keypoints() -> None:
-    """Keypoints beside markers are better than markers; none at all is the same as not asking."""
     assert error_mm(estimate(GOOD, MARKED)) < error_mm(marked())
     none = estimate(Keypoints.none(FRAMES), MARKED)
     np.testing.assert_array_equal(none.posture.translation, marked().posture.translation)
@@ -132,7 +126,6 @@ def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
 
 
 def test_a_third_of_the_points_at_random_is_thrown_out() -> None:
-    """And the others go on telling what they tell."""
     rng = np.random.default_rng(7)
     wild = rng.random(GOOD.pixel.shape[:2]) < 0.3
     elsewhere = rng.uniform(0.0, 240.0, GOOD.pixel.shape)
@@ -155,7 +148,6 @@ def test_a_jump_to_another_thing_is_not_averaged() -> None:
 
 
 def test_a_late_detector_is_recognized_as_such() -> None:
-    """The lag is told, in the frames it is."""
     late = in_order(GOOD, np.maximum(np.arange(FRAMES) - 6, 0))
     moving = estimate(late)
     assert moving.keypoints.source_trust[SOURCE] == 0.0
@@ -177,7 +169,6 @@ def test_sides_that_are_exchanged_are_exchanged_back() -> None:
 
 
 def test_legs_alone_may_be_exchanged() -> None:
-    """The arms are left as they are."""
     legs = np.array([name.startswith(("hip", "knee", "ankle")) for name in LAYOUT])
     some = np.zeros(FRAMES, dtype=bool)
     some[47:56] = True
@@ -218,7 +209,6 @@ def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
 
 
 def test_six_tracks_with_long_gaps_are_used() -> None:
-    """What an animator tracks: few points, missing for long."""
     names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R", "head", "knee.L")
     tracks = detect(TRUTH, names=names, error_m=0.004)
     pixel = tracks.pixel.copy()
@@ -230,7 +220,6 @@ def test_six_tracks_with_long_gaps_are_used() -> None:
 
 
 def test_several_sources_are_calibrated_apart() -> None:
-    """A wrong one beside a right one is left out alone."""
     both = Keypoints.side_by_side(
         [GOOD, replace(WRONG["another person"], sources=("tracks",) * len(LAYOUT))], FRAMES
     )
@@ -239,7 +228,6 @@ def test_several_sources_are_calibrated_apart() -> None:
 
 
 def test_before_a_moving_camera() -> None:
-    """The same points, seen by a camera that travels."""
     matrices = np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0)
     matrices[:, 0, 3] += np.linspace(-0.5, 0.5, FRAMES)
     moving = replace(CAMERA, matrix_world=matrices)
@@ -269,7 +257,6 @@ def test_errors_are_within_their_interval() -> None:
 
 
 def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() -> None:
-    """The same keypoints leave every frame as it is; others do not."""
     again = estimate(GOOD, earlier=with_good())
     np.testing.assert_array_equal(again.posture.translation, with_good().posture.translation)
     other = estimate(detect(TRUTH, seed=9), earlier=with_good())
@@ -278,7 +265,6 @@ def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() 
 
 
 def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
-    """What limbs count as seen by."""
     joints, seen = observed_joints(with_good().keypoints)
     named = dict(zip(LAYOUT, joints, strict=True))
     assert named["hip.L"] == named["shoulder.R"] == "trunk"

@@ -43,7 +43,6 @@ def off(seed: int = 2) -> Posture:
 
 
 def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResult:
-    """The estimate through keyframes at `INDEX`."""
     keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
     prior = interpolate(keyframes, FRAMES)
     return run(
@@ -69,7 +68,6 @@ def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to(
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
-    """Markers sit as on an average performer, and the lens is as stated."""
     evidence = as_matched().evidence
     np.testing.assert_array_equal(
         placement_values(evidence.model.placements), placement_values(MODEL.placements)
@@ -78,7 +76,6 @@ def test_matched_keyframes_calibrate_nothing() -> None:
 
 
 def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
-    """The model found from posed keyframes does not depend on matched ones."""
     match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
@@ -95,14 +92,12 @@ def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None
 
 
 def test_the_place_is_less_known_along_the_line_of_sight() -> None:
-    """Across it markers tell, along it they do not."""
     place = match_covariance(TRUTH[INDEX], CAMERA, INDEX)[0, :3, :3]
     values = np.sqrt(np.linalg.eigvalsh(place))
     np.testing.assert_allclose(values, [PLACE_STD_M, PLACE_STD_M, PLACE_DEPTH_STD_M])
 
 
 def test_depths_count_near_posed_keyframes_only() -> None:
-    """Between both kinds there is a transition."""
     noise = depth_std_m(np.array([0, 10]), np.array([False, True]), 12)
     assert noise[0] == pytest.approx(DEPTH_STD_M)
     assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
@@ -128,7 +123,6 @@ def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_ke
 
 
 def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() -> None:
-    """All points share that error."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
     index, scale, sure = np.array([0, 10]), np.ones(2), np.ones(2)
     near, far = (undetermined_covariance(points, CAMERA, index, scale, sure, each) for each in (0.0, 0.3))
@@ -137,7 +131,6 @@ def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() ->
 
 
 def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:
-    """A library's lowest soles are the floor; what is higher in between is a leap."""
     standing = TRUTH[np.zeros(6, dtype=np.intp)]
     lift = np.zeros((6, BODY.skeleton.dof_count))
     lift[:, 2] = -float(sole_heights_m(BODY, BODY.pose(standing))[0].min())
@@ -151,7 +144,6 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
 
 
 def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
-    """To begin with an earlier estimate of matched keyframes changes nothing."""
     first = as_matched()
     again = run(
         estimate_whole_clip(

@@ -36,7 +36,6 @@ def test_a_scalar_measurement_by_hand() -> None:
 
 
 def test_nothing_seen_changes_nothing() -> None:
-    """No rows are a valid measurement."""
     M = np.diag([1.0, 2.0])
     result = update(M, np.zeros((0, 2)), np.zeros(0))
     np.testing.assert_array_equal(result.step, 0.0)

@@ -91,7 +91,6 @@ def learn(
 def finished(
     job: Generator[None, None, tuple[ClipProblem, list[ClipState]]],
 ) -> tuple[ClipProblem, list[ClipState]]:
-    """What a job returns."""
     while True:
         try:
             next(job)
@@ -106,7 +105,6 @@ def unsettled(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None:
-    """It alone, and all of it alike."""
     size = np.full(len(COLUMN), SIZES.usual_size)
     np.testing.assert_allclose(limb_sizes(problem(), WHOLE, trembling(size)), 1.0)
     size[LIMB] *= 2.0
@@ -128,7 +126,6 @@ def test_sizes_have_bounds() -> None:
 
 
 def test_windows_tell_the_same_as_the_whole_clip() -> None:
-    """Their margins count once."""
     size = np.full(len(COLUMN), 2.0 * SIZES.usual_size)
     whole = trembling(size)
     spans = list(windows(FRAMES, 20, 6))
@@ -138,7 +135,6 @@ def test_windows_tell_the_same_as_the_whole_clip() -> None:
 
 
 def test_where_the_prior_misses_across_the_line_of_sight_its_depth_is_trusted_less(unsettled: None) -> None:
-    """In that gap, by how much it misses; to and fro along the line of sight tells nothing."""
     still, _ = learn(problem(), problem().prior)
     near, _ = learn(problem(), bulging(0.1))
     far, _ = learn(problem(), bulging(0.3))
@@ -152,7 +148,6 @@ def test_where_the_prior_misses_across_the_line_of_sight_its_depth_is_trusted_le
 
 
 def test_gaps_that_are_not_asked_for_are_as_known(unsettled: None) -> None:
-    """And limbs have the size of the earlier estimate."""
     clip = problem()
     earlier = replace(
         clip, limb_size=np.full_like(clip.limb_size, 1.2), depth_factor=np.full_like(clip.depth_factor, 2.5)
@@ -167,7 +162,6 @@ def test_gaps_that_are_not_asked_for_are_as_known(unsettled: None) -> None:
 
 
 def test_postures_stay_as_they_are_when_sizes_change(unsettled: None) -> None:
-    """Their deviation is told in the unit of the new sizes."""
     swings = np.zeros((FRAMES, len(COLUMN)))
     swings[:, LIMB] = np.sin(2.0 * np.pi * np.arange(FRAMES) / 8.0)[:, None]
     posture = replace(problem().start(WHOLE[0]), variation=swings).posture

@@ -70,7 +70,6 @@ def test_looks_narrow_down_to_the_markers_own() -> None:
 
 
 def test_keypoints_of_all_limbs_spare_the_widest_looks() -> None:
-    """Not so where an ankle is missing."""
     names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R", "hip.L")
 
     def seen(count: int) -> Keypoints:
@@ -165,12 +164,10 @@ def test_the_rows_at_keyframes_follow_posture_and_lens() -> None:
 
 @pytest.mark.parametrize(("size_m", "low", "high"), [(0.0, 0.0, 0.4), (0.03, 0.5, 2.5)])
 def test_contours_tell_careless_keyframes_from_careful_ones(size_m: float, low: float, high: float) -> None:
-    """The posing error's size is found without any marker."""
     assert low < solve(album(), sloppy(size_m)).evidence.posing_scale < high
 
 
 def test_where_markers_locate_every_limb_nothing_but_they_judge() -> None:
-    """With five markers no shift along limbs is measured."""
     keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
     prior = interpolate(keyframes, FRAMES)
     job = estimate_whole_clip(

@@ -22,7 +22,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A small synthetic take."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("take"), frames=24, keyframe_every=8))
 
 
@@ -50,7 +49,6 @@ def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str
 def test_a_clip_read_before_gives_the_same_motion_without_the_clip(
     take: Take, mapped: Reconstruction, tmp_path: Path
 ) -> None:
-    """What was read for one method serves the others; what was read for other markers is refused."""
     found = run(reconstruct(take, "interpolation")).reading
     seen: list[Progress] = []
     again = run(reconstruct(replace(take, clip=tmp_path / "gone"), "map", found), seen.append)
@@ -90,7 +88,6 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
 
 
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
-    """A canceled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))
     job = reconstruct(take)
     for _ in range(5):
@@ -101,7 +98,6 @@ def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
 
 
 def test_an_unknown_method_and_too_few_keyframes_are_refused_in_a_sentence(take: Take) -> None:
-    """The message says what is valid."""
     with pytest.raises(InputError, match="map, ekf, interpolation"):
         run(reconstruct(take, "magic"))
     with pytest.raises(InputError, match="at least 2"):

@@ -140,7 +140,6 @@ def test_a_blurred_marker_is_found_where_it_is() -> None:
 
 
 def test_nothing_is_found_of_a_marker_that_is_not_there() -> None:
-    """The sleeve pushed up, for those frames."""
     bare, album = photograph(MOTION[LOST], painted=PUSHED_UP), Album()
     for frame in range(FRAMES):
         lost = frame in LOST
@@ -164,7 +163,6 @@ def test_finds_are_kept_where_nothing_changed() -> None:
 
 
 def test_nothing_changed_looks_at_nothing() -> None:
-    """The same estimate again is the earlier one, finds included."""
     again = estimate(pictures(), earlier=found())
     np.testing.assert_array_equal(again.problem.observed.area, found().problem.observed.area)
     np.testing.assert_array_equal(again.posture.translation, found().posture.translation)

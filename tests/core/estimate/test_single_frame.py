@@ -22,13 +22,11 @@ TRUTH = exercise(45)
 
 
 def fit(belief: FramePrior, tracks: RegionTracks, frame: int) -> FrameFit:
-    """Fit one frame of tracks."""
     observed = ObservedRegions.from_tracks(tracks)
     return fit_frame(uncalibrated(MODEL), observed[np.array([frame])], belief, frame)
 
 
 def keyframes(*frames: int) -> tuple[Keyframe, ...]:
-    """True postures as keyframes."""
     return tuple(Keyframe(frame, TRUTH[frame]) for frame in frames)
 
 
@@ -50,7 +48,6 @@ def test_the_fit_leads_from_the_keyframe_before_towards_the_truth() -> None:
 
 
 def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
-    """Fifteen frames from either."""
     tracks = film(TRUTH, noise_px=0.3, seed=2)
     before, after = [], []
     for frame in range(15, 30, 3):
@@ -63,7 +60,6 @@ def test_between_two_keyframes_it_is_better_than_interpolation() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
-    """Whatever is seen: markers moved at random, one hidden, one taken for another."""
     rng = np.random.default_rng(seed)
     tracks = film(TRUTH, noise_px=12.0, seed=seed)
     centroid = np.array(tracks.centroid)
@@ -79,7 +75,6 @@ def test_the_markers_are_never_seen_farther_off_than_before(seed: int) -> None:
 
 
 def test_what_is_believed_exactly_stays() -> None:
-    """With nothing seen the belief is the answer."""
     tracks = film(TRUTH)
     tracks = replace(tracks, centroid=np.full_like(tracks.centroid, np.nan))
     found = fit(prior_from_keyframes(keyframes(5), 20, 30.0), tracks, 20)
@@ -88,7 +83,6 @@ def test_what_is_believed_exactly_stays() -> None:
 
 
 def test_a_marker_that_no_posture_explains_is_named() -> None:
-    """The left shin's color is seen in the far corner of the picture."""
     tracks = film(TRUTH)
     centroid = np.array(tracks.centroid)
     centroid[20, 3] = (4.0, 4.0)
@@ -130,7 +124,6 @@ def test_hinges_keep_their_range() -> None:
 
 
 def test_a_rough_pose_is_corrected() -> None:
-    """The animator has set the arms some twenty degrees off."""
     rng = np.random.default_rng(4)
     tracks = film(TRUTH, noise_px=0.3, seed=4)
     rough = np.where(np.arange(34) < 6, 0.02, 0.15) * rng.normal(size=34)
@@ -170,7 +163,6 @@ def unmarked_evidence() -> KeyframeEvidence:
 
 
 def fit_points(belief: FramePrior, keypoints: Keypoints, frame: int) -> FrameFit:
-    """Fit one frame to keypoints alone."""
     nothing = ObservedRegions.from_tracks(RegionTracks.unmarked(np.zeros(1), CAMERA.resolution))
     points = ObservedKeypoints.of(keypoints)[np.array([frame])]
     return fit_frame(unmarked_evidence(), nothing, belief, frame, points=points)

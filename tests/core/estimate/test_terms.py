@@ -46,7 +46,6 @@ def moved(at: ClipState, step: np.ndarray) -> ClipState:
 
 
 def gradient(term: Term, at: ClipState) -> np.ndarray:
-    """The gradient a term adds."""
     equations = NormalEquations(FRAMES, DOFS)
     term.add_to(equations, at, 1.0)
     return equations.gradient
@@ -72,7 +71,6 @@ def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
 
 
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
-    """½ Σ ((d - d_p) / σ)²."""
     at = state()
     frame = np.arange(FRAMES)
     prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), frame)
@@ -172,7 +170,6 @@ def test_motion_along_the_line_of_sight_alone_does_not_free_a_foot() -> None:
 
 
 def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
-    """Of two still ankles the one far above the other may move."""
     posture = exercise(1)
     thigh = HUMAN.dof_names.index("hip.L.rotation_x")
     raised = np.zeros((FRAMES, DOFS))
@@ -205,7 +202,6 @@ def test_bursts_of_acceleration_pull_less_than_their_size() -> None:
 
 
 def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
-    """Weights are a limb's own."""
     at = state(size=0.0)
     calm = np.zeros((FRAMES, DOFS))
     calm[2, HUMAN.limbs[2][0]] = 1.0
@@ -220,7 +216,6 @@ def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
 
 
 def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
-    """Second differences over a standard deviation, and its gradient."""
     builder = QuadraticBuilder(FRAMES, DOFS)
     std = np.linspace(0.1, 1.0, DOFS)
     builder.add(slice(0, DOFS), (1.0, -2.0, 1.0), std)
@@ -233,7 +228,6 @@ def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
 
 
 def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() -> None:
-    """Residuals are in pixels: a region three pixels off differs by three pixels and by no shape."""
     posture = exercise(FRAMES)
     tracks = film(posture)
     predicted = MODEL.evaluate(BODY.pose(posture), np.arange(FRAMES))
@@ -281,7 +275,6 @@ def test_what_is_missing_of_a_region_widens_its_features() -> None:
 
 
 def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
-    """Its prediction is no number; what is added, and what it costs, is one."""
     tracks = film(exercise(FRAMES))
     behind = Posture.stack([exercise(FRAMES)[index] for index in range(FRAMES)])
     location = CAMERA.pose()[1]

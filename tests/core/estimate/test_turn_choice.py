@@ -19,7 +19,6 @@ GAP = 1
 
 
 def turning(degrees: float) -> Posture:
-    """The exercise, turned by so much in the gap."""
     still = exercise(FRAMES)
     share = np.clip((np.arange(FRAMES) - EVERY) / EVERY, 0.0, 1.0)
     return yawed_at(still, np.radians(degrees) * share**2 * (3.0 - 2.0 * share), still.translation)
@@ -72,7 +71,6 @@ def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
 
 
 def test_nothing_seen_decides_nothing() -> None:
-    """Keyframes alone are interpolated the short way."""
     truth, tracks, _ = long_turn()
     blind = replace(
         tracks,

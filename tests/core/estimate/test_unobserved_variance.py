@@ -25,7 +25,6 @@ def test_nothing_is_open_where_markers_are_seen(keyframes: list[int]) -> None:
 
 
 def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
-    """It grows with time up to a bound, and a keyframe ends it."""
     visible = np.ones((90, 3), dtype=bool)
     visible[20:, 1] = False
     variance = open_of(visible, [0, 80])
@@ -35,7 +34,6 @@ def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
 
 
 def test_all_is_open_where_nothing_is_seen() -> None:
-    """Place and turn of the body too."""
     visible = np.zeros((90, 3), dtype=bool)
     variance = open_of(visible, [0])
     assert variance[0].max() == 0.0 and (variance[89] > 0.01).all()

@@ -18,7 +18,6 @@ TRUTH = exercise(FRAMES)
 
 
 def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
-    """Run the estimate to its end."""
     job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Believed(prior, POSED))
     fractions = []
     while True:
@@ -52,7 +51,6 @@ def exact() -> WholeClipResult:
 
 
 def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: WholeClipResult) -> None:
-    """The mean error falls well below the interpolation's and below a centimeter."""
     before = point_error_m(prior_from(TRUTH[np.array(POSED)]), TRUTH).mean()
     after = point_error_m(exact.posture, TRUTH).mean()
     assert after < 0.6 * before
@@ -128,7 +126,6 @@ def test_footage_without_any_marker_gives_the_prior_back() -> None:
 
 
 def test_the_same_input_gives_the_same_postures_bit_for_bit(exact: WholeClipResult) -> None:
-    """Nothing is random."""
     again = solve(prior_from(TRUTH[np.array(POSED)]), film(TRUTH, 0.3))
     np.testing.assert_array_equal(again.posture.rotations, exact.posture.rotations)
     np.testing.assert_array_equal(again.covariance, exact.covariance)

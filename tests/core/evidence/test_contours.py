@@ -34,7 +34,6 @@ def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
 
 
 def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
-    """Thickness and place of each part, each by a millimeter."""
     pose = BODY.pose(exercise(1))
     before = MODEL.evaluate(pose, FRAME)
     for column in range(SHAPE):

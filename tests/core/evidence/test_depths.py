@@ -28,7 +28,6 @@ def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
 
 
 def test_a_moving_camera_is_taken_at_its_frame() -> None:
-    """Each posture of a batch is seen from its own frame's camera."""
     pose = BODY.pose(Posture.rest(HUMAN, (3,)))
     depth = depths.evaluate(BODY, camera_in_front(3), pose, np.arange(3))
     np.testing.assert_allclose(depth, np.broadcast_to(np.array([[4.0], [5.0], [6.0]]), (3, 13)), atol=1e-12)

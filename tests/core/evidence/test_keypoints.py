@@ -15,7 +15,6 @@ LINKS = DepthLinks.between(BODY_POINTS, ("one",) * len(BODY_POINTS))
 
 
 def test_every_body_point_has_a_place_and_principal_points_have_the_skeletons() -> None:
-    """Whatever a layout names can be predicted."""
     assert set(USUAL_PLACES) == set(BODY_POINTS)
     pose = BODY.pose(POSTURE)
     own = [BODY_POINTS.index(name) for name in HUMAN.point_names]
@@ -43,7 +42,6 @@ def numeric(values, step: float = 1e-6) -> np.ndarray:  # noqa: ANN001
 
 @pytest.mark.parametrize("dof", [0, 2, 4, 7, 11, 14, 18, 25, 31])
 def test_jacobians_by_the_posture_are_differences(dof: int) -> None:
-    """Of pixels and of links' depths."""
     unit = np.zeros((FRAMES, HUMAN.dof_count))
     unit[:, dof] = 1.0
     pixels = numeric(lambda x: MODEL.pixels(BODY.pose(POSTURE.plus(x * unit)), FRAME))
@@ -54,7 +52,6 @@ def test_jacobians_by_the_posture_are_differences(dof: int) -> None:
 
 
 def test_jacobians_by_place_and_lens_are_differences() -> None:
-    """The parameters that keyframes calibrate."""
     pose = BODY.pose(POSTURE)
     for axis in range(3):
         unit = np.zeros_like(MODEL.place)
@@ -93,5 +90,4 @@ def test_links_take_what_a_layout_has() -> None:
 
 
 def test_links_join_points_of_one_source_only() -> None:
-    """A detector's hip and an animator's knee are no link."""
     assert not len(DepthLinks.between(("hip.L", "knee.L"), ("detector", "tracks")).names)

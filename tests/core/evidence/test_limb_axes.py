@@ -15,7 +15,6 @@ STEP = 1e-5
 
 @pytest.mark.parametrize("seed", range(3))
 def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
-    """For any directions in the image and any points of the axes."""
     rng = np.random.default_rng(seed)
     posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
     share = rng.uniform(size=(1, len(NAMES)))

@@ -23,7 +23,6 @@ def standing(**angles: float) -> Posture:
 
 
 def predict(posture: Posture, jacobian: bool = False):  # noqa: ANN201
-    """The prediction for a batch of postures."""
     return MODEL.evaluate(BODY.pose(posture), np.arange(posture.batch[0]), jacobian)
 
 
@@ -42,7 +41,6 @@ def test_a_stretched_forearm_lies_where_it_projects() -> None:
 
 
 def test_moving_away_shrinks_a_region_with_the_square_of_distance() -> None:
-    """Twice as far, a quarter of the area."""
     near, far = standing(), standing(pelvis__location_y=4.2)
     ratio = predict(near).area[0] / predict(far).area[0]
     np.testing.assert_allclose(ratio, 4.0, rtol=0.12)
@@ -96,7 +94,6 @@ def test_every_second_moment_is_positive_definite_over_a_whole_exercise() -> Non
 
 
 def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frames are worked on in stretches, which nothing must show."""
     posture = exercise(9)
     whole = predict(posture, jacobian=True)
     monkeypatch.setattr(regions, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
@@ -106,7 +103,6 @@ def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
-    """A sock reaches less far up than a stocking."""
     stocking = MarkerPlacement("shin.L", 0.05, 0.95)
     sock = MarkerPlacement("shin.L", 0.5, 0.95)
     pose = BODY.pose(standing())
@@ -170,7 +166,6 @@ def test_slopes_at_the_edge_are_those_of_what_is_left() -> None:
 
 
 def test_what_has_left_the_picture_is_not_seen() -> None:
-    """No share of it, and finite moments."""
     model = shifted(-0.9)
     seen = model.evaluate(BODY.pose(standing()), np.zeros(1, dtype=np.intp), jacobian=True)
     assert seen.visible.max() == 0.0

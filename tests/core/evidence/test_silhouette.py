@@ -40,7 +40,6 @@ def at_camera_height(turn: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Post
 
 
 def seen(pieces: PieceStack, posture: Posture, camera: Camera = CAMERA):  # noqa: ANN201
-    """Samples of the pieces' silhouettes."""
     pose = BODY.pose(posture)
     return sample_silhouette(pieces, view_pieces(pieces, pose, camera, FRAME))
 
@@ -58,14 +57,12 @@ def test_a_cylinder_from_the_front_fills_a_rectangle() -> None:
 
 
 def test_a_cylinder_from_above_shows_its_elliptical_end() -> None:
-    """Tipped towards the camera only the end is left: an ellipse of area π w d."""
     samples = seen(upright(), at_camera_height((np.pi / 2, 0.0, 0.0)))
     assert samples.area[0, 0].sum() == pytest.approx(np.pi * WIDE * DEEP, rel=1e-2)
 
 
 @pytest.mark.parametrize("yaw", [0.3, 0.8, np.pi / 2])
 def test_a_turned_trunk_shows_the_width_of_its_ellipse(yaw: float) -> None:
-    """The apparent half-width is the ellipse's support function."""
     samples = seen(upright(), at_camera_height((0.0, 0.0, yaw)))
     half = np.hypot(WIDE * np.cos(yaw), DEEP * np.sin(yaw))
     assert samples.area[0, 0].sum() == pytest.approx(2 * half * LENGTH, rel=1e-3)

@@ -19,7 +19,6 @@ def made(seed: int) -> tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray
 
 
 def test_the_cheapest_path_is_the_cheapest_of_all() -> None:
-    """Viterbi against every path."""
     for seed in range(5):
         own, steps, _ = made(seed)
         rows = [each[0] for each in own]
@@ -33,7 +32,6 @@ def test_the_cheapest_path_is_the_cheapest_of_all() -> None:
 
 
 def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
-    """Two chains that are tied within each frame."""
     for seed in range(3):
         own, first, second = made(seed)
 
@@ -52,7 +50,6 @@ def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
 
 
 def test_probabilities_are_those_of_all_paths() -> None:
-    """Forward and backward against the sum over every path."""
     own, steps, _ = made(7)
     rows = [each[0] for each in own]
     total = [np.zeros(ROWS) for _ in range(FRAMES)]

@@ -18,7 +18,6 @@ from scipy.stats import multivariate_t, t
 
 @pytest.mark.parametrize(("degrees", "dimensions"), [(3.0, 1), (4.0, 2), (4.0, 3)])
 def test_costs_are_those_of_students_t(degrees: float, dimensions: int) -> None:
-    """Up to a constant, for one row and several."""
     rows = np.random.default_rng(1).normal(0.0, 4.0, (20, dimensions))
     density = multivariate_t(np.zeros(dimensions), np.eye(dimensions), degrees)
     expected = density.logpdf(np.zeros(dimensions)) - density.logpdf(rows)
@@ -46,7 +45,6 @@ def test_costs_keep_single_precision() -> None:
 
 
 def test_directions_are_one_long_and_across() -> None:
-    """Random vectors, axes and one without a direction."""
     vectors = np.vstack([np.random.default_rng(2).normal(size=(20, 3)), np.eye(3), -np.eye(3)])
     np.testing.assert_allclose(np.linalg.norm(unit(vectors), axis=-1), 1.0)
     np.testing.assert_allclose(np.cross(unit(vectors), vectors), 0.0, atol=1e-12)
@@ -58,7 +56,6 @@ def test_directions_are_one_long_and_across() -> None:
 
 
 def test_columns_are_interpolated_one_by_one() -> None:
-    """Between two known rows, and flat beyond them."""
     values = np.array([[0.0, 10.0], [2.0, 30.0]])
     found = columns_at(np.array([-1.0, 1.0, 2.0, 9.0]), np.array([1.0, 3.0]), values)
     np.testing.assert_allclose(found, [[0.0, 10.0], [0.0, 10.0], [1.0, 20.0], [2.0, 30.0]])
@@ -76,13 +73,11 @@ def test_a_gaussian_is_the_sum_by_brute_force() -> None:
 
 
 def test_the_usual_step_leaves_out_what_does_not_advance() -> None:
-    """Repeated, unknown and returning stamps have no say."""
     assert usual_step(np.array([0.0, 0.1, 0.1, 0.2, np.nan, 0.3, 0.2, 0.3])) == pytest.approx(0.1)
     assert usual_step(np.array([4.0])) == 1.0 and usual_step(np.array([4.0, 4.0]), 0.5) == 0.5
 
 
 def test_a_weighted_median_counts_each_value_as_often_as_it_weighs() -> None:
-    """Whole weights: the median of the repeated values, the lower of two in the middle."""
     rng = np.random.default_rng(4)
     for _ in range(30):
         values, weights = rng.normal(size=7), rng.integers(0, 5, 7)

@@ -50,7 +50,6 @@ def speed_of(
     keypoints: Keypoints | None = None,
     album: Album | None = None,
 ) -> EvidenceSpeed:
-    """V_sum of whatever is given."""
     return run(evidence_speed(tracks, segments, keypoints or Keypoints.none(FRAMES), album))
 
 
@@ -64,13 +63,11 @@ def test_markers_alone_give_the_papers_sum() -> None:
 
 
 def test_a_part_of_the_body_counts_once_however_many_points_show_it() -> None:
-    """Arm, leg and trunk move alike: three times one point's speed, not six times."""
     one = speed_of(keypoints=seen(swinging(NAMES[:1]), NAMES[:1])).values
     np.testing.assert_allclose(speed_of(keypoints=seen(swinging())).values, 3.0 * one, rtol=1e-9)
 
 
 def test_a_marker_and_keypoints_of_a_limb_count_as_one() -> None:
-    """An arm with a sleeve's marker and two keypoints that move alike is no faster for it."""
     names = NAMES[:2]
     arm = seen(swinging(names), names)
     both = speed_of(marked(swinging(names[:1])), ("forearm.L",), arm).values
@@ -120,14 +117,12 @@ def test_without_either_the_pictures_tell_where_the_performer_rests() -> None:
 
 
 def test_with_nothing_at_all_the_speed_is_even_and_that_is_said() -> None:
-    """Keyframes are then spaced evenly."""
     found = speed_of()
     np.testing.assert_array_equal(found.values, np.zeros(FRAMES))
     assert "evenly" in found.note
 
 
 def test_unseen_keypoints_are_none() -> None:
-    """A detector that found nobody leaves V_sum to the markers."""
     tracks = marked(swinging())
     nobody = seen(np.full((FRAMES, len(NAMES), 2), np.nan), score=0.0)
     segments = ("forearm.L",) * len(NAMES)

@@ -11,7 +11,6 @@ KEYFRAMES = tuple(Keyframe(frame, TRUTH[frame]) for frame in (0, 20, 50))
 
 
 def test_postures_differ_more_the_longer_the_time_between() -> None:
-    """In every degree of freedom, and the place without end."""
     stds = [difference_std(HUMAN, time_s) for time_s in (0.0, 0.1, 0.5, 2.0, 10.0)]
     assert all(np.all(later >= earlier) for earlier, later in zip(stds, stds[1:], strict=False))
     assert stds[0].max() < 0.01
@@ -30,13 +29,11 @@ def test_the_nearest_keyframe_is_believed_beyond_the_ends() -> None:
 
 
 def test_a_single_keyframe_goes_nowhere() -> None:
-    """Nothing says which way."""
     prior = prior_from_keyframes(KEYFRAMES[:1], 30, 30.0)
     assert np.abs(prior.posture.minus(TRUTH[0])).max() < 1e-12
 
 
 def test_between_two_both_count_and_more_surely() -> None:
-    """The interpolation is believed; both neighbors are starts."""
     prior = prior_from_keyframes(KEYFRAMES, 32, 30.0)
     alone = prior_from_keyframes(KEYFRAMES[:2], 32, 30.0)
     assert np.all(prior.std < alone.std)
@@ -46,7 +43,6 @@ def test_between_two_both_count_and_more_surely() -> None:
 
 
 def test_a_keyframe_at_the_frame_itself_does_not_decide() -> None:
-    """It is to be posed anew; only where it is alone is it the start."""
     prior = prior_from_keyframes(KEYFRAMES, 20, 30.0)
     assert np.abs(prior.posture.minus(TRUTH[20])).max() > 0.05
     alone = prior_from_keyframes(KEYFRAMES[1:2], 20, 30.0)
@@ -54,7 +50,6 @@ def test_a_keyframe_at_the_frame_itself_does_not_decide() -> None:
 
 
 def test_a_pose_is_believed_as_it_stands() -> None:
-    """It is the mean and the only start."""
     prior = prior_from_pose(TRUTH[3])
     assert np.abs(prior.starts[0].minus(TRUTH[3])).max() < 1e-12
     assert np.all(prior.std > 0.0)

@@ -69,7 +69,6 @@ BOMBS: dict[str, Callable[[], bytes]] = {
 
 @pytest.mark.parametrize("kind", BOMBS)
 def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
-    """Deep, long and many: one short sentence."""
     path = tmp_path / "bomb.json"
     path.write_bytes(BOMBS[kind]())
     with pytest.raises(InputError) as caught:
@@ -131,7 +130,6 @@ def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> 
 
 
 def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
-    """A library built with a mistake in it leaves no file."""
     with pytest.raises(InputError, match="identifier"):
         write_library(tmp_path / "x.json", replace(small_library(), identifier="../x"))
     assert list(tmp_path.iterdir()) == []

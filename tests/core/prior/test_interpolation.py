@@ -14,7 +14,6 @@ FRAMES = 44
 
 
 def keyframes(indices: tuple[int, ...] = INDICES) -> tuple[Keyframe, ...]:
-    """Keyframes of an exercise."""
     posed = exercise(60)[np.array(indices)]
     return tuple(Keyframe(index, posed[i]) for i, index in enumerate(indices))
 
@@ -29,7 +28,6 @@ def place_only(values: list[float], indices: list[int]) -> tuple[Keyframe, ...]:
 
 @pytest.mark.parametrize("method", [interpolate, interpolate_linearly])
 def test_the_curve_passes_through_every_keyframe_and_is_held_outside(method) -> None:  # noqa: ANN001
-    """Exactly at keyframes, constant before the first and after the last."""
     posed = keyframes()
     curve = method(posed, FRAMES)
     for keyframe in posed:
@@ -56,7 +54,6 @@ def test_velocity_is_continuous_across_a_keyframe() -> None:
     st.lists(st.integers(1, 12), min_size=6, max_size=6),
 )
 def test_no_component_overshoots_its_neighboring_keyframes(values: list[float], gaps: list[int]) -> None:
-    """Between two keyframes a coordinate stays between their values."""
     indices = [0, *np.cumsum(gaps[: len(values) - 1]).tolist()]
     curve = interpolate(place_only(values, indices), indices[-1] + 1).translation[:, 2]
     for i in range(len(values) - 1):
@@ -66,13 +63,11 @@ def test_no_component_overshoots_its_neighboring_keyframes(values: list[float], 
 
 
 def test_even_motion_is_reproduced_evenly() -> None:
-    """Three keyframes on a line give a line."""
     curve = interpolate(place_only([0.0, 1.0, 2.0], [0, 10, 20]), 21)
     np.testing.assert_allclose(curve.translation[:, 2], np.arange(21) / 10.0, atol=1e-12)
 
 
 def test_a_turn_past_half_a_circle_keeps_its_direction() -> None:
-    """Keyframes a third of a turn apart go on turning the same way."""
     vectors = np.zeros((4, HUMAN.dof_count))
     turns = Posture.from_vector(HUMAN, vectors).plus(np.arange(4)[:, None] * 2.0 * np.eye(HUMAN.dof_count)[5])
     posed = tuple(Keyframe(10 * i, turns[i]) for i in range(4))

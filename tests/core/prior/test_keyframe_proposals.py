@@ -22,12 +22,10 @@ def test_keyframes_stay_even_where_no_minimum_is_near() -> None:
 
 
 def test_ten_keyframes_per_hundred_frames_are_the_default() -> None:
-    """The density at which the method is meant to work."""
     assert len(propose_keyframes(np.ones(120))) == 12
 
 
 def test_a_smaller_largest_gap_brings_more_keyframes() -> None:
-    """An asked-for gap outranks the default number."""
     chosen = propose_keyframes(np.ones(101), largest_gap=5)
     assert len(chosen) == 21
     assert np.diff(chosen).max() <= 5
@@ -62,6 +60,5 @@ def test_proposed_keyframes_always_keep_their_promises(
 def test_impossible_wishes_are_refused_with_their_value(
     frames: int, count: int | None, gap: int | None, named: str
 ) -> None:
-    """The sentence names the value and what would be valid."""
     with pytest.raises(InputError, match=f"{named}.*(valid|or more)"):
         propose_keyframes(np.ones(frames), count, gap)

@@ -91,7 +91,6 @@ def test_a_walk_along_an_arc_turns_in_every_cycle() -> None:
 
 
 def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
-    """What shakes in one cycle and not in the next is no part of the motion."""
     exact, time_s = stepping(140)
     shaken, _ = stepping(140, noise_rad=0.08)
     cycle = average_cycle(BODY, shaken, time_s, PERIOD_S)
@@ -129,7 +128,6 @@ def test_no_cycle_is_found_in_what_is_seen_once() -> None:
     [(5, 10, "5 frames"), (60, 1, "count of postures is 1"), (60, None, "still")],
 )
 def test_what_cannot_be_learned_from_is_refused(frames: int, count: int | None, sentence: str) -> None:
-    """In one sentence that says what is wrong."""
     still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (frames, 1)))
     with pytest.raises(InputError, match=sentence):
         learn_library(BODY, still, np.arange(frames) / FPS, ABOUT, count)

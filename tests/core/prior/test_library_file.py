@@ -13,7 +13,6 @@ from keymark.core.prior.library import Library, read_library, write_library
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """A written library."""
     path = tmp_path / "small_steps.json"
     write_library(path, small_library())
     return path
@@ -59,7 +58,6 @@ def test_a_way_too_short_for_the_file_leaves_none() -> None:
 
 
 def test_a_file_that_is_read_and_written_has_the_same_bytes(file: Path, tmp_path: Path) -> None:
-    """No change without a change: version control stays quiet."""
     again = tmp_path / "again.json"
     write_library(again, read_library(file))
     assert again.read_bytes() == file.read_bytes()
@@ -67,7 +65,6 @@ def test_a_file_that_is_read_and_written_has_the_same_bytes(file: Path, tmp_path
 
 
 def test_a_small_change_is_a_small_difference(file: Path, tmp_path: Path) -> None:
-    """One angle is one line; a step of a motion is one line."""
     text = file.read_text(encoding="utf-8")
     assert '\n        "knee.L.flexion": ' in text
     assert '{"time_s": 0.31, "posture": "Stand on one leg"}' in text

@@ -14,12 +14,10 @@ from keymark.core.prior.library import Library, read_library, write_library
 
 @pytest.fixture(scope="module")
 def page(repository: Path) -> str:
-    """docs/library_format.md."""
     return (repository / "docs" / "library_format.md").read_text(encoding="utf-8")
 
 
 def test_the_example_is_a_library_and_laid_out_as_one(page: str, tmp_path: Path) -> None:
-    """Byte for byte what would be written."""
     (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "given.json").write_text(example, encoding="utf-8")
     write_library(tmp_path / "nodding.json", read_library(tmp_path / "given.json"))
@@ -28,7 +26,6 @@ def test_the_example_is_a_library_and_laid_out_as_one(page: str, tmp_path: Path)
 
 
 def test_every_field_has_its_row(page: str) -> None:
-    """No field of the header is left out."""
     for name in Library.ORDER:
         assert f"`{name}`" in page.split("## A posture")[0]
 
@@ -51,5 +48,4 @@ def test_every_field_has_its_row(page: str) -> None:
     ],
 )
 def test_limits_are_those_of_the_reader(page: str, words: str) -> None:
-    """A limit that changes here changes there."""
     assert words in page

@@ -84,7 +84,6 @@ def test_a_hand_stays_short_of_a_place_only_where_it_may() -> None:
 
 
 def test_a_mirrored_moment_is_the_mirror_image() -> None:
-    """Point by point, left and right exchanged."""
     posed = bowing(left_arm=Hand(0.2, -0.5, 0.7))
     here, there = points(posed), points(mirrored(posed))
     for name, place in here.items():
@@ -93,7 +92,6 @@ def test_a_mirrored_moment_is_the_mirror_image() -> None:
 
 
 def shipped(name: str) -> Library:
-    """A shipped library."""
     return read_library(FOLDER / f"{name}.json")
 
 

@@ -36,7 +36,6 @@ def test_speed_is_the_sum_of_the_lengths_of_the_velocities() -> None:
 
 
 def test_uneven_time_stamps_are_respected() -> None:
-    """A dropped frame doubles the step, not the speed."""
     time = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 6.0, 7.0])
     tracks = tracks_of(straight([(6.0, 8.0)], time), time / FPS)
     np.testing.assert_allclose(marker_speed(tracks, 0.0), 10.0, rtol=1e-12)
@@ -50,7 +49,6 @@ def test_a_stamp_that_does_not_advance_leaves_the_speed_finite() -> None:
 
 
 def test_a_hidden_stretch_does_not_change_an_even_speed() -> None:
-    """Hidden at the start, in the middle and at the end, a marker keeps its speed, so no minimum arises."""
     centroid = straight([(3.0, 4.0), (0.0, 2.0)], np.arange(30.0))
     centroid[:3, 0] = centroid[12:18, 0] = centroid[26:, 0] = np.nan
     np.testing.assert_allclose(marker_speed(tracks_of(centroid)), 7.0, rtol=1e-12)
@@ -58,14 +56,12 @@ def test_a_hidden_stretch_does_not_change_an_even_speed() -> None:
 
 @pytest.mark.parametrize("seen", [0, 1])
 def test_a_marker_seen_less_than_twice_adds_nothing(seen: int) -> None:
-    """Its speed is unknown; the others' still counts."""
     centroid = straight([(3.0, 4.0), (9.0, 9.0)], np.arange(10.0))
     centroid[seen:, 1] = np.nan
     np.testing.assert_allclose(marker_speed(tracks_of(centroid)), 5.0, rtol=1e-12)
 
 
 def test_smoothing_calms_noise_and_keeps_the_mean() -> None:
-    """The light smoothing takes jitter of single frames out."""
     rng = np.random.default_rng(4)
     tracks = tracks_of(straight([(5.0, 0.0)], np.arange(200.0)) + rng.normal(0.0, 1.0, (200, 1, 2)))
     rough, smooth = marker_speed(tracks, 0.0), marker_speed(tracks, 2.0)
@@ -74,5 +70,4 @@ def test_smoothing_calms_noise_and_keeps_the_mean() -> None:
 
 
 def test_a_single_frame_has_no_speed() -> None:
-    """One frame tells nothing of motion, and is no error."""
     np.testing.assert_array_equal(marker_speed(tracks_of(np.ones((1, 2, 2)))), [0.0])

@@ -47,7 +47,6 @@ def test_any_library_can_be_mirrored(library: Library) -> None:
 
 
 def test_mirrored_twice_is_the_same() -> None:
-    """To the last byte, on an actor whose sides differ too."""
     uneven = replace(LIBRARY, actor=Actor(dict(ACTOR.segments_m) | {"shin.L": 0.4}))
     assert mirrored_library(mirrored_library(uneven)).to_json() == uneven.to_json()
     assert mirrored_library(uneven).actor.segments_m["shin.R"] == 0.4
@@ -78,6 +77,5 @@ def test_what_lacks_its_other_side_gets_it_and_nothing_twice() -> None:
 
 
 def test_uneven_sides_are_refused() -> None:
-    """A posture of the left does not fit a longer right leg."""
     with pytest.raises(InputError, match="differ in length"):
         with_mirrored(replace(LIBRARY, actor=Actor(dict(ACTOR.segments_m) | {"shin.L": 0.4})))

@@ -48,7 +48,6 @@ def test_the_course_passes_through_its_steps() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 1e-12, 0.3, np.pi, 2.0 * np.pi, -3.5 * np.pi])
 def test_cycles_add_up(heading: float) -> None:
-    """Five cycles at once are five cycles one by one, and as many back lead home."""
     motion = replace(STEPS, travel=(0.2, -1.1, heading))
     start = Posture.stack([LIBRARY.postures[0].posture])
     one = np.array([1.0])
@@ -60,7 +59,6 @@ def test_cycles_add_up(heading: float) -> None:
 
 
 def test_nothing_jumps_where_cycles_meet() -> None:
-    """Place and speed just before a cycle's end go on just after it."""
     step = 1e-4
     times = 3.0 * STEPS.duration_s + step * np.arange(-2, 3)
     speed = np.diff(BODY.points(BODY.pose(sample_motion(LIBRARY, STEPS, BODY, times))), axis=0) / step
@@ -69,7 +67,6 @@ def test_nothing_jumps_where_cycles_meet() -> None:
 
 
 def test_what_stands_on_the_floor_stays_there() -> None:
-    """Between postures too, and on other proportions."""
     times = np.linspace(-1.0, 2.5, 200)
     for body in (BODY, Body(Actor.from_stature(1.3))):
         heights = sole_heights_m(body, body.pose(sample_motion(LIBRARY, STEPS, body, times))).min(axis=-1)

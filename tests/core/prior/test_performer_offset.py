@@ -24,7 +24,6 @@ def error(keyframes: tuple[Keyframe, ...]) -> float:
 
 
 def in_order(*keyframes: Keyframe) -> tuple[Keyframe, ...]:
-    """As a take holds them."""
     return tuple(sorted(keyframes, key=lambda keyframe: keyframe.index))
 
 
@@ -41,7 +40,6 @@ def test_a_difference_that_lasts_is_taken_out_of_all_matched_keyframes() -> None
 
 
 def test_posed_keyframes_stay_and_are_not_doubted() -> None:
-    """Only matched ones are changed."""
     given = in_order(*matched([0, 30, 60, 90], TRUTH.plus(np.tile(STYLE, (91, 1)))), Keyframe(45, TRUTH[45]))
     changed, doubt = with_offset(given, FPS)
     assert changed[2] is given[2] and doubt[2] == 0.0
@@ -50,7 +48,6 @@ def test_posed_keyframes_stay_and_are_not_doubted() -> None:
 
 
 def test_without_posed_or_without_matched_ones_nothing_changes() -> None:
-    """Without posed keyframes, or without matched ones, nothing changes."""
     unposed = in_order(*matched([0, 40, 80], TRUTH))
     posed = in_order(Keyframe(0, TRUTH[0]), Keyframe(80, TRUTH[80]))
     assert with_offset(unposed, FPS)[0] is unposed and with_offset(unposed, FPS)[1].tolist() == [1.0] * 3
@@ -66,7 +63,6 @@ def test_a_posed_keyframe_far_from_all_matched_ones_says_little() -> None:
 
 
 def test_the_nearer_of_two_posed_keyframes_counts_more() -> None:
-    """An offset that changes along the clip is followed."""
     drift = STYLE * np.linspace(0.0, 1.0, 91)[:, None]
     library = TRUTH.plus(drift)
     given = in_order(*matched(list(range(3, 90, 6)), library), Keyframe(2, TRUTH[2]), Keyframe(88, TRUTH[88]))

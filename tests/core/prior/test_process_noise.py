@@ -10,7 +10,6 @@ FRAMES = np.array([0, 12, 24, 36, 48])
 
 
 def covariance(keyframes: Posture, time_s: np.ndarray) -> np.ndarray:
-    """The covariance that the factor is a root of."""
     factor = process_noise_factor(keyframes, time_s)
     return factor @ factor.T
 
@@ -31,7 +30,6 @@ def test_twice_as_fast_departs_four_times_as_far() -> None:
 
 
 def test_joints_of_a_limb_move_together_and_limbs_apart() -> None:
-    """Hip and knee that swing in step are correlated; an arm and a leg never are."""
     hip, knee = (HUMAN.dof_names.index(name) for name in ("hip.L.rotation_x", "knee.L.flexion"))
     elbow = HUMAN.dof_names.index("elbow.L.flexion")
     vector = np.zeros((5, HUMAN.dof_count))
@@ -45,6 +43,5 @@ def test_joints_of_a_limb_move_together_and_limbs_apart() -> None:
 
 
 def test_limbs_part_the_degrees_of_freedom() -> None:
-    """Trunk, head, arms and legs: each degree of freedom is in one of them."""
     assert sorted(np.concatenate(HUMAN.limbs)) == list(range(HUMAN.dof_count))
     assert [len(limb) for limb in HUMAN.limbs] == [9, 3, 6, 6, 5, 5]

@@ -60,7 +60,6 @@ def test_libraries_are_found_by_name_and_by_file(folders: list[Path]) -> None:
 
 @pytest.mark.parametrize("name", ["walking", "../walk", "", "walk/../../secret", "x" * 10**5, "no\nsuch"])
 def test_an_unknown_name_is_one_sentence(folders: list[Path], name: str) -> None:
-    """It says what there is; a way out of the folders leads nowhere."""
     with pytest.raises(InputError) as caught:
         find_library(name, folders)
     assert len(str(caught.value).splitlines()) == 1
