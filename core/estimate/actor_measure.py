@@ -9,6 +9,7 @@ sideways, they do.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -120,6 +121,7 @@ def measure_standing(
         average,
         stature_m,
         place,
+        distance_m,
         heading,
         ObservedRegions.from_tracks(regions),
         segments,
@@ -136,7 +138,7 @@ class _Problem:
     """The estimation problem.
 
     Its unknowns x are a tangent step from the standing posture (D) [m, rad], the logarithms of the measured
-    lengths relative to average ones (L), and the markers' placements relative to average ones (M * P).
+    lengths relative to average ones, and the markers' placements relative to average ones (M * P).
     """
 
     camera: Camera
@@ -144,6 +146,7 @@ class _Problem:
     average: Actor
     height_m: float
     place: Array
+    distance_m: float
     heading: float
     observed: ObservedRegions
     segments: tuple[str, ...]
@@ -151,15 +154,14 @@ class _Problem:
     point_names: tuple[str, ...]  # (N,) the body points that the keypoints show
     arms_stretched: bool
 
-    @property
+    @cached_property
     def std(self) -> Array:
-        """(N,) prior standard deviation of each unknown."""
-        steps = []
+        """(X,) prior standard deviation of each unknown."""
         believed = {**STANDING_STD, **(STRETCHED_STD if self.arms_stretched else {})}
-        for name in HUMAN.dof_names:
-            joint = name.split(".")[0]
-            group = f"{joint}.location" if ".location" in name else joint
-            steps.append(believed.get(name, believed[group]))
+        groups = ["pelvis.location" if "location" in name else name.split(".")[0] for name in HUMAN.dof_names]
+        steps = [
+            believed.get(name, believed[group]) for name, group in zip(HUMAN.dof_names, groups, strict=True)
+        ]
         markers = np.tile(PRIOR_STD, len(self.segments))
         return np.concatenate([steps, np.full(len(MEASURED), PROPORTION_STD), markers])
 
@@ -209,12 +211,12 @@ class _Problem:
 
     def cost(self, x: Array) -> float:
         """Negative logarithm of the probability of x, up to a constant."""
-        rows = self._rows(x)
+        groups, height = self._rows(x)
         image = 0.0
-        for residual, information in rows.groups:
+        for residual, information in groups:
             squared = (residual**2 * information).sum(-1)
             image += student_cost(squared, DEGREES, residual.shape[-1]).sum()
-        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * rows.height**2)
+        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
         """The result at the best x."""
@@ -225,8 +227,7 @@ class _Problem:
         exact = self.height_m / standing_height_m(body)
         body = Body(Actor({name: exact * length for name, length in body.actor.segments_m.items()}))
         spread = dict(zip(MEASURED, map(float, shares), strict=True))
-        distance_m = float(np.linalg.norm(self.place - self.camera.pose(int(self.frame[0]))[1]))
-        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), distance_m)
+        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), self.distance_m)
 
     def _stands(self, x: Array) -> bool:
         model = self.model(x)
@@ -259,7 +260,8 @@ class _Problem:
     def _pose(self, x: Array, body: Body) -> Pose:
         return body.pose(self.posture(x, body))
 
-    def _rows(self, x: Array) -> "_Rows":
+    def _rows(self, x: Array) -> tuple[list[tuple[Array, Array]], float]:
+        """Residuals [px] and information of regions (M, 5) and keypoints (N, 2), and the height's."""
         model = self.model(x)
         pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame)
@@ -272,20 +274,16 @@ class _Problem:
         height = np.log(standing_height_m(model.body) / self.height_m) / 0.005
         off, spread = self._off_px(x)
         seen = np.isfinite(off).all(axis=-1)
-        return _Rows(
-            np.nan_to_num(residual[0]),
-            (trust[..., None] / variance)[0],
-            np.nan_to_num(off),
-            np.where(seen, 1.0 / spread, 0.0)[:, None],
-            float(height),
-        )
+        by_region = np.nan_to_num(residual[0]), (trust[..., None] / variance)[0]
+        by_point = np.nan_to_num(off), np.where(seen, 1.0 / spread, 0.0)[:, None]
+        return [by_region, by_point], float(height)
 
     def _equations(self, x: Array, temperature: float) -> tuple[Array, Array]:
         """Normal matrix (N, N) and gradient (N,)."""
-        rows = self._rows(x)
-        *by_x, height_by_x = self._jacobians(x, rows)
+        groups, height = self._rows(x)
+        *by_x, height_by_x = self._jacobians(x, groups, height)
         normal, gradient = np.zeros((len(x), len(x))), np.zeros(len(x))
-        for (residual, information), jacobian in zip(rows.groups, by_x, strict=True):
+        for (residual, information), jacobian in zip(groups, by_x, strict=True):
             squared = (residual**2 * information / temperature).sum(-1)
             trust = student_weight(squared, DEGREES, residual.shape[-1])[:, None]
             weight = np.broadcast_to(information / temperature * trust, residual.shape)
@@ -294,16 +292,18 @@ class _Problem:
             gradient += flat.T @ (weight * residual).ravel()
         normal += np.diag(self.std**-2.0)
         normal += np.outer(height_by_x, height_by_x)
-        return normal, gradient + x / self.std**2 + height_by_x * rows.height
+        return normal, gradient + x / self.std**2 + height_by_x * height
 
-    def _jacobians(self, x: Array, rows: "_Rows") -> tuple[Array, Array, Array]:
+    def _jacobians(
+        self, x: Array, groups: list[tuple[Array, Array]], height: float
+    ) -> tuple[Array, Array, Array]:
         """Jacobians of the regions' rows (M, 5, X), the keypoints' (N, 2, X) and the height (X,)."""
         model, points = self.model(x), self.keypoint_model(x)
         pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame, jacobian=True)
         _, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
-        by_region, by_point = (np.zeros((*residual.shape, len(x))) for residual, _ in rows.groups)
+        by_region, by_point = (np.zeros((*residual.shape, len(x))) for residual, _ in groups)
         by_height = np.zeros(len(x))
         dofs = HUMAN.dof_count
         turned = self.standing(model.body).plus_jacobian(x[:dofs])
@@ -313,10 +313,10 @@ class _Problem:
         for column in range(dofs, dofs + len(MEASURED)):
             nudged = x.copy()
             nudged[column] += LENGTH_DIFFERENCE
-            other = self._rows(nudged)
-            by_region[..., column] = (other.region - rows.region) / LENGTH_DIFFERENCE
-            by_point[..., column] = (other.point - rows.point) / LENGTH_DIFFERENCE
-            by_height[column] = (other.height - rows.height) / LENGTH_DIFFERENCE
+            others, other_height = self._rows(nudged)
+            for by, (own, _), (other, _) in zip((by_region, by_point), groups, others, strict=True):
+                by[..., column] = (other - own) / LENGTH_DIFFERENCE
+            by_height[column] = (other_height - height) / LENGTH_DIFFERENCE
         if self.segments:
             known = KnownFrames(pose, self.frame, self.observed)
             by_place = placement_jacobian(model.body, self.camera, known, model)[0]  # (M, 5, P)
@@ -324,19 +324,3 @@ class _Problem:
                 first = dofs + len(MEASURED) + marker * by_place.shape[-1]
                 by_region[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
         return np.nan_to_num(by_region), np.nan_to_num(by_point), by_height
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Residuals, and the information of each."""
-
-    region: Array  # (M, 5) of the markers' regions [px]
-    region_information: Array  # (M, 5) [1/px²]
-    point: Array  # (N, 2) of the keypoints [px]
-    point_information: Array  # (N, 1) [1/px²]
-    height: float  # of the body height, in standard deviations
-
-    @property
-    def groups(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Residuals and information of regions and keypoints."""
-        return (self.region, self.region_information), (self.point, self.point_information)

@@ -42,9 +42,6 @@ def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
         yield Window(max(start - margin, 0), min(stop + margin, frames), start, stop)
 
 
-# --- The unknowns of a whole clip
-
-
 @dataclass(frozen=True, eq=False)
 class ClipState:
     """Unknowns of a window or a frame, N = D + B in each of F frames.

@@ -67,10 +67,7 @@ class ContourEvidence:
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
         for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-            pictures = album.pictures(frame[chunk])
-            predicted, edges = _measure(
-                model, album, self.appearance, posture[chunk], frame[chunk], pictures, search
-            )
+            predicted, edges = self.near(posture[chunk], frame[chunk], search)
             found = np.isfinite(edges.variance)
             place = predicted.pixel + edges.distance[..., None] * predicted.normal
             edge[chunk] = np.where(found[..., None], place, np.nan)
@@ -80,11 +77,20 @@ class ContourEvidence:
         return ContourTerm(model, edge, normal, variance)
 
     def near(
-        self, posture: Posture, frame: IndexArray, search: SearchRange
+        self,
+        posture: Posture,
+        frame: IndexArray,
+        search: SearchRange = NARROW,
+        pictures: tuple[Image, BoolArray] | None = None,
     ) -> tuple[ContourPrediction, Edges]:
-        """The contours of well known postures, and the edges near them."""
-        pictures = self.album.pictures(frame)
-        return _measure(self.model, self.album, self.appearance, posture, frame, pictures, search)
+        """The contours of postures, and the edges near them."""
+        pose = self.model.body.pose(posture)
+        predicted = self.model.evaluate(pose, frame)
+        image, known = pictures or self.album.pictures(frame)
+        factor = self.album.factor
+        edges = find_edges(self.model, predicted, pose, frame, image, factor, self.appearance, search)
+        edges.distance[~known], edges.variance[~known] = 0.0, np.inf
+        return predicted, edges
 
     def with_camera(self, camera: Camera) -> "ContourEvidence":
         """The same before another camera."""
@@ -176,23 +182,6 @@ def _labeled(
     return images, labels
 
 
-def _measure(
-    model: ContourModel,
-    album: Album,
-    appearance: Appearance,
-    posture: Posture,
-    frame: IndexArray,
-    pictures: tuple[Image, BoolArray],
-    search: SearchRange = NARROW,
-) -> tuple[ContourPrediction, Edges]:
-    pose = model.body.pose(posture)
-    predicted = model.evaluate(pose, frame)
-    image, known = pictures
-    edges = find_edges(model, predicted, pose, frame, image, album.factor, appearance, search)
-    edges.distance[~known], edges.variance[~known] = 0.0, np.inf
-    return predicted, edges
-
-
 def _fit_shapes(
     model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, ContourModel]:
@@ -200,10 +189,10 @@ def _fit_shapes(
     stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)
     pictures = [album.pictures(frame[chunk]) for chunk in stretches]
     for _ in range(3):
-        known = []
+        known, evidence = [], ContourEvidence(album, appearance, model)
         for chunk, seen in zip(stretches, pictures, strict=True):
             yield
-            known.append(_measure(model, album, appearance, posture[chunk], frame[chunk], seen))
+            known.append(evidence.near(posture[chunk], frame[chunk], pictures=seen))
         model = model.with_shape(_fitted_shape(model, known, album.factor))
     return model
 
@@ -227,11 +216,7 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
         weight = student_weight(distance[own] ** 2 / spread, DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
-    assert shape.shape[1] == SHAPE
     return shape
-
-
-# --- Rows by which contours judge keyframes
 
 
 LENS_DIFFERENCE = 1e-3
@@ -264,7 +249,6 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
         summed = np.einsum("jn,jn...,ng->jg...", weight, values, groups)
         return summed / np.maximum(total, 1e-12).reshape(*total.shape, *([1] * (values.ndim - 2)))
 
-    count = groups.T @ np.ones(len(groups))
     used = total > 0.0
     parts = len(model.parts.segments)
     own = np.zeros((*total.shape, parts, SHAPE))
@@ -272,7 +256,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     own[:, rows, rows // ROWS] = mean(predicted.shape_rate)
     # Samples of a group err alike: they weigh as much as one.
     spread = (weight > 0.0) @ groups / np.maximum(total, 1e-12)
-    assert (count == len(SHARES) / HALVES).all()
+
     return EvidenceRows(
         np.where(used, mean(residual), 0.0),
         own.reshape(*total.shape, parts * SHAPE),

@@ -140,7 +140,7 @@ def _occlusion(
     return np.where(np.isfinite(depth), nearest, -1), shown
 
 
-# --- How far from the predicted contours edges are looked for, look after look
+# --- Schedule of looks
 
 
 WIDEST_M = (0.25, 0.13, 0.20)

@@ -70,9 +70,6 @@ class FilterOptions:
             )
 
 
-# --- The measurement update of a Kalman filter, for rows scaled by their standard deviations
-
-
 class Update(NamedTuple):
     """Update of a state by measurements."""
 

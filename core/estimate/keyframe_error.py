@@ -19,7 +19,7 @@ from ..body.skeleton import Skeleton
 from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.camera import Camera
 
-# --- Posing error
+# --- Posed
 
 
 POINT_STD_M = 0.014  # error of each point along each axis [m]
@@ -50,7 +50,7 @@ def velocities(keyframes: Posture, frame: IndexArray) -> Array:
     return velocity
 
 
-# --- Matching error
+# --- Matched
 
 
 JOINT_STD_DEG = {
@@ -153,8 +153,7 @@ def undetermined_covariance(
     return np.asarray(variance[0] * (np.eye(3) - along) + variance[1] * along)
 
 
-# --- Additional variance of limbs that neither markers, keypoints nor keyframes have observed for some
-# time
+# --- Unobserved
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ from .keyframe_error import POINT_STD_M, posing_covariance, velocities
 from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
 
-# --- Parameters of the markers' placement and the limbs' girth, as they are fitted
+# --- Placement of the markers, and the limbs' girth
 
 
 PARAMETERS = tuple(field.name for field in fields(MarkerPlacement) if field.name != "segment")

@@ -48,9 +48,6 @@ def read_mixed_keyframes(
     return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)
 
 
-# --- Selection of matched keyframes
-
-
 @dataclass(frozen=True)
 class SelectionOptions:
     """When a matched keyframe is better than interpolation between posed ones."""

@@ -111,7 +111,7 @@ def read_depths(
     return replace(evidence, gain=gain, offset_m=offset, std_m=np.sqrt(variance))
 
 
-# --- Calibration of keypoints on posed keyframes
+# --- Keypoints
 
 
 @dataclass(frozen=True)

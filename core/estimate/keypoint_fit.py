@@ -13,6 +13,7 @@ from ..errors import pluralize
 from ..evidence.keypoints import USUAL_PLACES, ObservedKeypoints
 from ..files.fields import listed
 from ..footage.keypoints.keypoints import Keypoints
+from ..numerics.robust import DEGREES, student_weight
 from .keypoint_evidence import KeypointEvidence
 from .terms.keypoints import KeypointTerm
 
@@ -45,16 +46,14 @@ def keypoint_fit(
     """Compare keypoints with an estimate."""
     model, frame = evidence.model, np.arange(posture.batch[0])
     pose = model.body.pose(posture)
-    term = KeypointTerm(model, points, evidence.error_m, np.zeros((max(len(frame) - 1, 0), 1)))
-    _, std_px, _ = term.errors(pose, frame)
+    error, std_px, used = KeypointTerm(model, points, evidence.error_m, None).errors(pose, frame)
     predicted = model.pixels(pose, frame)
     residual = np.linalg.norm(predicted - points.pixel, axis=-1)
-    weight = term.weigh(pose, frame).level
+    squared = np.where(used[..., None], error, 0.0) ** 2
+    weight = np.where(used, student_weight(squared.sum(-1), DEGREES, 2), 0.0)
+    sources = np.array(evidence.sources)
     trust = {
-        source: float(
-            np.mean([t for t, own in zip(evidence.trust, evidence.sources, strict=True) if own == source])
-        )
-        for source in dict.fromkeys(evidence.sources)
+        source: float(evidence.trust[sources == source].mean()) for source in dict.fromkeys(evidence.sources)
     }
     doubted = points.seen & (keypoints.score == 0.0)
     return KeypointFit(
@@ -63,7 +62,7 @@ def keypoint_fit(
         residual,
         std_px,
         weight,
-        points.seen & (weight < 0.25) | doubted,
+        points.seen & (weight < 0.25) | doubted,  # by more than three standard deviations
         swapped,
         evidence.trust,
         MappingProxyType(trust),
@@ -81,9 +80,6 @@ def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
         TRUNK if name.startswith(("shoulder", "hip")) else USUAL_PLACES[name].joint for name in names
     )
     return joints, (fit.weight > 0.0) & ~fit.thrown_out
-
-
-# --- Notes on keypoints for people
 
 
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
@@ -130,6 +126,5 @@ def _exchanged(source: str, swapped: BoolArray) -> list[str]:
         return []
     if frames > 0.5 * len(swapped):
         return [f"{source} takes left for right throughout; the estimate exchanged its keypoints back"]
-    return [
-        (f"{source} takes left for right in {pluralize(frames, 'frame')}; the estimate exchanged them back")
-    ]
+    seen = pluralize(frames, "frame")
+    return [f"{source} takes left for right in {seen}; the estimate exchanged them back"]

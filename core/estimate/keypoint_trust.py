@@ -16,6 +16,7 @@ from ..body.human import HUMAN
 from ..body.kinematics import Pose
 from ..evidence.keypoints import USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.keypoints.keypoints import Keypoints, mirror_images
+from ..numerics.markov_chain import cheapest_path
 from ..numerics.robust import DEGREES, multivariate_cost
 
 
@@ -145,10 +146,8 @@ def find_swaps(
         pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
         if not any(len(own) for own in pairs):
             continue
-        place, move = (
-            np.zeros((len(time_s), len(STATES))),
-            np.zeros((len(time_s) - 1, len(STATES), len(STATES))),
-        )
+        place = np.zeros((len(time_s), len(STATES)))
+        move = np.zeros((len(time_s) - 1, len(STATES), len(STATES)))
         for own, exchanged in zip(pairs, STATES.T, strict=True):
             if not len(own):
                 continue
@@ -165,7 +164,7 @@ def find_swaps(
             turns = _cost(seen[1:, :, ::-1] - onward, move_std)
             differs = exchanged[:, None] != exchanged
             move += np.where(differs, (turns - np.log(SWAPS.change))[:, None, None], stays[:, None, None])
-        exchanged = STATES[_most_probable(place, move)]  # (F, 2)
+        exchanged = STATES[cheapest_path(list(place), list(move))]  # (F, 2)
         pairs.append(_pairs(keypoints, source, FACE))
         for own, state in zip(pairs, [*exchanged.T, exchanged.all(axis=1)], strict=True):
             swapped[:, own.ravel()] |= state[:, None]
@@ -238,17 +237,3 @@ def _cost(error: Array, std: Array) -> Array:
     squared = (error**2).sum(axis=-1) / std**2
     cost = multivariate_cost(squared, DEGREES, 2)
     return np.asarray(SWAPS.alike * np.nan_to_num(cost).sum(axis=(1, 2)))
-
-
-def _most_probable(place: Array, move: Array) -> IndexArray:
-    """(F,) the sequence of states of least cost; `place` (F, S), `move` (F - 1, S, S) from row to column."""
-    best, came = place[0], np.zeros(place.shape, dtype=np.intp)
-    for frame in range(1, len(place)):
-        total = best[:, None] + move[frame - 1]
-        came[frame] = total.argmin(axis=0)
-        best = total.min(axis=0) + place[frame]
-    state = np.empty(len(place), dtype=np.intp)
-    state[-1] = best.argmin()
-    for frame in range(len(place) - 1, 0, -1):
-        state[frame - 1] = came[frame, state[frame]]
-    return state

@@ -67,11 +67,9 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     if followed or not take.contours or take.markers or take.keypoints:
         return ()
     return (
-        (
-            "contours were not followed: too little of the background stands still; between keyframes "
-            "the motion is their interpolation alone; hold the camera still, or add keypoints or "
-            "markers"
-        ),
+        "contours were not followed: too little of the background stands still; between keyframes "
+        "the motion is their interpolation alone; hold the camera still, or add keypoints or "
+        "markers",
     )
 
 
@@ -127,20 +125,15 @@ def _origin(found: Sequence[Matched]) -> str:
 
 def filter_notes(take: Take) -> tuple[str, ...]:
     """Notes on what the paper's filter does not know of: keypoints, and other people's keyframes."""
-    notes: tuple[str, ...] = ()
+    notes = []
     if take.keypoints:
-        notes = (
-            (
-                "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; "
-                "method map (Whole Clip) follows both"
-            ),
+        notes.append(
+            "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; "
+            "method map (Whole Clip) follows both"
         )
-    if all(keyframe.matched is None for keyframe in take.keyframes):
-        return notes
-    return (
-        *notes,
-        (
+    if any(keyframe.matched is not None for keyframe in take.keyframes):
+        notes.append(
             "method ekf (Fuzzy Kalman Filter) takes found keyframes for posed ones; method map (Whole "
             "Clip) allows for the larger errors of found keyframes"
-        ),
-    )
+        )
+    return tuple(notes)

@@ -67,7 +67,7 @@ def found_ankle_m(
     return np.asarray(standing + np.interp(np.arange(frames), index, np.maximum(lower - standing, 0.0)))
 
 
-# --- Placement of a standing performer before the camera, before any keyframe is posed
+# --- A standing performer, before any keyframe is posed
 
 
 @dataclass(frozen=True)
@@ -126,8 +126,12 @@ def place_standing(
             return _center(shown, known), _relative_span(shown, seen)
 
         return _by_size(body, camera, frame, standing, _center(seen, known), by_points)
-    usable = _usable(regions, segments)
-    if regions is None or not usable.any():
+    if regions is None:
+        return _in_the_middle(body, camera, frame, standing)
+    usable = regions.visible[0] & ~regions.clipped[0]
+    trunk = usable & _bound(segments, *TRUNK)
+    usable = trunk if trunk.any() else usable
+    if not usable.any():
         return _in_the_middle(body, camera, frame, standing)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
     centroid, area = regions.centroid[0], regions.area[0]
@@ -162,7 +166,7 @@ def _by_size(
         _, ray = camera.rays(shown, frame)
         offset = (ray - direction) * distance
         distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), 0.3)
-    return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
+    return _at(standing, _on_floor(location + distance * direction - offset, direction, distance, body))
 
 
 def _relative_span(shown: Array, seen: Array) -> float:
@@ -188,10 +192,14 @@ def _points(part: str) -> list[int]:
     return [HUMAN.point_names.index(f"{part}.{side}") for side in SIDES]
 
 
-def _on_floor(by_size: Array, direction: Array, distance: float, standing: Posture, body: Body) -> Posture:
-    """The standing body with hips where sizes have them, moved along the line of sight toward the floor."""
-    along = _floor_step(float(by_size[2]) - hip_height_m(body), float(direction[2]), distance)
-    return _at(standing, by_size + along * direction)
+def _on_floor(hips: Array, direction: Array, distance: float, body: Body) -> Array:
+    """Hips where sizes have them, moved along the line of sight toward the floor."""
+    above_m, down = float(hips[2]) - hip_height_m(body), float(direction[2])
+    variance = (SIZES.size_std * distance) ** 2
+    spread = SIZES.floor_std_m**2 + variance * down**2
+    if above_m**2 > SIZES.floor_doubted**2 * spread:
+        return hips
+    return hips - above_m * down * variance / spread * direction
 
 
 def ground_place(
@@ -221,15 +229,6 @@ def ground_place(
             "the ground between the feet"
         )
     return np.asarray(location + far[0] * down)
-
-
-def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> BoolArray:
-    """(M,) the markers to place the body by: the trunk's, or all visible ones without it."""
-    if regions is None:
-        return np.zeros(len(segments), dtype=bool)
-    seen = regions.visible[0] & ~regions.clipped[0]
-    trunk = seen & _bound(segments, *TRUNK)
-    return np.asarray(trunk if trunk.any() else seen)
 
 
 def _bound(segments: tuple[str, ...], *parts: str) -> BoolArray:
@@ -272,18 +271,6 @@ def _largest_size(logarithms: Array, errors: Array) -> float:
     nearest = int(np.argmin(logarithms))
     fits = logarithms - logarithms[nearest] <= SIZES.agreeing * np.hypot(errors, errors[nearest])
     return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
-
-
-def _floor_step(above_m: float, down: float, distance: float) -> float:
-    """Correction along the line of sight that brings the soles to the floor [m].
-
-    `above_m`: height of the soles by size; `down`: vertical share of the line of sight.
-    """
-    variance = (SIZES.size_std * distance) ** 2
-    spread = SIZES.floor_std_m**2 + variance * down**2
-    if above_m**2 > SIZES.floor_doubted**2 * spread:
-        return 0.0
-    return -above_m * down * variance / spread
 
 
 def _usual_distance(body: Body, camera: Camera) -> float:

@@ -178,19 +178,13 @@ def _whole_clip(
     begun: float,
     earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
-    estimate = estimate_whole_clip(
-        take.body,
-        take.camera,
-        Seen(
-            reading.tracks,
-            take.marker_segments,
-            keypoints,
-            reading.album,
-            IgnoredPixels(take.ignored_regions, take.camera.resolution),
-        ),
-        Believed(prior, take.keyframe_indices, match_scale, _found_ankle(take, prior)),
-        earlier=earlier,
-    )
+    ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
+    seen = Seen(reading.tracks, take.marker_segments, keypoints, reading.album, ignored)
+    ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
+    if _is_composed(take):
+        ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
+    believed = Believed(prior, take.keyframe_indices, match_scale, ankle)
+    estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
@@ -199,15 +193,8 @@ def _is_composed(take: Take) -> bool:
     return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
 
 
-def _found_ankle(take: Take, prior: Posture) -> Array | None:
-    """(F,) height of the lower ankle by keyframes composed of parts [m]; None where there are others."""
-    if not _is_composed(take):
-        return None
-    index = np.array(take.keyframe_indices, dtype=np.intp)
-    return found_ankle_m(take.body, prior[index], index, prior.batch[0])
-
-
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
+    fit = result.keypoints
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -215,20 +202,21 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         "timing_frames": np.array(result.evidence.timing_frames),
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
-        **_keypoint_diagnostics(result),
     }
+    if result.problem.keypoints.names:
+        diagnostics |= {
+            "keypoint_residual_px": fit.residual_px,
+            "keypoint_weight": fit.weight,
+            "keypoint_swapped": fit.swapped.astype(np.float64),
+        }
     index = np.array(take.keyframe_indices, dtype=np.intp)
-    points, seen = observed_joints(result.keypoints)
+    points, seen = observed_joints(fit)
     if result.outlined is not None and result.contours is not None:
         points = (*points, *result.contours.model.parts.segments)
         seen = np.concatenate([seen, result.outlined], axis=1)
-    unseen = unobserved_variance(
-        take.body.skeleton,
-        (*take.marker_segments, *points),
-        np.concatenate([tracks.visible, seen], axis=1),
-        index,
-        tracks.time_s,
-    )
+    visible = np.concatenate([tracks.visible, seen], axis=1)
+    names = (*take.marker_segments, *points)
+    unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
@@ -240,18 +228,6 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
-
-
-def _keypoint_diagnostics(result: WholeClipResult) -> dict[str, Array]:
-    """How far keypoints are from the motion, and their weight, in the order of the record of a conversion."""
-    if not result.problem.keypoints.names:
-        return {}
-    fit = result.keypoints
-    return {
-        "keypoint_residual_px": fit.residual_px,
-        "keypoint_weight": fit.weight,
-        "keypoint_swapped": fit.swapped.astype(np.float64),
-    }
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
@@ -275,13 +251,11 @@ def _motion(
     diagnostics: dict[str, Array] | None = None,
     unseen: Array | None = None,
 ) -> Motion:
-    pose = take.body.pose(posture)
-    points = take.body.points(pose)
+    points = take.body.points(take.body.pose(posture))
     distance = keyframe_distance(tracks.frame_count, take.keyframe_indices)
     said = {"nearness": Memberships().near(distance), **(diagnostics or {})}
-    if covariance is None:
-        spread = np.full((*points.shape, 3), np.nan)
-    else:
+    spread = np.full((*points.shape, 3), np.nan)
+    if covariance is not None:
         spread = point_covariance(take.body, posture, covariance, unseen)
     return Motion(
         take.body,

@@ -130,9 +130,6 @@ def _depth_factor(
     return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], known)
 
 
-# --- What is learned once the markers are followed, before contours join them
-
-
 def refine(
     problem: ClipProblem,
     spans: list[Window],

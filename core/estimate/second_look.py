@@ -35,10 +35,6 @@ def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks
     )
 
 
-# --- A second look for markers that were lost, blurred or half hidden, once it is known where they should
-# be
-
-
 ROUNDS = 3  # looks at most: what is found moves the body, and with it where the rest is looked for
 
 

@@ -74,9 +74,6 @@ def frame_residuals(
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 
 
-# --- Gauss-Newton from several starts of one frame, side by side, each as if it were a frame of its own
-
-
 TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
 """From a start that may be far off; image noise is widened by these factors."""
 
@@ -112,9 +109,6 @@ def descend(
     return best, least
 
 
-# --- One frame's posture from that frame's marker regions and keypoints
-
-
 EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
 EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
@@ -147,11 +141,11 @@ def fit_frame(
     Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
     noise = noise or RegionNoise()
-    fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
+    fit = _fitted(evidence, observed, belief, frame, noise, points)
     if points is None or not points.seen.any():
         return fit
     mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
-    other = _Descent(evidence, observed, belief, frame, noise, mirrored).fit()
+    other = _fitted(evidence, observed, belief, frame, noise, mirrored)
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
@@ -193,55 +187,32 @@ def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> Exp
     return ExpectedRegions(predicted.centroid, np.full(predicted.visible.shape, radius))
 
 
-class _Descent:
-    """Gauss-Newton from several starts of one frame, side by side."""
-
-    def __init__(
-        self,
-        evidence: KeyframeEvidence,
-        observed: ObservedRegions,
-        belief: FramePrior,
-        frame: int,
-        noise: RegionNoise,
-        points: ObservedKeypoints | None,
-    ) -> None:
-        self.evidence, self.points = evidence, points
-        count = belief.starts.batch[0]
-        self.model, self.observed = evidence.model, observed
-        body = evidence.model.body
-        self.width_px = limb_widths(self.model, belief.posture.translation[None], np.array([frame]))
-        self.believed = Posture.stack([belief.posture] * count)
-        deviation = belief.starts.minus(self.believed)
-        factor = _factor(evidence.model, belief, frame)
-        self.state = ClipState(
-            body,
-            self.believed,
-            np.full(count, frame, dtype=np.intp),
-            factor,
-            np.linalg.solve(factor, deviation.T).T,
-            np.zeros((count, len(self.model.placements) * FEATURES)),
-        )
-        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px, points)
-
-    def fit(self) -> FrameFit:
-        """Descend and choose."""
-        best, least = descend(self.state, self.terms)
-        chosen = int(np.argmin(least))
-        posture = best.posture[chosen]
-        found, before = (self._residuals(each) for each in (posture, self.believed[0]))
-        return FrameFit(
-            posture,
-            found.marker_px,
-            before.marker_px,
-            found.markers,
-            found.keypoint_px,
-            found.points,
-            float(least[chosen]),
-        )
-
-    def _residuals(self, posture: Posture) -> FrameResiduals:
-        frame = int(self.state.frame[0])
-        return frame_residuals(self.evidence, self.observed, self.points, posture, frame)
+def _fitted(
+    evidence: KeyframeEvidence,
+    observed: ObservedRegions,
+    belief: FramePrior,
+    frame: int,
+    noise: RegionNoise,
+    points: ObservedKeypoints | None,
+) -> FrameFit:
+    """Descend from several starts side by side, and choose."""
+    model, count = evidence.model, belief.starts.batch[0]
+    believed = Posture.stack([belief.posture] * count)
+    factor = _factor(model, belief, frame)
+    variation = np.linalg.solve(factor, belief.starts.minus(believed).T).T
+    bias = np.zeros((count, len(model.placements) * FEATURES))
+    frames = np.full(count, frame, dtype=np.intp)
+    state = ClipState(model.body, believed, frames, factor, variation, bias)
+    width_px = limb_widths(model, belief.posture.translation[None], np.array([frame]))
+    best, least = descend(state, frame_terms(evidence, observed, belief, noise, width_px, points))
+    chosen = int(np.argmin(least))
+    posture, cost = best.posture[chosen], float(least[chosen])
+    found, before = (
+        frame_residuals(evidence, observed, points, each, frame) for each in (posture, believed[0])
+    )
+    return FrameFit(
+        posture, found.marker_px, before.marker_px, found.markers, found.keypoint_px, found.points, cost
+    )
 
 
 def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:

@@ -15,8 +15,7 @@ from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .window_problem import WindowProblem, image_cost
 
-BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)
-"""Factors of the image's variance in an alternative's first steps: enough to tell a hopeless one."""
+BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)  # image variance in an alternative's first steps, which tell a hopeless one
 
 
 @dataclass(frozen=True)
@@ -41,10 +40,10 @@ class TurnOptions:
 
 
 TURNS = TurnOptions()
-GONE_ON = tuple(1.0 for _ in range(10))
-"""An alternative's other steps, which are needed where it departs as far from the prior as in long gaps."""
-SETTLED = tuple(1.0 for _ in range(4))
-"""Steps of the estimate in the meantime, whose window was solved already."""
+GONE_ON = (
+    1.0,
+) * 10  # its other steps, which are needed where it departs far from the prior, as in long gaps
+SETTLED = (1.0,) * 4  # those of the estimate in the meantime, whose window was solved already
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,9 +82,6 @@ def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipStat
         if begin <= first and last <= end:
             return state.of_frames(slice(max(first - margin - begin, 0), min(last + margin, end) - begin))
     return None
-
-
-# --- Which way round the body turns between two keyframes
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,8 @@ def _with_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None
     """The problem with the earlier one's evidence, where they agree within the tolerances; else None."""
     same = _same_evidence(earlier.evidence, now.evidence)
     same = same and _same_keypoints(earlier.evidence.keypoints, now.evidence.keypoints)
-    if not same or not _same_factor(earlier.factor, now.factor):
+    ratio = np.linalg.svd(np.linalg.solve(earlier.factor, now.factor), compute_uv=False)
+    if not (same and np.abs(np.log(ratio**2)).max() < SAME.factor):
         return None
     posed = now.prior[now.keyframes]
     information = keyframe_information(
@@ -133,24 +134,14 @@ def _same_keypoints(one: KeypointEvidence, other: KeypointEvidence) -> bool:
     moved = np.abs(one.model.place - other.model.place).max()
     sizes = np.abs(np.log(one.std_m / other.std_m)).max()
     before, after = one.depths, other.depths
-    hints = np.abs(
-        [
-            before.gain - after.gain,
-            (before.offset_m - after.offset_m) / after.std_m,
-            np.log(before.std_m / after.std_m),
-        ]
-    )
+    offset = (before.offset_m - after.offset_m) / after.std_m
+    hints = np.abs([before.gain - after.gain, offset, np.log(before.std_m / after.std_m)])
     return bool(
         np.array_equal(one.trust, other.trust)
         and moved < SAME.place_m
         and sizes < SAME.size
         and (hints < SAME.gain).all()
     )
-
-
-def _same_factor(one: Array, other: Array) -> bool:
-    ratio = np.linalg.solve(one, other)
-    return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME.factor)
 
 
 def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:

@@ -139,20 +139,16 @@ def estimate_whole_clip(
         schedule = contour_schedule(body, camera, album.factor, segments, prior)
         learning = learn_contours(body, camera, album, prior, posed, schedule)
         contours = yield from scaled(learning, 0.0, 0.0)
-    reading = read_mixed_keyframes(
-        model,
-        options.regions,
-        SeenAtKeyframes(
-            index,
-            prior[index],
-            observed[index],
-            width_px[index],
-            usual,
-            points[index],
-            None if contours is None else partial(contour_rows, contours),
-        ),
-        match_scale,
+    outlines = None if contours is None else partial(contour_rows, contours)
+    at = SeenAtKeyframes(
+        index, prior[index], observed[index], width_px[index], usual, points[index], outlines
     )
+    reading = read_mixed_keyframes(model, options.regions, at, match_scale)
+    ankle_height_m = None  # posed keyframes say where the floor is, and better
+    if matched.all():
+        ankle_height_m = believed.lower_ankle
+        if ankle_height_m is None:
+            ankle_height_m = lower_ankle_m(body, prior[index], index, prior.batch[0])
     problem = ClipProblem(
         body=body,
         camera=camera,
@@ -165,8 +161,7 @@ def estimate_whole_clip(
         prior=prior,
         turns=np.zeros(max(len(index) - 1, 0), dtype=np.intp),
         depth_std_m=depth_std_m(index, matched, tracks.frame_count),
-        # Posed keyframes say where the floor is, and better.
-        ankle_height_m=_lower_ankle(body, believed, index) if matched.all() else None,
+        ankle_height_m=ankle_height_m,
         limb_size=np.ones(body.skeleton.dof_count),
         depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
         observed=observed,
@@ -181,11 +176,6 @@ def estimate_whole_clip(
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
     return (yield from _solve(problem, options, album, earlier, kept))
-
-
-def _lower_ankle(body: Body, believed: Believed, index: IndexArray) -> Array:
-    prior, known = believed.prior, believed.lower_ankle
-    return lower_ankle_m(body, prior[index], index, prior.batch[0]) if known is None else known
 
 
 def _swaps(

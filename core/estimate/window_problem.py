@@ -12,7 +12,7 @@ from ..progress import Part, Preview, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
-from .terms.assembly import window_terms, with_contours
+from .terms.assembly import window_terms
 from .terms.contours import AxialTerm, ContourTerm
 from .terms.keypoints import KeypointTerm
 from .terms.regions import RegionTerm
@@ -74,7 +74,7 @@ class WindowProblem:
             measuring = contours.measure(self.state.posture, self.state.frame, search)
             begun, measured = number / looks, (number + 0.5) / looks
             term = yield from scaled(measuring, begun, measured)
-            self.terms = with_contours(others, term)
+            self.terms = [*others, term]
             if contours.along is not None:
                 shifts = contours.measure_along(
                     self.state.posture, self.state.frame, search, self.clip.step_s

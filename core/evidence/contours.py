@@ -127,9 +127,6 @@ def _between(view: View, part: IndexArray, share: Array) -> Array:
     return np.asarray(view.start[:, part] + share[:, None] * (view.end - view.start)[:, part])
 
 
-# --- Part segmentation of the body
-
-
 SUBPIXEL_BITS = 4  # fractional bits of the coordinates that outlines are drawn with
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
@@ -162,9 +159,6 @@ def _outlines(parts: PartOutlines, frame: int) -> Array:
     out = (parts.half_width[frame][..., None, None] * CIRCLE[0, :, None]) * across[:, None, None]
     past = (parts.overshoot[frame][..., None, None] * CIRCLE[1, :, None]) * along[:, None, None]
     return np.asarray((ends[:, :, None] + out + past).reshape(len(ends), -1, 2))
-
-
-# --- The axes of the body's parts in the image, with Jacobians
 
 
 FREE, UNKNOWN = -1, -2  # what lies beyond a part's end: the background, or any of several things

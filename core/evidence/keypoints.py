@@ -244,7 +244,7 @@ def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
     ]
 
 
-# --- d(θ)
+# --- Depths of the principal points, d(θ) of the paper
 
 
 DEPTH_VARIANCE_M2 = 0.1  # variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
@@ -268,9 +268,6 @@ def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
 
 def _per_point(frame: ArrayLike | None) -> IndexArray | None:
     return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]
-
-
-# --- Keypoints as they are observed
 
 
 PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]

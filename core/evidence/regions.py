@@ -24,9 +24,6 @@ from .occlusion import (
     visible_share,
 )
 
-# --- Measurement model of the markers' image regions, with Jacobians
-
-
 MOMENTS = ((0, 0), (0, 1), (1, 1))  # entries of a second-moment matrix in the order of rows: xx, xy, yy
 USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
@@ -250,7 +247,7 @@ class RegionModel:
         return np.concatenate([linear, angular + cross(location[..., None, :], linear)], axis=-1)
 
 
-# --- Regions as they are observed, and their rows against a prediction
+# --- Observed regions, and their rows against a prediction
 
 
 FEATURES = 5  # rows of one marker: centroid x, y and three of shape

@@ -40,9 +40,6 @@ def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Flo
     return 0.5 * (degrees + dimensions) * np.log1p(squared / degrees)
 
 
-# --- Levenberg-Marquardt for a batch of problems, on vectors or on a manifold
-
-
 State = TypeVar("State")
 Equations = tuple[Array, Array, Array]
 """Of N problems in D unknowns: cost (N,), normal matrix (N, D, D) and gradient (N, D)."""

@@ -17,9 +17,6 @@ def across(vector: Array) -> Array:
     return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
 
 
-# --- Signals over time
-
-
 def usual_step(time_s: Array, otherwise: float = 1.0) -> float:
     """Median step of times (F,) that advances [s]; `otherwise` where none does."""
     step = np.diff(time_s)

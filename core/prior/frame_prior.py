@@ -41,9 +41,6 @@ def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
     return np.asarray(np.linalg.cholesky(covariance))
 
 
-# --- Gaussian prior of one frame's posture, for assisted posing
-
-
 # Standard deviation between postures of the same person at two unrelated moments [m, rad]: round numbers for
 # lively motion. Head and joints that no marker shows stay nearer to what was posed.
 UNRELATED_STD = {

@@ -56,9 +56,6 @@ def point_speed(centroid: Array, time: Array) -> Array:
     return np.asarray(np.interp(np.arange(len(time)), np.arange(seen[0], seen[-1] + 1), speed))
 
 
-# --- V_sum of whatever shows the performer
-
-
 JITTER_S = 0.067
 """Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
 FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
@@ -120,9 +117,6 @@ def _cleaned(pixel: Array, time_s: Array) -> Array:
     cleaned = np.full((len(frames), 2), np.nan)
     cleaned[within] = gaussian(calm, JITTER_S / usual_step(time_s))
     return cleaned
-
-
-# --- Frames proposed as keyframes, from the markers' summed speed V_sum
 
 
 def propose_keyframes(

@@ -52,7 +52,7 @@ class Keyframe:
     matched: Matched | None = None  # what was found; None for a keyframe that a person has posed or corrected
 
 
-# --- Turns between keyframes the other way round
+# --- Turns the other way round
 
 
 FULL_TURN = 2.0 * np.pi
@@ -94,7 +94,7 @@ def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
     return np.asarray(PchipInterpolator(knots.astype(np.float64), values)(times.astype(np.float64)))
 
 
-# --- The prior mean between keyframes
+# --- Interpolation
 
 
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:

@@ -206,9 +206,6 @@ def _alike(what: str, names: Iterable[str]) -> str:
     return ""
 
 
-# --- Library files
-
-
 LARGEST_BYTES = 4 * 2**20
 
 

@@ -157,7 +157,7 @@ def _mean(batches: list[Posture]) -> Posture:
     return mean
 
 
-# --- Playback of a library's motion
+# --- Playback
 
 
 NEIGHBORS = 2  # postures before and after a cycle that the spline within it depends on

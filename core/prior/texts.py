@@ -17,9 +17,6 @@ COMPOSED = "composed"
 """Stands for the library of a posture put together from parts of several; hence no valid identifier."""
 
 
-# --- Identifiers, names and texts of a library
-
-
 LONGEST_IDENTIFIER = 64
 LONGEST_NAME = 60  # characters of a name at most; the name of a Blender data-block holds 63 bytes
 IDENTIFIER_RULE = (
@@ -97,7 +94,7 @@ def unique_name(name: str, taken: Iterable[str]) -> str:
     return next(candidate for candidate in numbered if name_key(candidate) not in keys)
 
 
-# --- Texts, lists and licenses among the fields of files that people share, checked as untrusted input
+# --- Kinds of fields
 
 
 MOST_TAGS = 30

@@ -5,8 +5,6 @@ belongs to: a window of a clip, the same once its contours are measured, a singl
 order, since rounding depends on it.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ...arrays import Array
@@ -20,8 +18,7 @@ from ..clip_state import ClipState, Window
 from ..keypoint_evidence import KeypointEvidence
 from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
-from .contours import ContourTerm
-from .keypoints import DepthHintTerm, FrameDepthTerm, FrameKeypointTerm, KeypointTerm
+from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
 from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
@@ -59,11 +56,6 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     if clip.ankle_height_m is not None:
         terms.append(GroundTerm(ankles, clip.ankle_height_m[frames], ANKLE_HEIGHT_STD_M))
     return terms
-
-
-def with_contours(terms: Sequence[Term], contours: ContourTerm) -> list[Term]:
-    """The terms of a window once edges have been measured near its contours."""
-    return [*terms, contours]
 
 
 def frame_terms(
@@ -130,13 +122,12 @@ def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, st
     """The keypoints of one frame, and the depths guessed with them, in as many states."""
     std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     repeated = points[np.zeros(starts, dtype=np.intp)]
-    term = KeypointTerm(evidence.model, repeated, std_m, np.zeros((max(starts - 1, 0), 1)))
-    terms: list[Term] = [FrameKeypointTerm(term)]
+    terms: list[Term] = [KeypointTerm(evidence.model, repeated, std_m, None)]
     if np.isfinite(points.depth_m).any():
         depths = evidence.depths
         std = _depth_std_m(evidence, points, depths.std_m)[0]
         expected = depths.expected(points.depth_m)[0]
-        terms.append(FrameDepthTerm(evidence.model, depths.links, expected, std))
+        terms.append(DepthHintTerm(evidence.model, depths.links, expected, std, None))
     return terms
 
 

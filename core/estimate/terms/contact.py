@@ -91,9 +91,6 @@ def _kernel(x: Array) -> Array:
     return np.asarray((1.0 + x**2) ** -2.0)
 
 
-# --- A person stands on the ground most of the time
-
-
 DEGREES = 3.0  # of Student's t: leaps and stairs are forgiven
 
 
@@ -125,9 +122,6 @@ class GroundTerm:
         lower = heights.argmin(axis=1)
         residual = (heights[np.arange(state.frames), lower] - self.height_m) / self.std_m
         return residual, np.array(self.points)[lower]
-
-
-# --- A person who stands, steps or crouches keeps the body's center of mass about over the feet
 
 
 STEP_M = 0.1  # a foot that is higher above the other than this bears nothing

@@ -9,8 +9,7 @@ from ...arrays import Array, BoolArray
 from ...evidence.contours import SHARES, SIDES, ContourModel, ContourPrediction, LimbAxes
 from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
-from .motion import add_drift, drift, drift_cost
-from .term import NormalEquations
+from .term import NormalEquations, add_errors, errors_cost
 
 SURFACE_SHARE = 0.2  # standard deviation of a part's contour as a whole, of its half-width: clothes, muscles
 PIXEL_STD = 0.6  # the same in pixels of the pictures: blur and light
@@ -56,9 +55,6 @@ class ContourTerm:
         return np.where(found, residual, 0.0), variance, found
 
 
-# --- Parts of the body against the shifts along their axes that their colors tell
-
-
 @dataclass(frozen=True, eq=False)
 class AxialTerm:
     """Compares where parts are along their axes with where their colors are seen."""
@@ -75,14 +71,15 @@ class AxialTerm:
         """Add a row for each part, with an error that lasts."""
         world, error, std, found = self._errors(state)
         jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction)
-        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)
-        rows = drift(error[..., None], found, self.kept, temperature)
-        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)
+        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)[:, :, None]
+        add_errors(
+            equations, error[..., None], found, jacobian, self.kept, temperature, state.tangent_jacobian
+        )
 
     def cost(self, state: ClipState) -> Array:
-        """(F,) see `drift_cost`."""
+        """(F,) see `errors_cost`."""
         _, error, _, found = self._errors(state)
-        return drift_cost(error[..., None], found, self.kept)
+        return errors_cost(error[..., None], found, self.kept)
 
     def _errors(self, state: ClipState) -> tuple[Array, Array, Array, BoolArray]:
         """The axes' points (F, O, 3) [m], errors in standard deviations, these [px], and which are known."""

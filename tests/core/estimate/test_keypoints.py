@@ -12,8 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import doubted_at_changes, exchanged_back, find_swaps
-from keymark.core.estimate.terms.motion import add_drift, drift, drift_cost
-from keymark.core.estimate.terms.term import NormalEquations
+from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, drift_cost
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
