@@ -66,7 +66,6 @@ def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
 
 
 def test_someone_who_kneels_does_not_stand() -> None:
-    """The knees bent by a right angle, the trunk half a meter lower."""
     body = Body(Actor.from_stature(1.75))
     names = body.skeleton.dof_names
     step = np.zeros(34)
@@ -113,7 +112,6 @@ def test_keypoints_measure_lengths_without_any_marker() -> None:
 
 
 def test_keypoints_tell_who_does_not_stand() -> None:
-    """Someone who kneels: the knees are far from where they would be."""
     body = Body(Actor.from_stature(1.75))
     posture = standing_posture(body, PLACE, 0.0, 0.0)
     angles = np.array(posture.angles)

@@ -69,7 +69,6 @@ def test_contours_bring_the_estimate_nearer_to_the_truth() -> None:
 
 
 def test_a_shaken_camera_changes_nothing() -> None:
-    """Where the background does not stand still, the estimate is the markers' own, bit for bit."""
     shaken = photograph(TRUTH, shake_px=4)
     np.testing.assert_array_equal(solve(shaken).to_vector(), solve(None).to_vector())
 

@@ -85,7 +85,6 @@ def test_two_sets_apart_mix_by_their_areas() -> None:
 
 
 def test_joining_counts_what_two_sets_share_once() -> None:
-    """A set joined with a lower one about the same center is that set."""
     mean, variance = aggregate(output(1.0, 2.0, 1.0), output(1.0, 2.0, 0.7))
     assert mean[0] == pytest.approx(1.0, abs=1e-14)
     assert variance[0] == pytest.approx(4.0 / 6.0, rel=1e-12)

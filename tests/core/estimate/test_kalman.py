@@ -161,7 +161,6 @@ def test_a_posture_that_the_picture_shows_is_recovered(line_ends: LineEnds, see:
 
 
 def test_the_filter_comes_closer_than_the_prior(line_ends: LineEnds, see: See) -> None:
-    """With its default noise it more than halves the prior's error in the image."""
     prior, truth = drifting(line_ends, 25)
     result = run_filter(line_ends, see(truth), prior, [0, 24], FilterOptions())
     body = line_ends.body
@@ -184,7 +183,6 @@ def test_a_keyframe_is_predicted_from_itself(line_ends: LineEnds, see: See) -> N
 
 
 def test_prediction_adds_the_process_noise_and_turns_the_axes(line_ends: LineEnds) -> None:
-    """M = P + Q as printed; seen from the world the old uncertainty stays where it was."""
     prior, truth = drifting(line_ends, 9)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 8])
     root = np.random.default_rng(1).normal(size=(34, 34))

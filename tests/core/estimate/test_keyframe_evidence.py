@@ -79,7 +79,6 @@ def test_exact_keyframes_are_told_from_careless_ones(worn: RegionTracks) -> None
 
 @pytest.mark.parametrize("factor", [0.92, 1.08])
 def test_a_misstated_lens_is_found(factor: float) -> None:
-    """Keyframes that lie rightly in the world tell that the lens is another than stated."""
     stated = replace(CAMERA, lens_mm=CAMERA.lens_mm * factor)
     found = read(MOTION[POSED], film(MOTION, 0.2), RegionModel(BODY, stated, MODEL.placements)).model.camera
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.015)
@@ -91,7 +90,6 @@ def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
 
 
 def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
-    """Postures of up to three frames before or after are taken as mistimed; right ones are not."""
     rng = np.random.default_rng(4)
     shifted = np.clip(POSED + rng.choice([-3, -2, 2, 3], len(POSED)), 0, FRAMES - 1)
     tracks = film(MOTION, 0.2)
@@ -100,7 +98,6 @@ def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
 
 
 def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
-    """Clutter in a marker's place all along costs that marker its weight, not the keyframes theirs."""
     tracks = film(MOTION, 0.2)
     rng = np.random.default_rng(6)
     centroid = tracks.centroid.copy()

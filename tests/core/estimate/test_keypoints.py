@@ -90,7 +90,6 @@ def test_places_and_errors_are_found_at_keyframes() -> None:
 
 
 def test_keyframes_are_judged_without_any_marker() -> None:
-    """Exact keyframes are told from careless ones, and mistimed ones from right ones."""
     rng = np.random.default_rng(4)
     off = [Keyframe(i, TRUTH[i].plus(rng.normal(0.0, 0.12, HUMAN.dof_count))) for i in POSED]
     precise = detect(TRUTH, error_m=0.008)
@@ -116,7 +115,6 @@ WRONG = {
 
 @pytest.mark.parametrize("kind", WRONG)
 def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
-    """It costs nothing, with markers and without, and a note says so."""
     result = estimate(WRONG[kind], MARKED)
     assert error_mm(result) < 1.15 * error_mm(marked())
     assert result.keypoints.source_trust[SOURCE] == 0.0
@@ -137,7 +135,6 @@ def test_a_third_of_the_points_at_random_is_thrown_out() -> None:
 
 
 def test_a_jump_to_another_thing_is_not_averaged() -> None:
-    """A hand that sticks to something for ten frames between keyframes."""
     pixel = GOOD.pixel.copy()
     wrist = LAYOUT.index("wrist.L")
     pixel[33:43, wrist] = pixel[33, wrist] + [70.0, 40.0]
@@ -155,7 +152,6 @@ def test_a_late_detector_is_recognized_as_such() -> None:
 
 
 def test_sides_that_are_exchanged_are_exchanged_back() -> None:
-    """Throughout, and in some frames only; the estimate is that without the mistake."""
     everywhere = estimate(sides_exchanged(GOOD, np.ones(FRAMES, dtype=bool)))
     assert error_mm(everywhere) == pytest.approx(error_mm(with_good()), rel=0.02)
     assert "throughout" in keypoint_notes(everywhere.keypoints)[0]
@@ -235,7 +231,6 @@ def test_before_a_moving_camera() -> None:
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
-    """Points stay at their usual places; they are believed all the same."""
     result = estimate(GOOD, match_scale=np.ones(len(POSED)))
     usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
     np.testing.assert_array_equal(result.evidence.keypoints.model.place, usual.place)
@@ -272,7 +267,6 @@ def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
 
 
 def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
-    """Its information and gradient are those of the dense covariance, as long as nothing is an outlier."""
     frames, kept = 7, 0.8
     rng = np.random.default_rng(1)
     error = 1e-4 * rng.normal(size=(frames, 1, 1))
@@ -300,7 +294,6 @@ def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
 
 
 def test_drift_begins_anew_after_a_gap_or_an_outlier() -> None:
-    """Frames apart tell of each other no more, and an outlier has next to no pull."""
     error = np.zeros((5, 1, 2))
     used = np.ones((5, 1), dtype=bool)
     used[2] = False

@@ -114,7 +114,6 @@ def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None
 
 
 def test_sizes_have_bounds() -> None:
-    """Never below what keyframes tell, and looser the less they can tell."""
     usual = np.full(len(COLUMN), SIZES.usual_size)
     np.testing.assert_array_equal(limb_sizes(problem(), WHOLE, trembling(0.01 * usual)), 1.0)
     wild = trembling(100.0 * usual)
@@ -172,7 +171,6 @@ def test_postures_stay_as_they_are_when_sizes_change(unsettled: None) -> None:
 
 
 def test_nothing_is_learned_where_markers_do_not_show_the_whole_body() -> None:
-    """Limbs that are not seen follow the prior, which would say that it is right."""
     clip = problem(("trunk", "forearm.L"))
     posture = exercise(FRAMES, 0.5)
     states = about(clip, posture, WHOLE)

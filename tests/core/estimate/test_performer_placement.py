@@ -40,7 +40,6 @@ def test_a_body_stands_where_its_regions_are(place: tuple[float, float, float]) 
 
 
 def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
-    """A body that looks a tenth too large still stands on the floor, at about its place."""
     camera = looking_down(0.5, (0.0, -3.5, 2.9))
     true = standing_posture(BODY)
     near = standing_posture(BODY, np.array([0.0, -0.35, 0.2]))  # what the same body too near looks like

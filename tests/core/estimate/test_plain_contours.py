@@ -114,14 +114,12 @@ def test_contours_alone_bring_the_estimate_nearer_to_the_truth() -> None:
 
 
 def test_a_shaken_camera_leaves_the_interpolation() -> None:
-    """Where no background stands still nothing is followed, and no edge is made up."""
     shaken = solve(photograph(TRUTH, shake_px=12))
     assert shaken.contours is None and shaken.outlined is None
     np.testing.assert_allclose(shaken.posture.to_vector(), interpolated().posture.to_vector(), atol=1e-9)
 
 
 def test_a_thing_that_moves_behind_costs_its_own_pixels_only() -> None:
-    """A flickering screen over a quarter of the picture does not switch contours off."""
     contours = flickering()
     assert contours is not None
     assert not contours.appearance.known[20:60, 20:300].any()

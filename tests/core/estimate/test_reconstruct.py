@@ -62,7 +62,6 @@ def test_a_clip_read_before_gives_the_same_motion_without_the_clip(
 
 
 def test_a_misstated_lens_is_told_and_made_good(take: Take, mapped: Reconstruction) -> None:
-    """The sentence names both lenses; with the right one nothing is said."""
     stated = replace(take.camera, lens_mm=1.09 * take.camera.lens_mm)
     right, wrong = mapped, run(reconstruct(replace(take, camera=stated)))
     assert not any("lens" in note for note in right.notes)
@@ -132,7 +131,6 @@ def test_a_clip_that_is_cut_off_is_converted_as_far_as_it_goes_and_said_so(
 def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
     take_folder: Callable[[str], Path], name: str
 ) -> None:
-    """On each take with truth, against linear and smooth interpolation of the same keyframes."""
     folder = take_folder(name)
     take = read_take(folder, folder / "keyframes_noisy.json")
     result: Reconstruction = run(reconstruct(take))

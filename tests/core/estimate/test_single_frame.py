@@ -114,7 +114,6 @@ def test_the_ground_tells_how_far_away_someone_stands() -> None:
 
 
 def test_hinges_keep_their_range() -> None:
-    """Knees and elbows may pass it by no more than a spring gives way."""
     tracks = film(TRUTH, noise_px=2.0, seed=5)
     limits = BODY.skeleton.limits[BODY.skeleton.hinge_dofs]
     for frame in range(5, 45, 8):
@@ -175,7 +174,6 @@ def shape_error_mm(posture: Posture, frame: int) -> float:
 
 
 def test_keypoints_alone_lead_from_the_keyframe_before_towards_the_truth() -> None:
-    """Without any marker, ten frames on: less than half of what the keyframe is off remains."""
     keypoints = detected(1.0)
     before, after = [], []
     for frame in range(10, 45, 5):
@@ -186,7 +184,6 @@ def test_keypoints_alone_lead_from_the_keyframe_before_towards_the_truth() -> No
 
 
 def test_hints_of_depth_help_from_a_standing_body() -> None:
-    """What the picture does not tell, a good guess of the links' depths does."""
     with_hints, without = [], []
     for frame in (5, 20, 35):
         keypoints = detected(1.0, hint_std_m=0.02)
@@ -220,7 +217,6 @@ def test_a_keypoint_on_another_thing_is_named_and_does_no_harm() -> None:
 
 
 def test_the_standing_body_goes_where_keypoints_are() -> None:
-    """Someone who stands is found to a tenth of the distance, with and without a floor in sight."""
     keypoints = detected(1.0)
     placed = place_standing(BODY, CAMERA, 0, keypoints=keypoints.frame(0))
     camera_place = CAMERA.pose(0)[1]

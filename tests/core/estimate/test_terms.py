@@ -63,7 +63,6 @@ def assert_gradient(term: Term, cost, at: ClipState) -> None:  # noqa: ANN001
 
 
 def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
-    """Its gradient is that of its cost, and leaps cost little more the higher they are."""
     term = GroundTerm((11, 12), 0.12)
     assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
     lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
@@ -85,7 +84,6 @@ def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
 
 
 def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> None:
-    """A knee bent backwards is pushed forwards, one bent as knees bend is not touched."""
     at = state(size=0.0)
     assert np.abs(gradient(LimitTerm(), at)).max() == 0.0
     knee = HUMAN.dof_names.index("knee.R.flexion")
@@ -97,7 +95,6 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
 
 
 def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
-    """Belief and limits have the gradients of their costs, and the total is the sum in any order."""
     at = state(seed=5, size=0.2)
     belief = BeliefTerm.of(FRAMES, DOFS, np.ones((1, 0)))
     ground = GroundTerm((11, 12), 0.12)
@@ -188,7 +185,6 @@ def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
 
 
 def test_bursts_of_acceleration_pull_less_than_their_size() -> None:
-    """The smoothness term is quadratic for usual accelerations and grows with their logarithm for bursts."""
     at = state(size=0.0)
     limb = HUMAN.limbs[1]
 
@@ -243,7 +239,6 @@ def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() 
 
 
 def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
-    """A region stretched by a tenth along its axis differs by about a tenth of its deviation there."""
     posture = exercise(1)
     predicted = MODEL.evaluate(BODY.pose(posture), np.arange(1))
     tracks = film(posture)
@@ -265,7 +260,6 @@ def test_student_weights_fall_with_the_residual() -> None:
 
 
 def test_what_is_missing_of_a_region_widens_its_features() -> None:
-    """Nothing for a whole region, about the region's own deviation for half of it, and more for less."""
     predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
     variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
     assert variance[0].max() == 0.0

@@ -84,7 +84,6 @@ def test_nothing_seen_decides_nothing() -> None:
 
 
 def test_nobody_turns_faster_than_a_dancer() -> None:
-    """Within a tenth of a second there is no time for the other way round."""
     problem = long_turn()[2].problem
     problem = problem.with_turns(np.zeros_like(problem.turns))
     every, cost = np.ones(len(problem.turns), dtype=bool), np.zeros(FRAMES)
@@ -96,7 +95,6 @@ def test_nobody_turns_faster_than_a_dancer() -> None:
 
 
 def test_a_turn_stays_where_nothing_changed_and_is_decided_anew_elsewhere() -> None:
-    """After another keyframe is moved, the turn is as before and as from the beginning."""
     truth, tracks, first = long_turn()
     same, frames = estimate(truth, tracks, first)
     assert frames == 0

@@ -130,7 +130,6 @@ def test_an_estimate_before_another_camera_is_not_used() -> None:
 
 
 def test_windows_around_changes_reach_beyond_them_and_never_keep_a_frame_twice() -> None:
-    """Changes that are near each other share a window; a long stretch has several."""
     changed = np.zeros(1000, dtype=bool)
     changed[[3, 300, 330]] = True
     changed[600:900] = True

@@ -65,7 +65,6 @@ def test_exact_keyframes_are_recognized_and_kept(exact: WholeClipResult) -> None
 
 
 def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact: WholeClipResult) -> None:
-    """Every frame has a proper covariance; between keyframes it is larger than at them."""
     covariance = exact.covariance
     np.testing.assert_allclose(covariance, np.swapaxes(covariance, -1, -2), atol=1e-12)
     assert np.linalg.eigvalsh(covariance).min() > 0.0
@@ -76,7 +75,6 @@ def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_carelessly_posed_keyframes_are_recognized_and_corrected(seed: int) -> None:
-    """The size of the posing error is found, and the estimate is better than the keyframes themselves."""
     posed = posed_by_hand(seed)
     prior = prior_from(posed)
     result = solve(prior, film(TRUTH, 0.3, seed))
@@ -87,7 +85,6 @@ def test_carelessly_posed_keyframes_are_recognized_and_corrected(seed: int) -> N
 
 
 def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
-    """A forearm unseen for a gap between keyframes leaves the rest of the body as good as it was."""
     tracks = film(TRUTH, 0.3)
     centroid = tracks.centroid.copy()
     centroid[20:26, 1] = np.nan
@@ -98,7 +95,6 @@ def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
 
 
 def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -> None:
-    """An extraction that jumps to clutter for a frame moves the estimate by millimeters, not centimeters."""
     tracks = film(TRUTH, 0.3)
     centroid = tracks.centroid.copy()
     centroid[22, 3] += 60.0

@@ -60,7 +60,6 @@ def test_a_segment_seen_end_on_is_round_and_without_direction() -> None:
 def test_the_jacobian_agrees_with_central_differences_on_the_manifold(
     seed: int, distortion: tuple[float, float, float]
 ) -> None:
-    """Random postures, seen by a moving camera with and without distortion of the lens."""
     rng = np.random.default_rng(seed)
     posture = Posture.rest(HUMAN).plus(rng.normal(0.0, 0.5, HUMAN.dof_count))
     poses = np.stack([FORWARD, FORWARD])

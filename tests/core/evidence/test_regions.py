@@ -27,7 +27,6 @@ def predict(posture: Posture, jacobian: bool = False):  # noqa: ANN201
 
 
 def test_a_stretched_forearm_lies_where_it_projects() -> None:
-    """Centroid in the middle of the sleeve, length and thickness of its second moments as projected."""
     posture = standing()
     seen = predict(posture)
     elbow, wrist = (CAMERA.project(end)[0][0] for end in BODY.segment_ends(BODY.pose(posture), "forearm.L"))
@@ -70,7 +69,6 @@ def test_jacobians_agree_with_central_differences_where_nothing_hides(
 
 
 def test_an_arm_before_the_trunk_hides_part_of_it_and_is_not_hidden_itself() -> None:
-    """The left forearm across the belly: the trunk loses area, the forearm hardly any."""
     across = standing(**{"shoulder.L.rotation_y": 1.1, "shoulder.L.rotation_z": -0.9, "elbow.L.flexion": 1.2})
     open_arm, crossed = predict(standing()), predict(across)
     assert crossed.visible[0, 0] < open_arm.visible[0, 0] - 0.05
@@ -78,7 +76,6 @@ def test_an_arm_before_the_trunk_hides_part_of_it_and_is_not_hidden_itself() -> 
 
 
 def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
-    """What is wholly hidden still has moments, so that nothing downstream meets NaN."""
     behind = standing(**{"shoulder.L.rotation_y": 1.3, "shoulder.L.rotation_z": 1.0, "elbow.L.flexion": -1.6})
     seen = predict(behind, jacobian=True)
     assert seen.visible[0, 1] < 0.1
@@ -87,7 +84,6 @@ def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
 
 
 def test_every_second_moment_is_positive_definite_over_a_whole_exercise() -> None:
-    """Also where limbs point at the lens or are partly hidden."""
     seen = predict(exercise(45))
     assert np.linalg.eigvalsh(seen.second_moment).min() > 0.05
     assert ((seen.visible >= 0.0) & (seen.visible <= 1.0 + 1e-12)).all()
@@ -115,7 +111,6 @@ def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
 
 
 def test_markers_are_predicted_in_the_order_given() -> None:
-    """Each marker's centroid lies nearest its own segment's middle among all segments'."""
     posture = standing()
     pose = BODY.pose(posture)
     seen = predict(posture).centroid[0, 1:]
@@ -135,7 +130,6 @@ def shifted(shift: float) -> RegionModel:
 
 
 def test_the_edge_of_the_picture_cuts_a_region() -> None:
-    """Half of a stretched forearm outside: half the area, and the centroid of the rest."""
     posture = standing()
     pose, frame = BODY.pose(posture), np.zeros(1, dtype=np.intp)
     whole = predict(posture)

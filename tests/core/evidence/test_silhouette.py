@@ -78,7 +78,6 @@ def test_a_taper_moves_the_centroid_towards_the_thick_end() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_area_rates_agree_with_central_differences(seed: int) -> None:
-    """d area / d angular velocity, for a cylinder far away so that the view does not turn with it."""
     rng = np.random.default_rng(seed)
     far = Camera(4000.0, 36.0, (320, 240), CAMERA.matrix_world - 400 * np.outer([0, 1, 0, 0], [0, 0, 0, 1]))
     base = at_camera_height(tuple(rng.normal(size=3) * 0.8))

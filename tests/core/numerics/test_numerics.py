@@ -40,7 +40,6 @@ def test_weights_are_slopes_of_costs(count: int) -> None:
 
 
 def test_costs_keep_single_precision() -> None:
-    """A search over a million states must not become twice as large."""
     assert multivariate_cost(np.ones(3, dtype=np.float32), 4.0, 2).dtype == np.float32
 
 
@@ -62,7 +61,6 @@ def test_columns_are_interpolated_one_by_one() -> None:
 
 
 def test_a_gaussian_is_the_sum_by_brute_force() -> None:
-    """Ends are repeated; a deviation of zero and a single row change nothing."""
     values = np.random.default_rng(3).normal(size=(30, 2))
     offsets = np.arange(-8, 9)
     kernel = np.exp(-0.5 * (offsets / 2.0) ** 2)

@@ -75,7 +75,6 @@ def test_postures_of_another_actor_are_fitted() -> None:
 
 
 def test_two_libraries_become_a_third() -> None:
-    """Everything is in it, the same once, and names that clash are told apart."""
     other = replace(
         THEIRS, identifier="other", license="CC-BY-4.0 OR MIT", author="B. Person", sources=("Another.",)
     )

@@ -32,7 +32,6 @@ STEPS, ONCE = LIBRARY.motions
 
 
 def test_the_course_passes_through_its_steps() -> None:
-    """At a step's time it is the step's posture; in the next cycle the same, farther on and turned."""
     times = np.array([step.time_s for step in STEPS.steps])
     here, later = (sample_motion(LIBRARY, STEPS, BODY, times + n * STEPS.duration_s) for n in (0, 1))
     posed = Posture.stack([LIBRARY.by_name[step.posture].posture for step in STEPS.steps])
@@ -74,7 +73,6 @@ def test_what_stands_on_the_floor_stays_there() -> None:
 
 
 def test_a_motion_that_ends_is_held() -> None:
-    """Before its beginning and after its end nothing moves; a single step is a posture."""
     held = sample_motion(LIBRARY, ONCE, BODY, np.array([-1.0, 0.0, 0.31, 0.5, 9.0]))
     np.testing.assert_allclose(held[0].minus(held[1]), 0.0, atol=1e-12)
     np.testing.assert_allclose(held[2].minus(held[4]), 0.0, atol=1e-12)

@@ -47,7 +47,6 @@ def test_a_file_is_what_the_tool_writes(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_library_says_what_it_is(name: str) -> None:
-    """Ten to forty postures, all of them in a motion, sources with a year, free to use."""
     library = shipped(name)
     used = {step.posture for motion in library.motions for step in motion.steps}
     assert 10 <= len(library.postures) <= 40

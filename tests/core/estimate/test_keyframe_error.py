@@ -1,4 +1,4 @@
-"""The whole-clip estimate on matched keyframes."""
+"""Errors of keyframes: posed, matched; and of postures that nothing observes."""
 
 from dataclasses import replace
 from functools import cache
@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.body_volume import sole_heights_m
+from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.keyframe_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
     SURE_STD_M,
+    UNOBSERVED,
     UNSURE_STD_M,
     depth_std_m,
     joint_std_rad,
     match_covariance,
     undetermined_covariance,
+    unobserved_variance,
 )
 from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, placement_values
 from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
@@ -59,7 +62,6 @@ def as_matched() -> WholeClipResult:
 
 
 def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
-    """Believed as another performer's they end nearer to the truth, and the covariance is larger."""
     both = estimate(off(), None), as_matched()
     errors = [point_error_m(found.posture, TRUTH).mean() for found in both]
     assert errors[1] < 0.9 * errors[0]
@@ -104,7 +106,6 @@ def test_depths_count_near_posed_keyframes_only() -> None:
 
 
 def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_keyframes() -> None:
-    """A posed keyframe decides, a found one leaves depth open, the more the less sure it is."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
     sight = points[10, 4] - CAMERA.pose()[1]
     sight /= np.linalg.norm(sight)
@@ -155,3 +156,36 @@ def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_res
         )
     )
     assert point_error_m(first.posture, again.posture).max() == 0.0
+
+
+WORN = ("trunk", "forearm.L", "shin.L")
+TIME_S = np.arange(90) / 30.0
+
+
+def open_of(visible: np.ndarray, keyframes: list[int]) -> np.ndarray:
+    """(F, D) variances."""
+    index = np.array(keyframes, dtype=np.intp)
+    return unobserved_variance(HUMAN, WORN, visible, index, TIME_S)
+
+
+@pytest.mark.parametrize("keyframes", [[0], [0, 45, 89]])
+def test_nothing_is_open_where_markers_are_seen(keyframes: list[int]) -> None:
+    visible = np.ones((90, 3), dtype=bool)
+    visible[30 : 29 + int(2 * 30 * UNOBSERVED.grace_s), 1] = False
+    seen = [HUMAN.dof_names.index(name) for name in ("elbow.L.flexion", "knee.L.flexion", "waist.rotation_x")]
+    assert open_of(visible, keyframes)[:, seen].max() == 0.0
+
+
+def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
+    visible = np.ones((90, 3), dtype=bool)
+    visible[20:, 1] = False
+    variance = open_of(visible, [0, 80])
+    elbow, knee = (variance[:, HUMAN.dof_names.index(f"{name}.L.flexion")] for name in ("elbow", "knee"))
+    assert knee.max() == 0.0 and elbow[:20].max() == elbow[80] == 0.0
+    assert (np.diff(elbow[28:50]) > 0.0).all() and 0.3 < np.sqrt(elbow.max()) < 1.0
+
+
+def test_all_is_open_where_nothing_is_seen() -> None:
+    visible = np.zeros((90, 3), dtype=bool)
+    variance = open_of(visible, [0])
+    assert variance[0].max() == 0.0 and (variance[89] > 0.01).all()
