@@ -48,8 +48,7 @@ from .single_frame import MISPLACED
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
-PROPORTION_STD = 0.045
-"""Spread of the logarithm of a person's proportions about the average (Gordon et al. 2014)."""
+PROPORTION_STD = 0.045  # of the logarithm of a person's proportions about the average (Gordon et al. 2014)
 LENGTH_DIFFERENCE = 1e-3
 # Standard deviation of a standing person from the standing posture [m, rad]; arms may be anywhere.
 STANDING_STD = {
@@ -66,8 +65,7 @@ STANDING_STD = {
     "knee": 0.10,
     "shin": 0.05,
 }
-STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
-"""The same for arms that are held out sideways as well as one can."""
+STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}  # arms held out sideways as well as one can
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
 ARMS_RAISED_RAD = (0.0, 0.65, 1.3)  # starts of the descent: arms hanging, half raised and stretched out
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))

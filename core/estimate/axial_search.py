@@ -20,8 +20,7 @@ from ..footage.surface_colors import LEVELS_BAND_COLORS as LEVELS
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
 STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis
-CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))
-"""Logarithm of the levels³ in a cell: the background's densities are those per level³."""
+CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))  # levels³ in a cell: background densities are per level³
 SHORTEST_PX = 8.0  # least length of a part in the pictures; shorter ones are seen end on
 
 

@@ -25,8 +25,7 @@ class KeyframeEvidence:
     posing_scale: float  # size of the posing error relative to a person's usual one
     timing_frames: float  # standard deviation of the keyframes' timing error [frames]
     distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
     keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
 
@@ -65,11 +64,9 @@ class ClipProblem:
 
     # What the footage has taught.
     prior: Posture  # the interpolated postures with the turns
-    turns: IndexArray
-    """(K - 1,) whole turns about the vertical that the prior adds in each gap; see `prior/turns`."""
+    turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
     limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
-    depth_factor: Array
-    """(F, P) factor on the noise of the prior's depths, by how far the prior misses each point."""
+    depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
     observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
 
     # What was seen.

@@ -26,8 +26,7 @@ from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, AxialTerm, ContourTerm
 
 CHUNK_FRAMES = 50
-SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
-"""Standard deviation of a performer's parts from average ones: thickness at both ends, and place."""
+SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])  # of a performer's parts: thickness at both ends, place
 
 
 @dataclass(frozen=True)
@@ -56,8 +55,7 @@ class ContourEvidence:
     appearance: Appearance  # the look of performer and background
     model: ContourModel  # the contours of the performer's own parts
     schedule: Schedule = BY_MARKERS  # how far from the contours edges are looked for
-    along: BandColors | None = None
-    """The colors along each part, for shifts along their axes; None where markers tell these."""
+    along: BandColors | None = None  # colors along each part, for shifts; None where markers tell these
 
     def measure(
         self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW

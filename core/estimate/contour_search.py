@@ -29,8 +29,7 @@ class SearchRange:
     """How far from its prediction an edge is looked for, in pixels of the pictures."""
 
     reach: int  # reach of the search along the normal
-    prior_std: float
-    """Prior standard deviation of the edge's distance; it is taken out of the measurement again."""
+    prior_std: float  # of the edge's distance; it is taken out of the measurement again
     farthest: float  # a more distant edge is likelier another part's
 
 
@@ -147,8 +146,7 @@ WIDEST_M = (0.25, 0.13, 0.20)
 """Reach, deviation and farthest edge of the first look: interpolation of keyframes errs by 5 to 20 cm."""
 LOOKS = 9  # looks of the schedule; each is about a seventh narrower than the one before
 LARGEST_REACH_PX = 36  # bound of the first look's reach, for the sake of time
-BY_KEYPOINTS = 0.5
-"""Width of the first look where keypoints locate the limbs: these err by 2 to 6 cm, and at times by more."""
+BY_KEYPOINTS = 0.5  # width of the first look where keypoints locate the limbs, to 2 to 6 cm
 ENDS = (
     ("wrist.L",),
     ("wrist.R",),

@@ -44,18 +44,14 @@ class FilterOptions:
     """
 
     centroid_std_px: float = 1.0  # extraction noise of a centroid [px]
-    centroid_std_widths: float = 0.25
-    """How far a region's centroid lies from the middle of its segment's line [segment widths]."""
-    angle_std_rad: float = 0.1
-    """Noise of the direction of a region as thin as a line [rad]; rounder regions have more."""
-    log_ratio_std: float = 1.0
-    """Noise of log S_λ: wide, since sleeves and occlusion change the ratio more than the posture does."""
+    centroid_std_widths: float = 0.25  # of a centroid from the middle of its segment's line [widths]
+    angle_std_rad: float = 0.1  # direction of a region as thin as a line; rounder ones have more [rad]
+    log_ratio_std: float = 1.0  # of log S_λ, which sleeves and occlusion change more than posture does
     depth_std_m: float = DEPTH_STD_M  # noise of the a priori depths [m]
     initial_std: float = 0.5  # deviation of the first frame from the prior [natural deviations]
     near_width: float = 0.3  # half-width of the near rule's output set, a frame's step [natural deviations]
     far_width: float = 0.3  # half-width of the far rule's output set, a frame's step [natural deviations]
-    gate_probability: float = 0.999
-    """Share of right observations that pass the gate; a marker past it counts for less in that frame."""
+    gate_probability: float = 0.999  # share of right observations that pass; others count for less
     memberships: Memberships = field(default_factory=Memberships)  # the rules' input sets
 
     def __post_init__(self) -> None:
@@ -75,8 +71,7 @@ class Update(NamedTuple):
 
     step: Array  # (D,) change of the mean
     covariance: Array  # (D, D) after the update, symmetric
-    normalized_innovation_squared: float
-    """νᵀ S⁻¹ ν; χ² with m degrees of freedom if model and noise are right."""
+    normalized_innovation_squared: float  # νᵀ S⁻¹ ν, χ² with as many degrees of freedom as rows
 
 
 def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> Update:
@@ -128,8 +123,7 @@ class FilterResult:
 
     posture: Posture  # a batch of F postures
     covariance: Array  # (F, D, D) of a tangent step at each posture
-    normalized_innovation_squared: Array
-    """(F,) of all rows that were used; χ² with `row_count` degrees of freedom if the model is right."""
+    normalized_innovation_squared: Array  # νᵀ S⁻¹ ν, χ² with as many degrees of freedom as rows
     row_count: IndexArray  # (F,) number of rows that were used
     gated: BoolArray  # (F, M) whether a marker was past its gate and counted in part only
 

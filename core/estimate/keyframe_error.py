@@ -73,9 +73,7 @@ PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20  # usual error of the place across a
 # nothing was posed, errors along the line of sight were 13 cm where the confidence was below 0.7, 9 cm at
 # 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm.
 SURE_STD_M, UNSURE_STD_M = np.array([0.02, 0.07]), np.array([0.07, 0.16])
-SIZE_STD = 0.05
-"""Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
-lie farther in or out than joints. All frames share it."""
+SIZE_STD = 0.05  # of a distance by the performer's size, as a share: lengths are average ones
 # Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share it.
 GROUND_STD_M = 0.04
 POINT_DEPTH_STD_M = 2.0

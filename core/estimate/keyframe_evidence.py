@@ -38,8 +38,7 @@ from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, 
 
 
 PARAMETERS = tuple(field.name for field in fields(MarkerPlacement) if field.name != "segment")
-PRIOR_STD = np.array([0.08, 0.08, 0.012, 0.012, 0.20])
-"""First and last share of the segment, lateral and sagittal displacement [m], girth."""
+PRIOR_STD = np.array([0.08, 0.08, 0.012, 0.012, 0.20])  # first, last, lateral [m], sagittal [m], girth
 DIFFERENCE = np.array([1e-3, 1e-3, 1e-4, 1e-4, 1e-3])
 SMALLEST = np.array([-0.3, 0.3, -0.06, -0.06, 0.5])
 LARGEST = np.array([0.7, 1.3, 0.06, 0.06, 2.0])
@@ -104,13 +103,11 @@ class CalibrationOptions:
 
 CALIBRATION = CalibrationOptions()
 SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
-TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
-"""Standard deviations of the timing error tried [frames]."""
+TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])  # deviations of the timing tried [frames]
 LENS_DIFFERENCE = 1e-3
 
 
-ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
-"""Reads the rows of contours at posed postures in given frames."""
+ContourReader = Callable[[Posture, IndexArray], EvidenceRows]  # rows at postures in given frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,8 +120,7 @@ class SeenAtKeyframes:
     width_px: Array  # (K, M) half-width of each marker's limb [px]
     keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
     points: ObservedKeypoints | None = None  # those seen
-    contours: ContourReader | None = None
-    """Reads the rows of contours at some of the keyframes; None where contours do not judge."""
+    contours: ContourReader | None = None  # reads rows at some keyframes; None where contours judge none
 
     def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
         """Some of the keyframes."""

@@ -142,8 +142,7 @@ class KeypointEvidence:
     sources: tuple[str, ...]  # (N,) what saw each
     std_m: Array  # (N,) error of a sure detection along each axis of the image [m]
     trust: Array  # (N,) 1 for points that are believed, 0 for those left out
-    lag: Mapping[str, int]
-    """By source that is left out for it: frames by which it is late, or early where negative."""
+    lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
     depths: DepthEvidence  # what the hints of depth are worth
     memory_s: float = POINTS.memory_s  # time in which an error fades to a third [s]
 

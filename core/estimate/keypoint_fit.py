@@ -27,13 +27,11 @@ class KeypointFit:
     residual_px: Array  # (F, N) distance between the two [px]; NaN where not seen
     std_px: Array  # (F, N) expected error along each axis [px]; infinite for points that are left out
     weight: Array  # (F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out
-    thrown_out: BoolArray
-    """(F, N) those seen that had next to no weight: jumps to another thing, person or side."""
+    thrown_out: BoolArray  # (F, N) seen, with next to no weight: jumps to another thing, person or side
     swapped: BoolArray  # (F, N) those that the source had on the other side of the body
     trust: Array  # (N,) share of the usual trust in each point, 0 for one that is left out all along
     source_trust: Mapping[str, float]  # by source: mean trust in its points, 0 for one that is left out
-    lag: Mapping[str, int]
-    """By source that is left out for it: frames by which it is late, or early where negative."""
+    lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
 
 
 def keypoint_fit(

@@ -44,10 +44,8 @@ class KeypointTrust:
     """What the keyframes say of N keypoints of several sources."""
 
     trust: Array  # (N,) 1 for points that are believed, 0 for others
-    distance_m: Array
-    """(N,) usual distance across the view from where keyframes have each [m]; NaN where not seen at any."""
-    lag: Mapping[str, int]
-    """By source: frames by which it is late, or early where negative; 0 for one that is neither."""
+    distance_m: Array  # (N,) usual distance across the view from keyframes [m]; NaN where not seen
+    lag: Mapping[str, int]  # by source: frames late, or early where negative; 0 for neither
 
 
 def keypoint_trust(
@@ -105,8 +103,7 @@ def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: Index
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
 FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and legs are
-STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
-"""Whether arms, and whether legs, are exchanged."""
+STATES = np.array([[False, False], [True, False], [False, True], [True, True]])  # arms, legs exchanged
 
 
 @dataclass(frozen=True)

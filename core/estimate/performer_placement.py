@@ -23,8 +23,7 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 
-TOUCHING_PERCENT = 30.0
-"""Percentile of the lowest soles that is the floor: more than half touch it, except for runners."""
+TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners
 SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
 SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it

@@ -74,8 +74,7 @@ def frame_residuals(
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 
 
-TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
-"""From a start that may be far off; image noise is widened by these factors."""
+TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))  # of image noise, from far off
 
 
 def descend(
@@ -118,8 +117,7 @@ class FrameFit:
     """The posture found for one frame."""
 
     posture: Posture  # a single posture
-    residual_px: Array
-    """(M,) distance between each marker's predicted and observed centroid [px]; NaN where it is hidden."""
+    residual_px: Array  # (M,) predicted to observed centroids [px]; NaN where hidden
     before_px: Array  # (M,) the same for the believed posture
     misplaced: tuple[int, ...]  # indices of the markers that the posture does not explain
     keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))

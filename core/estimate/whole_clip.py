@@ -39,8 +39,7 @@ from .refinement import refine
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 
-MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6
-"""Shares of the work that following the markers is, and all before contours are measured."""
+MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
 
 
 @dataclass(frozen=True)
@@ -49,8 +48,7 @@ class WholeClipOptions:
 
     regions: RegionNoise = field(default_factory=RegionNoise)
     window_s: float = 20.0  # longer clips are solved in windows of about this length [s] ...
-    margin_s: float = 3.0
-    """... that reach this far into their neighbors: several times as far as any term remembers [s]."""
+    margin_s: float = 3.0  # ... that overlap by this, several times as far as any term remembers [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +71,7 @@ class Believed:
     match_scale: Array | None = None
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
-    lower_ankle: Array | None = None
-    """(F,) height of the lower ankle where all keyframes are matched [m]; by their soles where None."""
+    lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,13 +80,10 @@ class WholeClipResult:
 
     posture: Posture  # a batch of F postures
     covariance: Array  # (F, D, D) of the posture's own tangent
-    residual_px: Array
-    """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
+    residual_px: Array  # (F, M) predicted to observed centroids [px]; NaN where not compared
     problem: ClipProblem  # the problem it solves
-    contours: ContourEvidence | None
-    """The look of performer and background; None where no background can be trusted."""
-    outlined: BoolArray | None = None
-    """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
+    contours: ContourEvidence | None  # None where no background can be trusted
+    outlined: BoolArray | None = None  # (F, O) which parts' contours were seen, where limbs have no markers
 
     @cached_property
     def keypoints(self) -> KeypointFit:

@@ -18,12 +18,10 @@ from .terms.keypoints import KeypointTerm
 from .terms.regions import RegionTerm
 from .terms.term import NormalEquations, total_cost
 
-TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
-"""Of a first descent: what is learned from its postures changes the problem before they have converged."""
+TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need not converge yet
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-MOST_UNPACKED = 256 << 20
-"""Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
+MOST_UNPACKED = 256 << 20  # bytes of pictures unpacked once: half a minute at 320 x 240
 UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
 for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no

@@ -18,11 +18,9 @@ from ..body.kinematics import Body, Pose
 from ..footage.camera import Camera
 from .occlusion import PartOutlines, View, part_outlines, view_pieces
 
-SHARES = (0.2, 0.4, 0.6, 0.8)
-"""Positions of the samples along a part; its ends are left out, as they overlap with other parts."""
+SHARES = (0.2, 0.4, 0.6, 0.8)  # of the samples along a part, whose ends overlap with other parts
 SIDES = (-1.0, 1.0)
-SHAPE = 4
-"""Corrections of a part's shape: thickness at both ends, displacement along lateral and sagittal [m]."""
+SHAPE = 4  # corrections of a part [m]: thickness at both ends, lateral and sagittal displacement
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,8 +36,7 @@ class UsualPlace:
 
 JOINT_PLACE_STD_M, WIDE_PLACE_STD_M = 0.02, 0.035
 """Of limbs' joints; and of hips, shoulders, head and trunk, which detectors define as they please [m]."""
-JOINT_ERROR_STD_M = 0.02
-"""An error of a fifth of a limb's length at most, as detectors have; also what annotators differ by."""
+JOINT_ERROR_STD_M = 0.02  # at most a fifth of a limb's length; also what annotators differ by
 NECK_HEAD = "neck_head"
 # Heights and breadths of the head over `neck_head`, from averages of adults (Gordon et al. 2014, as in
 # `body_volume`): pupils level with the head's center and 32 mm off the middle, tragus 15 mm below it.
@@ -175,8 +174,7 @@ class KeypointModel:
 Ends = tuple[str, ...]  # body points whose middle is the end of a link
 HIPS: Ends = ("hip.L", "hip.R")
 SHOULDERS: Ends = ("shoulder.L", "shoulder.R")
-HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))
-"""What may stand for the head, the first that a layout has."""
+HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))  # what may stand for it, by preference
 LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
 
 

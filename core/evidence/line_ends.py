@@ -21,8 +21,7 @@ from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import axis_angle_difference, characteristics
 
-X, Y, ANGLE, LOG_RATIO = range(4)
-"""Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
+X, Y, ANGLE, LOG_RATIO = range(4)  # columns: S_x, S_y [px], S_θ [rad, modulo π], log S_λ
 
 JointPoint = tuple[int, Array]  # a joint and a point in its frame, (3,) [m]
 
@@ -37,8 +36,7 @@ class LineEnds:
 
     body: Body
     camera: Camera
-    segments: tuple[str, ...]
-    """Segment of each marker: one of the skeleton's, or `trunk` (hips' midpoint to shoulders' midpoint)."""
+    segments: tuple[str, ...]  # the skeleton's, or `trunk` (from hips' to shoulders' midpoint)
 
     def __post_init__(self) -> None:
         """Refuse unknown segments."""

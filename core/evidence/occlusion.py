@@ -152,8 +152,7 @@ DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
 HIDDEN_DEPTH_M = 0.01  # least depth difference of an occluding part: neighbors share their joint's depth
 NEGLIGIBLE = 8.0  # softness widths beyond which a part's effect vanishes
-BLOCK = 256
-"""Pairs of a piece and a part that are evaluated at a time, so that their samples fit in the cache."""
+BLOCK = 256  # pairs of a piece and a part at a time, whose samples fit in the cache
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,8 +34,7 @@ USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 """A shirt covers the shoulders, which rise above their joints, and ends at the hip bones; trousers and
 stockings are thicker than the leg inside. Medians of calibrations at a dozen performers' keyframes."""
-PIECES_AT_ONCE = 600
-"""Pieces, counted over frames, that are evaluated together, so that their samples fit in the cache."""
+PIECES_AT_ONCE = 600  # counted over frames, so that their samples fit in the cache
 
 
 @dataclass(frozen=True, eq=False)

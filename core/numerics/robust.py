@@ -10,8 +10,7 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 
-DEGREES = 4.0
-"""Degrees of freedom of Student's t for all that is seen (Lange, Little & Taylor 1989); few forgive more."""
+DEGREES = 4.0  # of Student's t for all that is seen (Lange, Little & Taylor 1989); few forgive more
 
 Floats = TypeVar("Floats", Array, SingleArray)
 
@@ -41,8 +40,7 @@ def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Flo
 
 
 State = TypeVar("State")
-Equations = tuple[Array, Array, Array]
-"""Of N problems in D unknowns: cost (N,), normal matrix (N, D, D) and gradient (N, D)."""
+Equations = tuple[Array, Array, Array]  # cost (N,), normal matrix (N, D, D), gradient (N, D)
 
 
 def levenberg_marquardt(

@@ -57,8 +57,7 @@ UNRELATED_STD = {
     "shin": 0.05,
 }
 SPEED_M_PER_S = 0.7  # a walking performer's hips also move away steadily, by this speed
-ROUGH_POSE_SHARE = 0.5
-"""Standard deviation of a pose roughly set by the animator, as a share of `UNRELATED_STD`."""
+ROUGH_POSE_SHARE = 0.5  # deviation of a pose roughly set, as a share of `UNRELATED_STD`
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +68,7 @@ class FramePrior:
     std: Array  # (D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]
     starts: Posture  # a batch of postures to start the search from, the first of them `posture`
     depth_std_m: float = DEPTH_STD_M  # standard deviation of each point's depth [m]
-    grounded: Posture | None = None
-    """Postures of which at least one stands on the ground; None where the ground is unknown."""
+    grounded: Posture | None = None  # at least one of these stands on the ground; None: unknown
 
 
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:

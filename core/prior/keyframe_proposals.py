@@ -56,8 +56,7 @@ def point_speed(centroid: Array, time: Array) -> Array:
     return np.asarray(np.interp(np.arange(len(time)), np.arange(seen[0], seen[-1] + 1), speed))
 
 
-JITTER_S = 0.067
-"""Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
+JITTER_S = 0.067  # smoothing of keypoints and pictures: a detector's jitter is faster
 FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
 FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes are spaced evenly"
 
@@ -67,8 +66,7 @@ class EvidenceSpeed:
     """V_sum, and what it was made from."""
 
     values: Array  # (F,) [px per frame]
-    note: str = ""
-    """What else than markers and keypoints had to be used, for people; empty where one of them is seen."""
+    note: str = ""  # what had to be used where neither markers nor keypoints are seen, for people
 
 
 def evidence_speed(

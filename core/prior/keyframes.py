@@ -24,8 +24,7 @@ Name = Annotated[str, Text(LONGEST_NAME, f"a name of at most {LONGEST_NAME} char
 class Matched(Record):
     """Origin of a found keyframe: the posture of a library that it resembles."""
 
-    library: Name
-    """Identifier of the library that was matched, or `COMPOSED` where parts of several are put together."""
+    library: Name  # the identifier of the library matched, or `COMPOSED` of parts of several
     posture: Name  # name of the nearest posture of the library
     mirrored: bool  # whether left and right are exchanged
     confidence: Annotated[float, Number(0.0, 1.0)]  # probability that it is about right, 0 to 1
@@ -47,8 +46,7 @@ class Keyframe:
 
     index: int  # frame index in the clip, 0 for the first decoded frame
     posture: Posture  # a single posture
-    residual_m: float = 0.0
-    """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
+    residual_m: float = 0.0  # mean distance of the points it was read from [m]; 0 where posed
     matched: Matched | None = None  # what was found; None for a keyframe that a person has posed or corrected
 
 

@@ -23,8 +23,7 @@ from .texts import IDENTIFIER, LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, T
 MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000  # most steps in all motions together
 MOST_SOURCES = 100
 FARTHEST_M = 100.0
-SHORTEST_S, LONGEST_S = 0.001, 600.0
-"""Bounds of a motion's duration: a shorter cycle would repeat without end between two frames."""
+SHORTEST_S, LONGEST_S = 0.001, 600.0  # of a motion: a shorter cycle would repeat without end
 HIGHEST_VERSION = 10**6
 DECIMALS = 9  # nanometers and nanoradians: Blender's single precision survives
 
@@ -49,7 +48,6 @@ class TravelFields(Record):
     x_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]  # distance [m]
     y_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]  # distance [m]
     heading_rad: Annotated[float, Number(-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD, "rad", DECIMALS)]
-    """Angle [rad]."""
 
 
 class TravelKind(Kind):
@@ -108,11 +106,9 @@ class LibraryMotion(Record):
     steps: Annotated[
         tuple[MotionStep, ...], Items(f"steps ({MOST_STEPS} in all motions together)", 1, MOST_STEPS)
     ]  # in order of time; the first is at 0. A posture may occur several times
-    duration_s: Annotated[float, Number(SHORTEST_S, LONGEST_S, "s", DECIMALS)]
-    """Duration of the whole motion, of a cyclic one its period [s]."""
+    duration_s: Annotated[float, Number(SHORTEST_S, LONGEST_S, "s", DECIMALS)]  # of a cyclic one its period
     cyclic: bool = False  # whether the motion repeats after `duration_s`
-    travel: Annotated[Travel, TravelKind()] = (0.0, 0.0, 0.0)
-    """Displacement of a cycle along x and y [m], and its turn about Z [rad]."""
+    travel: Annotated[Travel, TravelKind()] = (0.0, 0.0, 0.0)  # of a cycle along x, y, and its turn about Z
 
     def mistake(self) -> str:
         """See `Record`."""
@@ -148,20 +144,16 @@ class Library(Record):
         *("actor", "motions", "postures"),
     )
 
-    identifier: Annotated[str, IDENTIFIER]
-    """The same in every copy: lower-case letters, digits, dots, hyphens, underscores."""
+    identifier: Annotated[str, IDENTIFIER]  # the same in every copy
     title: Name  # title for people
     version: Annotated[int, Whole(1, HIGHEST_VERSION)]  # raised with every published change
     author: Annotated[str, line(LONGEST_LINE)]  # who made it
     license: Annotated[str, SPDX]  # SPDX expression such as `CC0-1.0`
     actor: Annotated[Actor, ActorFields(Actor, strict=True)]  # the proportions of the postures' performer
     postures: Annotated[tuple[LibraryPosture, ...], Items("postures", 1, MOST_POSTURES)]
-    """Postures in the order shown to people."""
     motions: Annotated[tuple[LibraryMotion, ...], Items("motions", 0, MOST_MOTIONS)] = ()
-    """Motions through them."""
     description: Annotated[str, line(LONGEST_TEXT, empty=True)] = ""  # what it is for
     sources: Annotated[tuple[Annotated[str, line(LONGEST_TEXT)], ...], Items("texts", 0, MOST_SOURCES)] = ()
-    """Literature and other sources of the postures."""
     tags: Tags = ()  # words to find it by
 
     def mistake(self) -> str:

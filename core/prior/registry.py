@@ -12,8 +12,7 @@ from ..files.json_file import ENDING, is_other_format, is_path, json_files, read
 from .library import LARGEST_BYTES, Library, read_library
 from .texts import EVERY_LIBRARY, checked_identifier
 
-SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
-"""The libraries that come with Keymark."""
+SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"  # they come with Keymark
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from ..files.json_file import shown
 from ..files.kinds import Items, Text
 
 EVERY_LIBRARY = "auto"  # stands for all libraries where one is named; hence no valid identifier
-COMPOSED = "composed"
-"""Stands for the library of a posture put together from parts of several; hence no valid identifier."""
+COMPOSED = "composed"  # stands for parts of several libraries; hence no valid identifier
 
 
 LONGEST_IDENTIFIER = 64

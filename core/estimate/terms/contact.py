@@ -31,11 +31,9 @@ class StillnessTerm:
     camera: Camera
     points: tuple[int, ...]  # indices of the principal points it is about
     step_s: Array  # (F - 1,) time between frames [s]
-    release_speed_m_s: float = 0.2
-    """Speed across the line of sight, c, at which a point's rows count a quarter."""
+    release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
     depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
-    release_height_m: float = 0.04
-    """Height above the lowest of the points at which a point's rows count a quarter."""
+    release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
     std_m: float = 0.003  # how far a standing ankle wanders from frame to frame [m]
     robust: ClassVar[bool] = True
 

@@ -37,8 +37,7 @@ class RegionTerm:
     noise: RegionNoise
     width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
     distrust: Array  # (M,) factor of the noise of each marker's regions
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

@@ -55,8 +55,7 @@ class NormalEquations:
 class Term(Protocol):
     """A term adds its linearized rows at a state, and tells its cost, by which states are chosen between."""
 
-    robust: ClassVar[bool]
-    """Whether its noise has heavy tails; without them the cost is half a sum of squares."""
+    robust: ClassVar[bool]  # whether its noise has heavy tails; else the cost is half a sum of squares
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add this term's rows; `temperature` ≥ 1 widens image noise while annealing."""
