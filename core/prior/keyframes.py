@@ -24,10 +24,14 @@ Name = Annotated[str, Text(LONGEST_NAME, f"a name of at most {LONGEST_NAME} char
 class Matched(Record):
     """Origin of a found keyframe: the posture of a library that it resembles."""
 
-    library: Name  # the identifier of the library matched, or `COMPOSED` of parts of several
-    posture: Name  # name of the nearest posture of the library
-    mirrored: bool  # whether left and right are exchanged
-    confidence: Annotated[float, Number(0.0, 1.0)]  # probability that it is about right, 0 to 1
+    library: Name
+    """Identifier of the library that was matched, or `COMPOSED` where parts of several are put together."""
+    posture: Name
+    """Name of the nearest posture of the library."""
+    mirrored: bool
+    """Whether left and right are exchanged."""
+    confidence: Annotated[float, Number(0.0, 1.0)]
+    """Probability that it is about right, 0 to 1."""
 
     @property
     def is_doubtful(self) -> bool:

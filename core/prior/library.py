@@ -20,7 +20,7 @@ from ..files.kinds import Items, Kind, Number, Text, Whole
 from ..files.records import Object, Record
 from .texts import IDENTIFIER, LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line, name_key
 
-MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000  # most steps in all motions together
+MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000  # steps: of all motions together
 MOST_SOURCES = 100
 FARTHEST_M = 100.0
 SHORTEST_S, LONGEST_S = 0.001, 600.0  # of a motion: a shorter cycle would repeat without end
@@ -45,9 +45,12 @@ class TravelFields(Record):
 
     STRICT = True
 
-    x_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]  # distance [m]
-    y_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]  # distance [m]
+    x_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]
+    """Distance [m]."""
+    y_m: Annotated[float, Number(-FARTHEST_M, FARTHEST_M, "m", DECIMALS)]
+    """Distance [m]."""
     heading_rad: Annotated[float, Number(-LARGEST_ANGLE_RAD, LARGEST_ANGLE_RAD, "rad", DECIMALS)]
+    """Angle [rad]."""
 
 
 class TravelKind(Kind):
@@ -74,11 +77,13 @@ class LibraryPosture(Record):
     STRICT = True
     ORDER = ("name", "tags", "posture")
 
-    name: Name  # unique within its library
+    name: Name
+    """Unique within its library."""
     posture: Annotated[Posture, PostureValues(HUMAN, FARTHEST_M, True, DECIMALS)]
     """A single posture of the library's actor. The floor is z = 0, and facing -Y is straight ahead;
     positions on the floor count within a motion only."""
-    tags: Tags = ()  # words to find it by
+    tags: Tags = ()
+    """Words to find it by."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +107,18 @@ class LibraryMotion(Record):
     ORDER = ("name", "cyclic", "duration_s", "travel", "steps")
     REQUIRED = ("cyclic",)
 
-    name: Name  # unique within its library
+    name: Name
+    """Unique within its library."""
     steps: Annotated[
         tuple[MotionStep, ...], Items(f"steps ({MOST_STEPS} in all motions together)", 1, MOST_STEPS)
-    ]  # in order of time; the first is at 0. A posture may occur several times
-    duration_s: Annotated[float, Number(SHORTEST_S, LONGEST_S, "s", DECIMALS)]  # of a cyclic one its period
-    cyclic: bool = False  # whether the motion repeats after `duration_s`
-    travel: Annotated[Travel, TravelKind()] = (0.0, 0.0, 0.0)  # of a cycle along x, y, and its turn about Z
+    ]
+    """In order of time; the first is at 0. A posture may occur several times."""
+    duration_s: Annotated[float, Number(SHORTEST_S, LONGEST_S, "s", DECIMALS)]
+    """Duration of the whole motion, of a cyclic one its period [s]."""
+    cyclic: bool = False
+    """Whether the motion repeats after `duration_s`."""
+    travel: Annotated[Travel, TravelKind()] = (0.0, 0.0, 0.0)
+    """Displacement of a cycle along x and y [m], and its turn about Z [rad]."""
 
     def mistake(self) -> str:
         """See `Record`."""
@@ -144,17 +154,28 @@ class Library(Record):
         *("actor", "motions", "postures"),
     )
 
-    identifier: Annotated[str, IDENTIFIER]  # the same in every copy
-    title: Name  # title for people
-    version: Annotated[int, Whole(1, HIGHEST_VERSION)]  # raised with every published change
-    author: Annotated[str, line(LONGEST_LINE)]  # who made it
-    license: Annotated[str, SPDX]  # SPDX expression such as `CC0-1.0`
-    actor: Annotated[Actor, ActorFields(Actor, strict=True)]  # the proportions of the postures' performer
+    identifier: Annotated[str, IDENTIFIER]
+    """The same in every copy: lower-case letters, digits, dots, hyphens, underscores."""
+    title: Name
+    """Title for people."""
+    version: Annotated[int, Whole(1, HIGHEST_VERSION)]
+    """Raised with every published change."""
+    author: Annotated[str, line(LONGEST_LINE)]
+    """Who made it."""
+    license: Annotated[str, SPDX]
+    """SPDX expression such as `CC0-1.0`."""
+    actor: Annotated[Actor, ActorFields(Actor, strict=True)]
+    """The proportions of the postures' performer."""
     postures: Annotated[tuple[LibraryPosture, ...], Items("postures", 1, MOST_POSTURES)]
+    """Postures in the order shown to people."""
     motions: Annotated[tuple[LibraryMotion, ...], Items("motions", 0, MOST_MOTIONS)] = ()
-    description: Annotated[str, line(LONGEST_TEXT, empty=True)] = ""  # what it is for
+    """Motions through them."""
+    description: Annotated[str, line(LONGEST_TEXT, empty=True)] = ""
+    """What it is for."""
     sources: Annotated[tuple[Annotated[str, line(LONGEST_TEXT)], ...], Items("texts", 0, MOST_SOURCES)] = ()
-    tags: Tags = ()  # words to find it by
+    """Literature and other sources of the postures."""
+    tags: Tags = ()
+    """Words to find it by."""
 
     def mistake(self) -> str:
         """See `Record`."""
@@ -196,6 +217,9 @@ def _alike(what: str, names: Iterable[str]) -> str:
             )
         seen[key] = name
     return ""
+
+
+# --- Library files
 
 
 LARGEST_BYTES = 4 * 2**20
