@@ -164,7 +164,6 @@ class _Problem:
         return np.concatenate([steps, np.full(len(MEASURED), PROPORTION_STD), markers])
 
     def body(self, x: Array) -> Body:
-        """The body with the lengths of x."""
         lengths = dict(self.average.segments_m)
         logarithms = x[HUMAN.dof_count : HUMAN.dof_count + len(MEASURED)]
         for name, logarithm in zip(MEASURED, logarithms, strict=True):
@@ -174,16 +173,13 @@ class _Problem:
         return Body(Actor(lengths))
 
     def posture(self, x: Array, body: Body) -> Posture:
-        """A batch of one."""
         return Posture.stack([self.standing(body).plus(x[: HUMAN.dof_count])])
 
     def standing(self, body: Body) -> Posture:
-        """The posture that the unknown step starts from, a single one."""
         lowered = 0.0 if self.arms_stretched else ARMS_LOWERED_RAD
         return standing_posture(body, self.place, self.heading, lowered)
 
     def model(self, x: Array) -> RegionModel:
-        """The markers on that body."""
         average = tuple(MarkerPlacement.usual(segment) for segment in self.segments)
         if not average:
             return RegionModel(self.body(x), self.camera, ())
@@ -192,7 +188,6 @@ class _Problem:
         return RegionModel(self.body(x), self.camera, placements_from(average, values))
 
     def keypoint_model(self, x: Array) -> KeypointModel:
-        """The keypoints on that body, at their usual places."""
         return KeypointModel.usual(self.body(x), self.camera, self.point_names)
 
     def descend(self, raised_rad: float) -> Array:
@@ -208,7 +203,6 @@ class _Problem:
         return x
 
     def cost(self, x: Array) -> float:
-        """Negative logarithm of the probability of x, up to a constant."""
         groups, height = self._rows(x)
         image = 0.0
         for residual, information in groups:
@@ -217,7 +211,6 @@ class _Problem:
         return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
-        """The result at the best x."""
         normal, _ = self._equations(x, 1.0)
         found = slice(HUMAN.dof_count, HUMAN.dof_count + len(MEASURED))
         shares = np.sqrt(np.diag(np.linalg.inv(normal)[found, found]))
@@ -251,7 +244,6 @@ class _Problem:
 
     @property
     def _scale(self) -> float:
-        """Pixels of a meter at the performer."""
         depth = float(self.camera.depth(self.place, int(self.frame[0])))
         return self.camera.focal_px / max(depth, 0.1)
 

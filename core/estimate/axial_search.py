@@ -168,8 +168,6 @@ def _logs(
 
 @dataclass(frozen=True, eq=False)
 class _Lines:
-    """Axes in the pictures."""
-
     start: Array
     direction: Array
     length: Array

@@ -116,7 +116,6 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 
 def _origin(found: Sequence[Matched]) -> str:
-    """What found keyframes were made of."""
     libraries = sorted({said.library for said in found if not said.is_composed})
     parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []

@@ -187,7 +187,6 @@ def _relative_span(shown: Array, seen: Array) -> float:
 
 
 def _points(part: str) -> list[int]:
-    """Indices of both sides' points, left first."""
     return [HUMAN.point_names.index(f"{part}.{side}") for side in SIDES]
 
 

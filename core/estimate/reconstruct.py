@@ -161,7 +161,6 @@ def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
-    """Check tracks that were found earlier against the take."""
     names = tuple(style.name for style in take.markers)
     if tracks.names != names:
         raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
@@ -189,7 +188,6 @@ def _whole_clip(
 
 
 def _is_composed(take: Take) -> bool:
-    """Whether all keyframes were put together from parts."""
     return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
 
 

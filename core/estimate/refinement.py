@@ -160,7 +160,6 @@ def refine(
 def _learned(
     problem: ClipProblem, spans: list[Window], states: list[ClipState], album: Album
 ) -> Part[ContourEvidence | None]:
-    """The look of performer and background, and the shapes of the performer's parts."""
     camera = problem.evidence.model.camera  # with the lens that was found
     segments = tuple(one.segment for one in problem.evidence.model.placements)
     schedule = contour_schedule(
@@ -172,7 +171,6 @@ def _learned(
 
 
 def _kept(spans: list[Window], states: list[ClipState]) -> Posture:
-    """The postures of all frames."""
     return Posture.concatenate(
         [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     )

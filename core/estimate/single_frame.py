@@ -1,7 +1,7 @@
 """How far what is seen of one frame lies from where a posture has it, and what it does not explain."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -118,12 +118,9 @@ class FrameFit:
 
     posture: Posture  # a single posture
     residual_px: Array  # (M,) predicted to observed centroids [px]; NaN where hidden
-    before_px: Array  # (M,) the same for the believed posture
     misplaced: tuple[int, ...]  # indices of the markers that the posture does not explain
-    keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
-    """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
-    misplaced_points: tuple[str, ...] = ()  # body points of the keypoints that the posture does not explain
-    cost: float = 0.0  # negative logarithm of its probability, up to a constant of the frame
+    misplaced_points: tuple[str, ...]  # body points of the keypoints that the posture does not explain
+    cost: float  # negative logarithm of its probability, up to a constant of the frame
 
 
 def fit_frame(
@@ -131,19 +128,17 @@ def fit_frame(
     observed: ObservedRegions,
     belief: FramePrior,
     frame: int,
-    noise: RegionNoise | None = None,
     points: ObservedKeypoints | None = None,
 ) -> FrameFit:
     """The most probable posture of one frame.
 
     Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
-    noise = noise or RegionNoise()
-    fit = _fitted(evidence, observed, belief, frame, noise, points)
+    fit = _fitted(evidence, observed, belief, frame, points)
     if points is None or not points.seen.any():
         return fit
     mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
-    other = _fitted(evidence, observed, belief, frame, noise, mirrored)
+    other = _fitted(evidence, observed, belief, frame, mirrored)
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
@@ -190,10 +185,8 @@ def _fitted(
     observed: ObservedRegions,
     belief: FramePrior,
     frame: int,
-    noise: RegionNoise,
     points: ObservedKeypoints | None,
 ) -> FrameFit:
-    """Descend from several starts side by side, and choose."""
     model, count = evidence.model, belief.starts.batch[0]
     believed = Posture.stack([belief.posture] * count)
     factor = _factor(model, belief, frame)
@@ -202,15 +195,11 @@ def _fitted(
     frames = np.full(count, frame, dtype=np.intp)
     state = ClipState(model.body, believed, frames, factor, variation, bias)
     width_px = limb_widths(model, belief.posture.translation[None], np.array([frame]))
-    best, least = descend(state, frame_terms(evidence, observed, belief, noise, width_px, points))
+    best, least = descend(state, frame_terms(evidence, observed, belief, RegionNoise(), width_px, points))
     chosen = int(np.argmin(least))
     posture, cost = best.posture[chosen], float(least[chosen])
-    found, before = (
-        frame_residuals(evidence, observed, points, each, frame) for each in (posture, believed[0])
-    )
-    return FrameFit(
-        posture, found.marker_px, before.marker_px, found.markers, found.keypoint_px, found.points, cost
-    )
+    found = frame_residuals(evidence, observed, points, posture, frame)
+    return FrameFit(posture, found.marker_px, found.markers, found.points, cost)
 
 
 def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:

@@ -73,7 +73,6 @@ def changed_gaps(problem: ClipProblem, changed: BoolArray) -> BoolArray:
 
 
 def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
-    """Whether body, camera, markers, keypoints, noise and frames' times are the same."""
     cameras = [
         [getattr(problem.camera, field.name) for field in fields(Camera)] for problem in (earlier, now)
     ]
@@ -128,7 +127,6 @@ def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
 
 
 def _same_keypoints(one: KeypointEvidence, other: KeypointEvidence) -> bool:
-    """Whether places, errors, trust and what hints of depth are worth are the same, within the tolerances."""
     if not one.model.names:
         return True
     moved = np.abs(one.model.place - other.model.place).max()

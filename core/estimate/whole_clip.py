@@ -258,7 +258,6 @@ def _solve_windows(
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
-    """A batch of postures in which the frames that windows keep are replaced."""
     translation, rotations, angles = base.translation.copy(), base.rotations.copy(), base.angles.copy()
     for window, piece in zip(spans, pieces, strict=True):
         inner = slice(window.keep_first, window.keep_last)

@@ -81,7 +81,6 @@ class WindowProblem:
             yield from self._gauss_newton((1.0, 1.0), measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
-        """Gauss-Newton steps until convergence."""
         for i, temperature in enumerate(temperatures):
             done = begun + (ended - begun) * i / len(temperatures)
             equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])

@@ -121,7 +121,6 @@ def _taper(share: Array) -> Array:
 
 
 def _between(view: View, part: IndexArray, share: Array) -> Array:
-    """(F, N, 3) points on the parts' axes."""
     return np.asarray(view.start[:, part] + share[:, None] * (view.end - view.start)[:, part])
 
 

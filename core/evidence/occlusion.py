@@ -281,7 +281,6 @@ def _affine(columns: Array, rows: Array, right: Array, down: Array, origin: Arra
 
 
 def _between(ends: Array, share: Array) -> Array:
-    """Linear interpolation between both ends' values (R, 2), at shares (R, S)."""
     value = share * (ends[:, 1:] - ends[:, :1])
     value += ends[:, :1]
     return value

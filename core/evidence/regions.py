@@ -130,7 +130,6 @@ class RegionModel:
 
     @cached_property
     def _parts(self) -> PieceStack:
-        """The whole body, O parts."""
         return PieceStack.of(body_pieces(self.body))
 
     @cached_property
@@ -154,7 +153,6 @@ class RegionModel:
         return RegionPrediction.concatenate([self._stretch(pose[s], frame[s], jacobian) for s in stretches])
 
     def _stretch(self, pose: Pose, frame: IndexArray, jacobian: bool) -> RegionPrediction:
-        """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
         samples = sample_silhouette(self._pieces, view)
         pixels, depth = self.camera.project(samples.world, frame[:, None, None])

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import IndexArray, SingleArray
-from .robust import Floats
+from ..arrays import Array, IndexArray, SingleArray
 
 
-def cheapest_path(own: Sequence[Floats], steps: Sequence[Floats]) -> IndexArray:
+def cheapest_path(own: Sequence[Array | SingleArray], steps: Sequence[Array | SingleArray]) -> IndexArray:
     """(T,) the states of the cheapest path (Viterbi 1967).
 
     `own`: T arrays (K,) of the states' costs; `steps`: T - 1 arrays (J, K) of the steps' from each state to

@@ -29,11 +29,6 @@ def student_cost(squared: Array, degrees: float, count: int) -> Array:
     return np.asarray(0.5 * size * np.log1p(squared / size))
 
 
-def multivariate_weight(squared: Array, degrees: float, dimensions: float) -> Array:
-    """Weight of rows of a `dimensions`-variate t, (ν + d) / (ν + s), which is beyond 1 near zero."""
-    return np.asarray((degrees + dimensions) / (degrees + squared))
-
-
 def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Floats:
     """Negative logarithm of a `dimensions`-variate t of squared distances, up to a constant."""
     return 0.5 * (degrees + dimensions) * np.log1p(squared / degrees)

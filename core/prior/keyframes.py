@@ -110,7 +110,6 @@ def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> P
 
 
 def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
-    """The keyframes' postures and their frames (K,)."""
     index = np.array([keyframe.index for keyframe in keyframes], dtype=np.float64)
     return Posture.stack([keyframe.posture for keyframe in keyframes]), index
 

@@ -146,7 +146,6 @@ def spread_frames(
 
 
 def _typical_change(shape: Array, time_s: Array, duration_s: float) -> float:
-    """Mean change of the shape in a tenth of the motion [m]."""
     step = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
     step = min(step, len(shape) - 1)
     return float(np.linalg.norm(shape[step:] - shape[:-step], axis=1).mean())

@@ -107,14 +107,12 @@ def join_libraries(first: Library, second: Library, identifier: str, title: str)
 
 
 def _both_licenses(first: str, second: str) -> str:
-    """SPDX expression of a work under both licenses."""
     if first == second:
         return first
     return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
 
 
 def _fitted(library: Library, other: Library) -> Library:
-    """A library transferred to the proportions of another."""
     body = Body(other.actor)
     postures = tuple(
         replace(entry, posture=transferred(entry, library.actor, body)) for entry in library.postures

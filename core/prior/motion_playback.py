@@ -150,7 +150,6 @@ def _cycle_step(posture: Posture, time_s: Array, period_s: float) -> tuple[float
 
 
 def _mean(batches: list[Posture]) -> Posture:
-    """The mean of several batches, posture by posture."""
     mean = batches[0]
     for _ in range(2):  # for rotations this close the second step is accurate enough
         mean = mean.plus(np.mean([batch.minus(mean) for batch in batches], axis=0))

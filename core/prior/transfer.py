@@ -128,7 +128,6 @@ def _as_written(word: str, example: str) -> str:
 
 
 def _distinct(name: str) -> str:
-    """Name of a mirror image, different from the original's."""
     swapped = mirrored_name(name)
     return swapped if swapped != name else _marked(name, f" ({MIRRORED})", LONGEST_NAME)
 
@@ -147,7 +146,6 @@ def _motion(motion: LibraryMotion, name: str, names: dict[str, str]) -> LibraryM
 
 
 def _find(posture: Posture, among: Posture) -> int | None:
-    """Index of an equal posture in a batch, if any."""
     far = [
         np.abs(getattr(among, name) - getattr(posture, name)).reshape(len(among.translation), -1).max(axis=1)
         for name in ("translation", "rotations", "angles")
@@ -157,5 +155,4 @@ def _find(posture: Posture, among: Posture) -> int | None:
 
 
 def _same_steps(first: LibraryMotion, second: LibraryMotion) -> bool:
-    """Whether two motions are equal but for their names."""
     return replace(first, name="") == replace(second, name="")

@@ -132,7 +132,6 @@ def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, st
 
 
 def _ankles(body: Body) -> tuple[int, ...]:
-    """Indices of the ankles among the principal points."""
     return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
 
 
