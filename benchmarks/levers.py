@@ -87,7 +87,6 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
     "shifts along limbs": (
         (
             contour_evidence,
-            contour_search,
             "find_shifts",
             lambda *of: replace(s := find_shifts(*of), variance=s.variance + np.inf),
         ),

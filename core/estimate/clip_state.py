@@ -1,4 +1,4 @@
-"""Cutting a long clip into overlapping windows, so that memory does not grow with it."""
+"""Windows of a long clip, so that memory does not grow with it, and the unknowns of a window."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Options of the paper's filter that the paper leaves open: noise and fuzzy sets, with units."""
+"""The paper's filter, method `ekf`, with what the paper leaves open as options: noise and fuzzy sets."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields

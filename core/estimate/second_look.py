@@ -1,4 +1,4 @@
-"""Tracks as the estimate has seen them: those of the reading, and the regions found at a second look."""
+"""A second look for markers that were lost, blurred or half hidden, once it is known where they should be."""
 
 from collections.abc import Generator
 from dataclasses import dataclass, replace

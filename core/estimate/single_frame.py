@@ -1,4 +1,4 @@
-"""How far what is seen of one frame lies from where a posture has it, and what it does not explain."""
+"""One frame's posture from its regions and keypoints, and what of them the posture does not explain."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Local alternatives: a stretch of the clip solved from another start, and held against the estimate by cost.
+"""Which way round the body turns between two keyframes: alternatives, held against it by cost.
 
 Gauss-Newton ends in the optimum next to its start. Where interpolation is a guess there may be a better one.
 """

@@ -1,4 +1,4 @@
-"""Student's t, under which errors far off count for less.
+"""Student's t, under which errors far off count for less, and Levenberg-Marquardt for batches of problems.
 
 Lange, Little & Taylor (1989), *Robust statistical modeling using the t distribution*, JASA 84.
 """

@@ -1,4 +1,4 @@
-"""Directions in space."""
+"""Directions in space, and signals over time."""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d

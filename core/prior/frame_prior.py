@@ -1,4 +1,4 @@
-"""Process noise of the deviation from the prior between keyframes: its size, and the joints' correlations.
+"""How far a motion departs from the prior between keyframes, and what is believed of a single frame.
 
 Where neighboring keyframes differ much, much happens between them, and it is made of the same movements: the
 hip that swings forward bends the knee. The deviation's acceleration therefore has the size and, within each

@@ -1,4 +1,4 @@
-"""V_sum, the summed speed of the markers in the image (paper, eq. 8)."""
+"""V_sum, the summed speed of the markers in the image (paper, eq. 8), and the keyframes proposed by it."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Shape of postures, independent of location and heading, for comparing them; and heights of the ankles."""
+"""Motions over time: shapes of postures for comparing them, periods and average cycles, and playback."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Words that stand for several libraries where one is named; apart, for the command line's help is quick."""
+"""Identifiers, names and texts of libraries, checked as untrusted input."""
 
 import re
 import unicodedata
