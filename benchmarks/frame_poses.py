@@ -19,9 +19,9 @@ load_project()
 from keymark.core.arrays import Array  # noqa: E402
 from keymark.core.body.posture import Posture  # noqa: E402
 from keymark.core.errors import InputError  # noqa: E402
-from keymark.core.estimate.keyframe_evidence import uncalibrated  # noqa: E402
+from keymark.core.estimate.clip_problem import uncalibrated  # noqa: E402
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence  # noqa: E402
-from keymark.core.estimate.terms.keypoints import ObservedKeypoints  # noqa: E402
+from keymark.core.evidence.keypoints import ObservedKeypoints  # noqa: E402
 from keymark.core.evidence.regions import MarkerPlacement, RegionModel  # noqa: E402
 from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa: E402
 from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402

@@ -23,14 +23,13 @@ load_project()
 
 from keymark.core.estimate import (  # noqa: E402
     contour_evidence,
+    contour_search,
     keyframe_evidence,
     reconstruct,
     refinement,
     whole_clip,
     window_problem,
 )
-from keymark.core.estimate import contour_search as contour_schedule  # noqa: E402
-from keymark.core.estimate import refinement as motion_size  # noqa: E402
 from keymark.core.estimate.keypoint_trust import KeypointTrust  # noqa: E402
 from keymark.core.estimate.terms import regions  # noqa: E402
 from keymark.core.estimate.terms.contact import StillnessTerm  # noqa: E402
@@ -42,8 +41,7 @@ from keymark.core.progress import run  # noqa: E402
 from keymark.core.take.evidence import CONTOURS, KEYPOINTS, MARKERS, with_evidence  # noqa: E402
 from keymark.core.take.read_footage import read_footage  # noqa: E402
 
-Switch = tuple[Any, str, Any]
-"""A module, a name in it, and what stands in for that."""
+Switch = tuple[Any, str, Any]  # a module, a name in it, and what stands in for that
 EVIDENCE = {"markers": (MARKERS, CONTOURS), "keypoints": (KEYPOINTS, CONTOURS), "contours": (CONTOURS,)}
 ALL = "all of it"
 
@@ -85,7 +83,7 @@ no_variance: Callable[..., Any] = lambda area, *_: np.zeros((*area.shape, region
 OFF: Mapping[str, tuple[Switch, ...]] = {
     ALL: (),
     "contours": ((reconstruct, "estimate_whole_clip", without_album),),
-    "nine looks: five": ((contour_schedule, "LOOKS", 5),),
+    "nine looks: five": ((contour_search, "LOOKS", 5),),
     "shifts along limbs": (
         (
             contour_evidence,
@@ -113,8 +111,8 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
     "markers found again": ((refinement, "find_lost", job(lambda problem, *_: problem)),),
     "turns": ((refinement, "choose_turns", job(lambda problem, states, _: (problem, states))),),
     "sizes of motion": ((refinement, "adapted", job(lambda problem, _, states, *__: (problem, states))),),
-    "sizes of limbs": ((motion_size, "limb_sizes", lambda problem, *_: problem.limb_size),),
-    "sizes of depth": ((motion_size, "_depth_factor", lambda *of: of[-1]),),
+    "sizes of limbs": ((refinement, "limb_sizes", lambda problem, *_: problem.limb_size),),
+    "sizes of depth": ((refinement, "_depth_factor", lambda *of: of[-1]),),
     "feet at rest": without(StillnessTerm),
     "joint limits": without(LimitTerm),
     "annealing": ((window_problem, "TEMPERATURES", (1.0,) * len(window_problem.TEMPERATURES)),),
@@ -122,8 +120,7 @@ OFF: Mapping[str, tuple[Switch, ...]] = {
     "trust of keypoints": ((whole_clip, "keypoint_trust", trusting),),
     "swaps of keypoints": ((whole_clip, "find_swaps", lambda points, *_: np.zeros(points.seen.shape, bool)),),
     "doubt at swaps": ((whole_clip, "doubted_at_changes", lambda points, *_: points),),
-}
-"""What is replaced to have a lever off."""
+}  # what is replaced to have a lever off
 
 
 def measured(trial: Trial, evidence: str, lever: str) -> tuple[float, float]:

@@ -9,6 +9,7 @@ sideways, they do.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,13 +21,20 @@ from ..body.human import HUMAN
 from ..body.kinematics import Body, Pose
 from ..body.posture import Posture, facing_rad
 from ..body.skeleton import SIDES
-from ..evidence.keypoints import USUAL_PLACES, KeypointModel
-from ..evidence.regions import MarkerPlacement, RegionModel
+from ..evidence.keypoints import LEAST_CONFIDENCE, PIXEL_STD, USUAL_PLACES, KeypointModel, ObservedKeypoints
+from ..evidence.regions import (
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    feature_rows,
+    limb_widths,
+)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
-from ..numerics.robust import student_cost, student_weight
-from .keyframe_rows import (
+from ..numerics.robust import DEGREES, student_cost, student_weight
+from .keyframe_evidence import (
     LARGEST,
     PRIOR_STD,
     SMALLEST,
@@ -36,17 +44,11 @@ from .keyframe_rows import (
     placements_from,
 )
 from .performer_placement import ground_place
-from .single_frame import MISPLACED_M, MISPLACED_PX, MISPLACED_WIDTHS, SURE
-from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
-from .terms.regions import ObservedRegions, RegionNoise, feature_rows, limb_widths
-from .terms.term import DEGREES
+from .single_frame import MISPLACED
 
 MEASURED = ("upper_arm", "forearm", "thigh", "shin", "shoulder_width", "hip_width", "trunk", "neck_head")
 """Lengths that are measured, left and right alike; hands and feet follow from the height."""
-PROPORTION_STD = 0.045
-"""Spread of the logarithm of a person's proportions about the average (Gordon et al. 2014)."""
-HEIGHT_STD = 0.005
-"""Share within which the lengths add up to the height during the descent; the result does so exactly."""
+PROPORTION_STD = 0.045  # of the logarithm of a person's proportions about the average (Gordon et al. 2014)
 LENGTH_DIFFERENCE = 1e-3
 # Standard deviation of a standing person from the standing posture [m, rad]; arms may be anywhere.
 STANDING_STD = {
@@ -63,15 +65,10 @@ STANDING_STD = {
     "knee": 0.10,
     "shin": 0.05,
 }
-STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}
-"""The same for arms that are held out sideways as well as one can."""
+STRETCHED_STD = {"shoulder": 0.10, "elbow": 0.10}  # arms held out sideways as well as one can
 UPRIGHT_PARTS = ("pelvis", "waist", "hip", "knee")
-MOST_DEVIATIONS = 3.0
-"""Largest deviation of trunk or legs, in standard deviations, of someone who stands."""
-ARMS_RAISED_RAD = (0.0, 0.65, 1.3)
-"""Starts of the descent: arms hanging, half raised and stretched out."""
+ARMS_RAISED_RAD = (0.0, 0.65, 1.3)  # starts of the descent: arms hanging, half raised and stretched out
 TEMPERATURES = (64.0, 16.0, 4.0, 2.0, *(1.0 for _ in range(8)))
-LARGEST_STEP = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,14 +76,10 @@ class MeasuredActor:
     """Lengths and place of a performer, measured from one frame."""
 
     body: Body
-    posture: Posture
-    """A single posture: how the performer stands in that frame."""
-    spread: dict[str, float]
-    """Standard deviation of each of the lengths `MEASURED`, as a share of it."""
-    stands: bool
-    """Whether markers and keypoints fit someone who stands."""
-    distance_m: float
-    """From the camera to the ground between the feet [m]."""
+    posture: Posture  # a single posture: how the performer stands in that frame
+    spread: dict[str, float]  # standard deviation of each of the lengths `MEASURED`, as a share of it
+    stands: bool  # whether markers and keypoints fit someone who stands
+    distance_m: float  # from the camera to the ground between the feet [m]
 
 
 def measure_standing(
@@ -102,16 +95,9 @@ def measure_standing(
 ) -> MeasuredActor:
     """Measure the lengths and the place of a performer who stands.
 
-    Args:
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        stature_m: Body height [m].
-        crown_px: (2,) top of the head in the picture [px].
-        ground_px: (2,) the ground between the feet [px].
-        regions: The markers' regions in this frame, as tracks of one frame; None for none.
-        segments: The segment each marker is bound to.
-        arms_stretched: Whether the performer holds the arms out sideways, across the view.
-        keypoints: Those of this frame alone; without them and regions the lengths are average ones.
+    `crown_px` and `ground_px` (2,) are the top of the head and the ground between the feet [px], `regions`
+    and `keypoints` those of this frame alone; without both the lengths are average ones. `arms_stretched`:
+    the arms are held out sideways, across the view.
 
     Raises:
         InputError: The height is out of range, or the two points cannot be a person's.
@@ -133,6 +119,7 @@ def measure_standing(
         average,
         stature_m,
         place,
+        distance_m,
         heading,
         ObservedRegions.from_tracks(regions),
         segments,
@@ -149,7 +136,7 @@ class _Problem:
     """The estimation problem.
 
     Its unknowns x are a tangent step from the standing posture (D) [m, rad], the logarithms of the measured
-    lengths relative to average ones (L), and the markers' placements relative to average ones (M * P).
+    lengths relative to average ones, and the markers' placements relative to average ones (M * P).
     """
 
     camera: Camera
@@ -157,28 +144,26 @@ class _Problem:
     average: Actor
     height_m: float
     place: Array
+    distance_m: float
     heading: float
     observed: ObservedRegions
     segments: tuple[str, ...]
     points: ObservedKeypoints
-    point_names: tuple[str, ...]
-    """(N,) the body points that the keypoints show."""
+    point_names: tuple[str, ...]  # (N,) the body points that the keypoints show
     arms_stretched: bool
 
-    @property
+    @cached_property
     def std(self) -> Array:
-        """(N,) prior standard deviation of each unknown."""
-        steps = []
+        """(X,) prior standard deviation of each unknown."""
         believed = {**STANDING_STD, **(STRETCHED_STD if self.arms_stretched else {})}
-        for name in HUMAN.dof_names:
-            joint = name.split(".")[0]
-            group = f"{joint}.location" if ".location" in name else joint
-            steps.append(believed.get(name, believed[group]))
+        groups = ["pelvis.location" if "location" in name else name.split(".")[0] for name in HUMAN.dof_names]
+        steps = [
+            believed.get(name, believed[group]) for name, group in zip(HUMAN.dof_names, groups, strict=True)
+        ]
         markers = np.tile(PRIOR_STD, len(self.segments))
         return np.concatenate([steps, np.full(len(MEASURED), PROPORTION_STD), markers])
 
     def body(self, x: Array) -> Body:
-        """The body with the lengths of x."""
         lengths = dict(self.average.segments_m)
         logarithms = x[HUMAN.dof_count : HUMAN.dof_count + len(MEASURED)]
         for name, logarithm in zip(MEASURED, logarithms, strict=True):
@@ -188,16 +173,13 @@ class _Problem:
         return Body(Actor(lengths))
 
     def posture(self, x: Array, body: Body) -> Posture:
-        """A batch of one."""
         return Posture.stack([self.standing(body).plus(x[: HUMAN.dof_count])])
 
     def standing(self, body: Body) -> Posture:
-        """The posture that the unknown step starts from, a single one."""
         lowered = 0.0 if self.arms_stretched else ARMS_LOWERED_RAD
         return standing_posture(body, self.place, self.heading, lowered)
 
     def model(self, x: Array) -> RegionModel:
-        """The markers on that body."""
         average = tuple(MarkerPlacement.usual(segment) for segment in self.segments)
         if not average:
             return RegionModel(self.body(x), self.camera, ())
@@ -206,7 +188,6 @@ class _Problem:
         return RegionModel(self.body(x), self.camera, placements_from(average, values))
 
     def keypoint_model(self, x: Array) -> KeypointModel:
-        """The keypoints on that body, at their usual places."""
         return KeypointModel.usual(self.body(x), self.camera, self.point_names)
 
     def descend(self, raised_rad: float) -> Array:
@@ -218,20 +199,18 @@ class _Problem:
         for temperature in TEMPERATURES:
             normal, gradient = self._equations(x, temperature)
             step = -np.linalg.solve(normal, gradient)
-            x = x + step * min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
+            x = x + step * min(1.0, 0.4 / max(float(np.abs(step).max()), 1e-12))
         return x
 
     def cost(self, x: Array) -> float:
-        """Negative logarithm of the probability of x, up to a constant."""
-        rows = self._rows(x)
+        groups, height = self._rows(x)
         image = 0.0
-        for residual, information in rows.groups:
+        for residual, information in groups:
             squared = (residual**2 * information).sum(-1)
             image += student_cost(squared, DEGREES, residual.shape[-1]).sum()
-        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * rows.height**2)
+        return float(image + 0.5 * ((x / self.std) ** 2).sum() + 0.5 * height**2)
 
     def measured(self, x: Array) -> MeasuredActor:
-        """The result at the best x."""
         normal, _ = self._equations(x, 1.0)
         found = slice(HUMAN.dof_count, HUMAN.dof_count + len(MEASURED))
         shares = np.sqrt(np.diag(np.linalg.inv(normal)[found, found]))
@@ -239,21 +218,20 @@ class _Problem:
         exact = self.height_m / standing_height_m(body)
         body = Body(Actor({name: exact * length for name, length in body.actor.segments_m.items()}))
         spread = dict(zip(MEASURED, map(float, shares), strict=True))
-        distance_m = float(np.linalg.norm(self.place - self.camera.pose(int(self.frame[0]))[1]))
-        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), distance_m)
+        return MeasuredActor(body, self.posture(x, body)[0], spread, self._stands(x), self.distance_m)
 
     def _stands(self, x: Array) -> bool:
         model = self.model(x)
         predicted = model.evaluate(self._pose(x, model.body), self.frame)
         apart = np.linalg.norm(predicted.centroid - self.observed.centroid, axis=-1)
         width = limb_widths(model, self.posture(x, model.body).translation, self.frame)
-        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX)
+        explained = np.nan_to_num(apart) <= np.maximum(MISPLACED.widths * width, MISPLACED.px)
         misfits = np.nan_to_num(np.linalg.norm(self._off_px(x)[0], axis=-1))
-        near = misfits <= np.maximum(MISPLACED_M * self._scale, MISPLACED_PX)
-        sure = self.points.confidence[0] >= SURE
+        near = misfits <= np.maximum(MISPLACED.m * self._scale, MISPLACED.px)
+        sure = self.points.confidence[0] >= MISPLACED.sure
         upright = [name.split(".")[0] in UPRIGHT_PARTS for name in HUMAN.dof_names]
         deviations = np.abs(x / self.std)[: HUMAN.dof_count][np.array(upright)]
-        return bool(explained.all() and near[sure].all() and deviations.max() <= MOST_DEVIATIONS)
+        return bool(explained.all() and near[sure].all() and deviations.max() <= 3.0)
 
     def _off_px(self, x: Array) -> tuple[Array, Array]:
         """Differences (N, 2) of predicted and seen keypoints [px], and their variances (N,) [px²]."""
@@ -266,14 +244,14 @@ class _Problem:
 
     @property
     def _scale(self) -> float:
-        """Pixels of a meter at the performer."""
         depth = float(self.camera.depth(self.place, int(self.frame[0])))
         return self.camera.focal_px / max(depth, 0.1)
 
     def _pose(self, x: Array, body: Body) -> Pose:
         return body.pose(self.posture(x, body))
 
-    def _rows(self, x: Array) -> "_Rows":
+    def _rows(self, x: Array) -> tuple[list[tuple[Array, Array]], float]:
+        """Residuals [px] and information of regions (M, 5) and keypoints (N, 2), and the height's."""
         model = self.model(x)
         pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame)
@@ -283,23 +261,19 @@ class _Problem:
         variance = noise.pixel_std_px**2 + noise.surface_std(width) ** 2
         usable = np.isfinite(residual).all(-1) & (predicted.visible > noise.least_visible)
         trust = np.where(usable, np.clip(self.observed.quality * predicted.visible, 1e-3, 1.0), 0.0)
-        height = np.log(standing_height_m(model.body) / self.height_m) / HEIGHT_STD
+        height = np.log(standing_height_m(model.body) / self.height_m) / 0.005
         off, spread = self._off_px(x)
         seen = np.isfinite(off).all(axis=-1)
-        return _Rows(
-            np.nan_to_num(residual[0]),
-            (trust[..., None] / variance)[0],
-            np.nan_to_num(off),
-            np.where(seen, 1.0 / spread, 0.0)[:, None],
-            float(height),
-        )
+        by_region = np.nan_to_num(residual[0]), (trust[..., None] / variance)[0]
+        by_point = np.nan_to_num(off), np.where(seen, 1.0 / spread, 0.0)[:, None]
+        return [by_region, by_point], float(height)
 
     def _equations(self, x: Array, temperature: float) -> tuple[Array, Array]:
         """Normal matrix (N, N) and gradient (N,)."""
-        rows = self._rows(x)
-        *by_x, height_by_x = self._jacobians(x, rows)
+        groups, height = self._rows(x)
+        *by_x, height_by_x = self._jacobians(x, groups, height)
         normal, gradient = np.zeros((len(x), len(x))), np.zeros(len(x))
-        for (residual, information), jacobian in zip(rows.groups, by_x, strict=True):
+        for (residual, information), jacobian in zip(groups, by_x, strict=True):
             squared = (residual**2 * information / temperature).sum(-1)
             trust = student_weight(squared, DEGREES, residual.shape[-1])[:, None]
             weight = np.broadcast_to(information / temperature * trust, residual.shape)
@@ -308,16 +282,18 @@ class _Problem:
             gradient += flat.T @ (weight * residual).ravel()
         normal += np.diag(self.std**-2.0)
         normal += np.outer(height_by_x, height_by_x)
-        return normal, gradient + x / self.std**2 + height_by_x * rows.height
+        return normal, gradient + x / self.std**2 + height_by_x * height
 
-    def _jacobians(self, x: Array, rows: "_Rows") -> tuple[Array, Array, Array]:
+    def _jacobians(
+        self, x: Array, groups: list[tuple[Array, Array]], height: float
+    ) -> tuple[Array, Array, Array]:
         """Jacobians of the regions' rows (M, 5, X), the keypoints' (N, 2, X) and the height (X,)."""
         model, points = self.model(x), self.keypoint_model(x)
         pose = self._pose(x, model.body)
         predicted = model.evaluate(pose, self.frame, jacobian=True)
         _, jacobian = feature_rows(self.observed, predicted)
         assert jacobian is not None
-        by_region, by_point = (np.zeros((*residual.shape, len(x))) for residual, _ in rows.groups)
+        by_region, by_point = (np.zeros((*residual.shape, len(x))) for residual, _ in groups)
         by_height = np.zeros(len(x))
         dofs = HUMAN.dof_count
         turned = self.standing(model.body).plus_jacobian(x[:dofs])
@@ -327,10 +303,10 @@ class _Problem:
         for column in range(dofs, dofs + len(MEASURED)):
             nudged = x.copy()
             nudged[column] += LENGTH_DIFFERENCE
-            other = self._rows(nudged)
-            by_region[..., column] = (other.region - rows.region) / LENGTH_DIFFERENCE
-            by_point[..., column] = (other.point - rows.point) / LENGTH_DIFFERENCE
-            by_height[column] = (other.height - rows.height) / LENGTH_DIFFERENCE
+            others, other_height = self._rows(nudged)
+            for by, (own, _), (other, _) in zip((by_region, by_point), groups, others, strict=True):
+                by[..., column] = (other - own) / LENGTH_DIFFERENCE
+            by_height[column] = (other_height - height) / LENGTH_DIFFERENCE
         if self.segments:
             known = KnownFrames(pose, self.frame, self.observed)
             by_place = placement_jacobian(model.body, self.camera, known, model)[0]  # (M, 5, P)
@@ -338,24 +314,3 @@ class _Problem:
                 first = dofs + len(MEASURED) + marker * by_place.shape[-1]
                 by_region[marker, :, first : first + by_place.shape[-1]] = by_place[marker]
         return np.nan_to_num(by_region), np.nan_to_num(by_point), by_height
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Residuals, and the information of each."""
-
-    region: Array
-    """(M, 5) of the markers' regions [px]."""
-    region_information: Array
-    """(M, 5) [1/px²]."""
-    point: Array
-    """(N, 2) of the keypoints [px]."""
-    point_information: Array
-    """(N, 1) [1/px²]."""
-    height: float
-    """Of the body height, in standard deviations."""
-
-    @property
-    def groups(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """Residuals and information of regions and keypoints."""
-        return (self.region, self.region_information), (self.point, self.point_information)

@@ -19,32 +19,20 @@ from ..footage.surface_colors import BAND_LEVELS as LEVELS
 from ..footage.surface_colors import BANDS, BandColors, band_cells, learn_band_colors
 from .contour_search import LARGEST_LOG_RATIO, SearchRange
 
-LINES = np.array([-0.4, 0.0, 0.4])
-"""Lines along a part on which pixels are looked at, in half-widths from its axis."""
-STEP_PX = 2.0
-"""Distance of the pixels that are looked at, along the axis."""
-FINE_REACH = 8
-"""Shifts up to this reach are tried pixel by pixel, in wider searches every other one [px]."""
-CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))
-"""Logarithm of the levels³ in a cell: the background's densities are those per level³."""
-SHORTEST_PX = 8.0
-"""Least length of a part in the pictures; shorter ones are seen end on."""
+STEP_PX = 2.0  # distance of the pixels that are looked at, along the axis
+CELL_LOG_VOLUME = float(np.log((256 / LEVELS) ** 3))  # levels³ in a cell: background densities are per level³
+SHORTEST_PX = 8.0  # least length of a part in the pictures; shorter ones are seen end on
 
 
 @dataclass(frozen=True, eq=False)
 class Shifts:
     """Shifts of O parts along their axes in F frames."""
 
-    share: Array
-    """(F, O) the point of a part's length that the colors say most of."""
-    distance: Array
-    """(F, O) along the axis, toward its end [px]; zero where nothing was found."""
-    variance: Array
-    """(F, O) [px²], infinite where nothing was found."""
-    direction: Array
-    """(F, O, 2) unit direction of the axis in the image."""
-    scale: Array
-    """(F, O) pixels of a meter."""
+    share: Array  # (F, O) the point of a part's length that the colors say most of
+    distance: Array  # (F, O) along the axis, toward its end [px]; zero where nothing was found
+    variance: Array  # (F, O) [px²], infinite where nothing was found
+    direction: Array  # (F, O, 2) unit direction of the axis in the image
+    scale: Array  # (F, O) pixels of a meter
 
 
 def learn_along(
@@ -83,15 +71,7 @@ def find_shifts(
 ) -> Shifts:
     """Search for the shifts of all parts near predicted postures.
 
-    Args:
-        model: The contours' model.
-        pose: Forward kinematics of the F predicted postures.
-        frame: (F,) their indices in the clip.
-        pictures: (F, rows, columns, 3) small pictures of the frames.
-        factor: Pixels of the camera to one of the pictures.
-        appearance: The look of the background in them.
-        colors: The colors along each part.
-        search: How far from the prediction shifts are looked for.
+    `pictures` (F, rows, columns, 3) are small ones, `factor` pixels of the camera to one of theirs.
     """
     outlines = model.part_outlines(pose, frame)
     size = pictures.shape[2], pictures.shape[1]
@@ -108,7 +88,7 @@ def find_shifts(
     )
     samples = len(model.part_of) // shape[1]
     joined = np.concatenate([model.adjoining[::samples], np.ones((shape[1], 1), dtype=np.bool_)], axis=1)
-    step = 1.0 if search.reach <= FINE_REACH else 2.0
+    step = 1.0 if search.reach <= 8 else 2.0
     offset = step * np.arange(-(search.reach // step), search.reach // step + 1.0)
     for part in range(shape[1]):
         use = np.flatnonzero(lines.length[:, part] >= SHORTEST_PX)
@@ -188,8 +168,6 @@ def _logs(
 
 @dataclass(frozen=True, eq=False)
 class _Lines:
-    """Axes in the pictures."""
-
     start: Array
     direction: Array
     length: Array
@@ -209,7 +187,8 @@ class _Lines:
         direction, length = self.direction[use, part], self.length[use, part]
         across = np.stack([-direction[:, 1], direction[:, 0]], axis=-1)
         run = np.arange(-reach, length.max() + reach, STEP_PX)
-        aside = LINES[:, None] * (self.half_width[use, part, None, None] * across[:, None])  # (U, lines, 2)
+        lines = np.array([-0.4, 0.0, 0.4])[:, None]  # in half-widths from the axis
+        aside = lines * (self.half_width[use, part, None, None] * across[:, None])  # (U, lines, 2)
         place = self.start[use, part][:, None] + run[:, None] * direction[:, None]
         column, row = np.moveaxis(np.floor(place[:, :, None] + aside[:, None]).astype(np.intp), -1, 0)
         inside = (column >= 0) & (column < size[0]) & (row >= 0) & (row < size[1])

@@ -15,8 +15,7 @@ from scipy.linalg.lapack import dtrtri
 
 from ..arrays import Array
 
-REACH = 2
-"""A frame is coupled to at most this many frames after it."""
+REACH = 2  # a frame is coupled to at most this many frames after it
 
 
 class BlockBanded:
@@ -29,8 +28,7 @@ class BlockBanded:
     def __init__(self, frames: int, size: int) -> None:
         """An all-zero matrix of `frames` blocks of `size` rows."""
         self.frames, self.size = frames, size
-        self.diagonal = np.zeros((frames, size, size))
-        """Each frame's own block."""
+        self.diagonal = np.zeros((frames, size, size))  # each frame's own block
         self.next = np.zeros((max(frames - 1, 0), size, size))
         """Block t couples frame t (rows) to frame t + 1 (columns)."""
         self.after_next = np.zeros((max(frames - REACH, 0), size))
@@ -45,9 +43,8 @@ class BlockBanded:
     def add_rows(self, jacobians: tuple[Array, ...]) -> None:
         """Add JᵀJ of whitened rows that touch one frame or two consecutive ones.
 
-        Args:
-            jacobians: One (R, m, n) array for each frame a row touches, n ≤ size (the leading unknowns of a
-                frame); row r touches frames r and r + 1.
+        One (R, m, n) array for each frame a row touches, about its leading n unknowns; row r touches frames r
+        and r + 1.
         """
         rows, n = len(jacobians[0]), jacobians[0].shape[-1]
         turned = [np.swapaxes(jacobian, -1, -2) for jacobian in jacobians]
@@ -61,10 +58,8 @@ class BlockBanded:
     ) -> None:
         """Add independent rows, each a combination of one unknown over consecutive frames: Σ_k c_k x[t + k].
 
-        Args:
-            columns: The n unknowns, one row for each in every frame.
-            coefficients: c_k for the K + 1 frames of a row, at most three, each a number or (R, 1) or (R, n).
-            information: Inverse variance of the rows, broadcastable to (R, n), R = F - K.
+        `coefficients`: c_k of at most three frames, each a number or (R, 1) or (R, n) for n columns;
+        `information`: inverse variance, broadcastable to (R, n), R = F - K.
         """
         index = np.arange(self.size)[columns]
         rows = self.frames - len(coefficients) + 1
@@ -110,8 +105,7 @@ class Factor:
 
     frames: int
     size: int
-    lower: Array
-    """(2 size + 1, frames * size) the lower factor by diagonals, as LAPACK keeps it."""
+    lower: Array  # (2 size + 1, frames * size) the lower factor by diagonals, as LAPACK keeps it
 
     def solve(self, vector: Array) -> Array:
         """The solution (F, size) for a right-hand side (F, size)."""

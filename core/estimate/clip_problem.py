@@ -7,14 +7,41 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise
 from ..footage.camera import Camera
 from ..footage.ignored_regions import IgnoredPixels
 from ..footage.keypoints.keypoints import Keypoints
 from ..prior.keyframes import with_turns
 from .clip_state import ClipState, Window
-from .keyframe_evidence import KeyframeEvidence
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise
+from .keypoint_evidence import KeypointEvidence
+
+
+@dataclass(frozen=True, eq=False)
+class KeyframeEvidence:
+    """The calibrated model and the trust that keyframes and markers deserve."""
+
+    model: RegionModel  # with the placements and the lens found
+    posing_scale: float  # size of the posing error relative to a person's usual one
+    timing_frames: float  # standard deviation of the keyframes' timing error [frames]
+    distrust: Array  # (M,) factor, at least one, of the expected standard deviation of each marker's regions
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
+    information: Array  # (K, D, D) inverse covariance of each keyframe's posing error
+    keypoints: KeypointEvidence  # the calibrated model of keypoints, none where there are none
+
+
+def uncalibrated(model: RegionModel) -> KeyframeEvidence:
+    """Evidence before any keyframe is posed: average placements, full trust in all markers."""
+    markers, dofs = len(model.placements), model.body.skeleton.dof_count
+    return KeyframeEvidence(
+        model,
+        1.0,
+        0.0,
+        np.ones(markers),
+        np.ones(markers),
+        np.zeros((0, dofs, dofs)),
+        KeypointEvidence.usual(model.body, model.camera, (), ()),
+    )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -23,52 +50,33 @@ class ClipProblem:
 
     # What it is about.
     body: Body
-    camera: Camera
-    """As stated; the evidence has the calibrated lens."""
+    camera: Camera  # as stated; the evidence has the calibrated lens
     noise: RegionNoise
 
     # What the keyframes say.
-    keyframes: IndexArray
-    """(K,) their frames."""
-    matched: BoolArray
-    """(K,) which of them are matched."""
+    keyframes: IndexArray  # (K,) their frames
+    matched: BoolArray  # (K,) which of them are matched
     evidence: KeyframeEvidence
-    factor: Array
-    """(D, D) of the deviation's accelerations."""
-    interpolated: Posture
-    """F postures: the keyframes interpolated, which turns the short way round."""
-    depth_std_m: Array
-    """(F,) noise of the prior's depths [m]."""
-    ankle_height_m: Array | None
-    """(F,) usual height of the lower ankle [m]; None where no floor is known."""
+    factor: Array  # (D, D) of the deviation's accelerations
+    interpolated: Posture  # F postures: the keyframes interpolated, which turns the short way round
+    depth_std_m: Array  # (F,) noise of the prior's depths [m]
+    ankle_height_m: Array | None  # (F,) usual height of the lower ankle [m]; None where no floor is known
 
     # What the footage has taught.
-    prior: Posture
-    """The interpolated postures with the turns."""
-    turns: IndexArray
-    """(K - 1,) whole turns about the vertical that the prior adds in each gap; see `prior/turns`."""
-    limb_size: Array
-    """(D,) factor on the accelerations of each degree of freedom's limb."""
-    depth_factor: Array
-    """(F, P) factor on the noise of the prior's depths, by how far the prior misses each point."""
-    observed: ObservedRegions
-    """The markers' regions: as tracked, and those found at a second look."""
+    prior: Posture  # the interpolated postures with the turns
+    turns: IndexArray  # (K - 1,) whole turns about the vertical that the prior adds in each gap
+    limb_size: Array  # (D,) factor on the accelerations of each degree of freedom's limb
+    depth_factor: Array  # (F, P) on the noise of the prior's depths, by how far the prior misses each point
+    observed: ObservedRegions  # the markers' regions: as tracked, and those found at a second look
 
     # What was seen.
-    tracked: ObservedRegions
-    """The markers' regions as tracked."""
-    width_px: Array
-    """(F, M) half-width of each marker's limb [px]."""
-    ignored: IgnoredPixels | None
-    """What is never a marker, in all frames; None for nothing."""
-    keypoints: Keypoints
-    """Of the performer, N of them; left and right exchanged back where they were swapped."""
-    points: ObservedKeypoints
-    """The same, as they are compared."""
-    swapped: BoolArray
-    """(F, N) which of them were exchanged."""
-    step_s: Array
-    """(F - 1,) time between frames [s]."""
+    tracked: ObservedRegions  # the markers' regions as tracked
+    width_px: Array  # (F, M) half-width of each marker's limb [px]
+    ignored: IgnoredPixels | None  # what is never a marker, in all frames; None for nothing
+    keypoints: Keypoints  # of the performer, N of them; left and right exchanged back where they were swapped
+    points: ObservedKeypoints  # the same, as they are compared
+    swapped: BoolArray  # (F, N) which of them were exchanged
+    step_s: Array  # (F - 1,) time between frames [s]
 
     @property
     def accelerations(self) -> Array:

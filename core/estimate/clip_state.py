@@ -1,4 +1,4 @@
-"""Cutting a long clip into overlapping windows, so that memory does not grow with it."""
+"""Windows of a long clip, so that memory does not grow with it, and the unknowns of a window."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -16,11 +16,9 @@ class Window:
     """A range of frames that is solved, and the part of it whose result is kept."""
 
     first: int
-    last: int
-    """One past the last frame solved."""
+    last: int  # one past the last frame solved
     keep_first: int
-    keep_last: int
-    """One past the last frame kept."""
+    keep_last: int  # one past the last frame kept
 
     @property
     def frames(self) -> slice:
@@ -36,18 +34,12 @@ class Window:
 def windows(frames: int, length: int, margin: int) -> Iterator[Window]:
     """Windows whose kept parts follow each other without a gap.
 
-    Args:
-        frames: Frames of the clip.
-        length: Frames kept of a window; a clip up to 1.5 times as long stays whole.
-        margin: Frames solved beyond the kept ones on either side, where the clip has them.
+    A clip up to 1.5 times `length` stays whole; `margin` frames on either side are solved but not kept.
     """
     count = max(1, round(frames / length))
     edges = [frames * i // count for i in range(count + 1)]
     for start, stop in zip(edges[:-1], edges[1:], strict=True):
         yield Window(max(start - margin, 0), min(stop + margin, frames), start, stop)
-
-
-# --- The unknowns of a whole clip
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +52,11 @@ class ClipState:
     """
 
     body: Body
-    prior: Posture
-    """A batch of F postures."""
-    frame: IndexArray
-    """(F,) their indices in the clip, which a moving camera's pose depends on."""
-    factor: Array
-    """(D, D) the matrix L [m, rad]."""
-    variation: Array
-    """(F, D) the unknowns z."""
-    bias: Array
-    """(F, B) [px]."""
+    prior: Posture  # a batch of F postures
+    frame: IndexArray  # (F,) their indices in the clip, which a moving camera's pose depends on
+    factor: Array  # (D, D) the matrix L [m, rad]
+    variation: Array  # (F, D) the unknowns z
+    bias: Array  # (F, B) [px]
 
     @property
     def frames(self) -> int:
@@ -118,9 +105,7 @@ class ClipState:
     def stepped(self, step: Array, largest: float) -> tuple["ClipState", float]:
         """The state a step (F, N) away, and the largest change of its postures.
 
-        Args:
-            step: Step of all unknowns.
-            largest: Largest change of a deviation's component; a frame's step is shortened to it.
+        A frame's step is shortened so that no component of its deviation changes by more than `largest`.
         """
         count = self.variation.shape[1]
         moved = np.abs(step[:, :count] @ self.factor.T).max(axis=1)
@@ -128,3 +113,11 @@ class ClipState:
         variation = self.variation + step[:, :count] * shrink[:, None]
         bias = self.bias + step[:, count:]
         return replace(self, variation=variation, bias=bias), float((moved * shrink).max())
+
+
+def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
+    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
+    if len(frame) <= most:
+        return np.arange(len(frame))
+    wanted = np.linspace(frame[0], frame[-1], most)
+    return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))

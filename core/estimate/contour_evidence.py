@@ -18,66 +18,54 @@ from ..footage.appearance import Appearance, learn_appearance
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.surface_colors import BandColors
-from ..numerics.robust import student_weight
+from ..numerics.robust import DEGREES, student_weight
 from .axial_search import find_shifts, learn_along
+from .clip_state import evenly_spread
 from .contour_search import BY_MARKERS, NARROW, Edges, Schedule, SearchRange, find_edges
-from .keyframe_evidence import evenly_spread
 from .keyframe_rows import UNUSED, EvidenceRows
 from .terms.contours import PIXEL_STD, SURFACE_SHARE, AxialTerm, ContourTerm
-from .terms.term import DEGREES
 
-APPEARANCE_FRAMES = 32
 CHUNK_FRAMES = 50
-MOST_KEYFRAMES = 60
-"""Largest number of keyframes that shapes are fitted to, evenly spread in time."""
-SHAPE_ROUNDS = 3
-SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])
-"""Standard deviation of a performer's parts from average ones: thickness at both ends, and place."""
-EDGE_STD_M = 0.012
-FEWEST_EDGES = 20
-AXIAL_STD_PX = 2.0
-AXIAL_STD_M = 0.03
-"""Standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm."""
-AXIAL_MEMORY_S = 0.3
-"""Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
-toward or away from the camera."""
-LEAST_FRAME_SHARE = 0.1
-"""Least share of frames with a picture."""
+SHAPE_STD_M = np.array([0.010, 0.010, 0.008, 0.008])  # of a performer's parts: thickness at both ends, place
+
+
+@dataclass(frozen=True)
+class ContourOptions:
+    """Errors of edges and of colors along limbs."""
+
+    edge_std_m: float = 0.012
+    # Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors.
+    keyframe_edge_std_m: float = 0.003
+    fewest_edges: int = 20
+    axial_std_px: float = 2.0
+    axial_std_m: float = 0.03  # standard deviation of a part's colors along its axis: cuffs slip by 2 to 3 cm
+    # Time in which such an error fades to a third. Believed as if each frame erred anew, it would turn limbs
+    # toward or away from the camera.
+    axial_memory_s: float = 0.3
+
+
+CONTOURS = ContourOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class ContourEvidence:
     """Appearance and shapes by which contours are measured in any of a clip's frames."""
 
-    album: Album
-    """Pictures of the frames."""
-    appearance: Appearance
-    """The look of performer and background."""
-    model: ContourModel
-    """The contours of the performer's own parts."""
-    schedule: Schedule = BY_MARKERS
-    """How far from the contours edges are looked for."""
-    along: BandColors | None = None
-    """The colors along each part, for shifts along their axes; None where markers tell these."""
+    album: Album  # pictures of the frames
+    appearance: Appearance  # the look of performer and background
+    model: ContourModel  # the contours of the performer's own parts
+    schedule: Schedule = BY_MARKERS  # how far from the contours edges are looked for
+    along: BandColors | None = None  # colors along each part, for shifts; None where markers tell these
 
     def measure(
         self, posture: Posture, frame: IndexArray, search: SearchRange = NARROW
     ) -> Generator[float, None, ContourTerm]:
-        """Measure the edges near the contours of F postures; yields the fraction done.
-
-        Args:
-            posture: The F postures.
-            frame: (F,) their indices in the clip.
-            search: How far from the contours.
-        """
+        """Measure the edges near the contours of F postures; yields the fraction done."""
         model, album = self.model, self.album
         edge = np.full((len(frame), len(model.part_of), 2), np.nan)
         normal, variance = np.zeros_like(edge), np.ones(edge.shape[:2])
         for chunk in chunks(np.arange(len(frame)), CHUNK_FRAMES):
-            pictures = album.pictures(frame[chunk])
-            predicted, edges = _measure(
-                model, album, self.appearance, posture[chunk], frame[chunk], pictures, search
-            )
+            predicted, edges = self.near(posture[chunk], frame[chunk], search)
             found = np.isfinite(edges.variance)
             place = predicted.pixel + edges.distance[..., None] * predicted.normal
             edge[chunk] = np.where(found[..., None], place, np.nan)
@@ -87,11 +75,20 @@ class ContourEvidence:
         return ContourTerm(model, edge, normal, variance)
 
     def near(
-        self, posture: Posture, frame: IndexArray, search: SearchRange
+        self,
+        posture: Posture,
+        frame: IndexArray,
+        search: SearchRange = NARROW,
+        pictures: tuple[Image, BoolArray] | None = None,
     ) -> tuple[ContourPrediction, Edges]:
-        """The contours of well known postures, and the edges near them."""
-        pictures = self.album.pictures(frame)
-        return _measure(self.model, self.album, self.appearance, posture, frame, pictures, search)
+        """The contours of postures, and the edges near them."""
+        pose = self.model.body.pose(posture)
+        predicted = self.model.evaluate(pose, frame)
+        image, known = pictures or self.album.pictures(frame)
+        factor = self.album.factor
+        edges = find_edges(self.model, predicted, pose, frame, image, factor, self.appearance, search)
+        edges.distance[~known], edges.variance[~known] = 0.0, np.inf
+        return predicted, edges
 
     def with_camera(self, camera: Camera) -> "ContourEvidence":
         """The same before another camera."""
@@ -102,14 +99,10 @@ class ContourEvidence:
     ) -> Generator[float, None, AxialTerm]:
         """Measure how parts are shifted along their axes, near F postures; yields the fraction done.
 
-        Args:
-            posture: The F postures.
-            frame: (F,) their indices in the clip.
-            search: How far from the prediction.
-            step_s: Times between all of the clip's frames [s].
+        `step_s`: times between all of the clip's frames [s].
         """
         model, album = self.model, self.album
-        kept = np.exp(-step_s[frame[:-1]] / AXIAL_MEMORY_S)[:, None]
+        kept = np.exp(-step_s[frame[:-1]] / CONTOURS.axial_memory_s)[:, None]
         axes = LimbAxes(model.parts, model.camera)
         assert self.along is not None
         shape = len(frame), len(model.parts.segments)
@@ -126,7 +119,7 @@ class ContourEvidence:
             at = np.sum(pixel * found.direction, axis=-1) + found.distance
             share[chunk], direction[chunk] = found.share, found.direction
             place[chunk] = np.where(usable, at, np.nan)
-            spread = (AXIAL_STD_PX * album.factor) ** 2 + (AXIAL_STD_M * found.scale) ** 2
+            spread = (CONTOURS.axial_std_px * album.factor) ** 2 + (CONTOURS.axial_std_m * found.scale) ** 2
             variance[chunk] = np.where(usable, found.variance, 1.0) + spread
             yield (chunk[-1] + 1) / len(frame)
         return AxialTerm(axes, share, place, direction, variance, kept)
@@ -142,27 +135,16 @@ def learn_contours(
 ) -> Generator[None, None, ContourEvidence | None]:
     """Learn the look of performer and background, and the shapes of the performer's parts.
 
-    It yields now and then, so that a job can be canceled.
-
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        album: Pictures of the clip's frames.
-        posture: The postures of all F frames, by their markers.
-        keyframes: Frames whose posture is known best.
-        schedule: How far from the contours edges are to be looked for; a wide one says that only the
-            keyframes' postures are known.
-
-    Returns:
-        None where no background can be trusted: before a moving camera, or where most pictures are missing.
+    `keyframes`: frames whose posture is known best; a wide `schedule` says that only these are known. None
+    where no background can be trusted: before a moving camera, or where most pictures are missing.
     """
     seen = np.array([index in album for index in range(posture.batch[0])])
     keyframes = keyframes[seen[keyframes]]
-    if camera.is_moving or np.mean(seen) < LEAST_FRAME_SHARE or len(keyframes) == 0:
+    if camera.is_moving or np.mean(seen) < 0.1 or len(keyframes) == 0:
         return None
     frame = np.flatnonzero(seen)
     model = ContourModel.average(body, camera)
-    known = keyframes[evenly_spread(keyframes, MOST_KEYFRAMES)]
+    known = keyframes[evenly_spread(keyframes, 60)]
     appearance = yield from _learn_appearance(model, album, posture[frame], frame)
     if schedule.is_wide:
         labeled = yield from _labeled(model, album, posture[known], known)
@@ -179,7 +161,7 @@ def learn_contours(
 def _learn_appearance(
     model: ContourModel, album: Album, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, Appearance]:
-    count = min(APPEARANCE_FRAMES, len(frame))
+    count = min(32, len(frame))
     chosen = np.unique(np.round((np.arange(count) + 0.5) * len(frame) / count - 0.5).astype(np.intp))
     images, labels = yield from _labeled(model, album, posture[chosen], frame[chosen])
     return learn_appearance(images, labels, len(model.parts.segments))
@@ -198,34 +180,17 @@ def _labeled(
     return images, labels
 
 
-def _measure(
-    model: ContourModel,
-    album: Album,
-    appearance: Appearance,
-    posture: Posture,
-    frame: IndexArray,
-    pictures: tuple[Image, BoolArray],
-    search: SearchRange = NARROW,
-) -> tuple[ContourPrediction, Edges]:
-    pose = model.body.pose(posture)
-    predicted = model.evaluate(pose, frame)
-    image, known = pictures
-    edges = find_edges(model, predicted, pose, frame, image, album.factor, appearance, search)
-    edges.distance[~known], edges.variance[~known] = 0.0, np.inf
-    return predicted, edges
-
-
 def _fit_shapes(
     model: ContourModel, album: Album, appearance: Appearance, posture: Posture, frame: IndexArray
 ) -> Generator[None, None, ContourModel]:
     """The model with shapes fitted to the edges at the best known postures."""
     stretches = chunks(np.arange(len(frame)), CHUNK_FRAMES)
     pictures = [album.pictures(frame[chunk]) for chunk in stretches]
-    for _ in range(SHAPE_ROUNDS):
-        known = []
+    for _ in range(3):
+        known, evidence = [], ContourEvidence(album, appearance, model)
         for chunk, seen in zip(stretches, pictures, strict=True):
             yield
-            known.append(_measure(model, album, appearance, posture[chunk], frame[chunk], seen))
+            known.append(evidence.near(posture[chunk], frame[chunk], pictures=seen))
         model = model.with_shape(_fitted_shape(model, known, album.factor))
     return model
 
@@ -240,37 +205,25 @@ def _fitted_shape(model: ContourModel, known: list[tuple[ContourPrediction, Edge
     shape = np.zeros_like(model.shape)
     for part in np.unique(model.part_of):
         own = (model.part_of == part) & np.isfinite(variance)
-        if np.count_nonzero(own) < FEWEST_EDGES:
+        if np.count_nonzero(own) < CONTOURS.fewest_edges:
             continue
         rows, noise = rate[own], variance[own]
         wanted = distance[own] + rows @ model.shape[part]
         scale = np.linalg.norm(rows[:, :2], axis=-1)  # about the pixels of a meter
-        weight = student_weight(distance[own] ** 2 / (noise + (EDGE_STD_M * scale) ** 2), DEGREES, 1) / noise
+        spread = noise + (CONTOURS.edge_std_m * scale) ** 2
+        weight = student_weight(distance[own] ** 2 / spread, DEGREES, 1) / noise
         normal = rows.T @ (weight[:, None] * rows) + np.diag(SHAPE_STD_M**-2)
         shape[part] = np.linalg.solve(normal, rows.T @ (weight * wanted))
-    assert shape.shape[1] == SHAPE
     return shape
 
 
-# --- Rows by which contours judge keyframes
-
-
 LENS_DIFFERENCE = 1e-3
-EDGE_STD_M_CONTOUR_KEYFRAMES = 0.003
-"""Error of an edge beyond the part's shape, which is fitted to the keyframes along with their own errors."""
 HALVES = 2
-ROWS = HALVES * len(SIDES)
-"""Rows of a part."""
+ROWS = HALVES * len(SIDES)  # rows of a part
 
 
 def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray) -> EvidenceRows:
-    """A row for either side of both halves of each part, with the part's shape as parameters.
-
-    Args:
-        contours: Edges and appearance, learned at the keyframes.
-        posture: The J judged postures.
-        frame: (J,) their indices in the clip.
-    """
+    """A row for either side of both halves of each part, with the part's shape as parameters."""
     model, factor = contours.model, contours.album.factor
     predicted, edges = contours.near(posture, frame, contours.schedule.judging)
     average = replace(model, shape=np.zeros_like(model.shape))
@@ -284,7 +237,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     own_shape = np.sum(predicted.shape_rate * model.shape[model.part_of], axis=-1)
     residual = -edges.distance - own_shape
     scale = np.linalg.norm(predicted.shape_rate[..., :2], axis=-1)
-    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (EDGE_STD_M_CONTOUR_KEYFRAMES * scale) ** 2
+    variance = edges.variance + (PIXEL_STD * factor) ** 2 + (CONTOURS.keyframe_edge_std_m * scale) ** 2
     weight = np.where(found, 1.0 / np.where(found, variance, 1.0), 0.0)
     groups = _groups(model)
     total = weight @ groups  # (J, G)
@@ -294,7 +247,6 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
         summed = np.einsum("jn,jn...,ng->jg...", weight, values, groups)
         return summed / np.maximum(total, 1e-12).reshape(*total.shape, *([1] * (values.ndim - 2)))
 
-    count = groups.T @ np.ones(len(groups))
     used = total > 0.0
     parts = len(model.parts.segments)
     own = np.zeros((*total.shape, parts, SHAPE))
@@ -302,7 +254,7 @@ def contour_rows(contours: ContourEvidence, posture: Posture, frame: IndexArray)
     own[:, rows, rows // ROWS] = mean(predicted.shape_rate)
     # Samples of a group err alike: they weigh as much as one.
     spread = (weight > 0.0) @ groups / np.maximum(total, 1e-12)
-    assert (count == len(SHARES) / HALVES).all()
+
     return EvidenceRows(
         np.where(used, mean(residual), 0.0),
         own.reshape(*total.shape, parts * SHAPE),

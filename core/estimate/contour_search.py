@@ -20,36 +20,28 @@ from ..footage.appearance import Appearance
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 
-INNER, OUTER = 2.0, 2.5
-"""Distances inside and outside the contour at which occlusion is decided."""
-LARGEST_LOG_RATIO = 4.0
-"""Bound of a single pixel's log likelihood ratio."""
+INNER, OUTER = 2.0, 2.5  # distances inside and outside the contour at which occlusion is decided
+LARGEST_LOG_RATIO = 4.0  # bound of a single pixel's log likelihood ratio
 
 
 @dataclass(frozen=True)
 class SearchRange:
     """How far from its prediction an edge is looked for, in pixels of the pictures."""
 
-    reach: int
-    """Reach of the search along the normal."""
-    prior_std: float
-    """Prior standard deviation of the edge's distance; it is taken out of the measurement again."""
-    farthest: float
-    """A more distant edge is likelier another part's."""
+    reach: int  # reach of the search along the normal
+    prior_std: float  # of the edge's distance; it is taken out of the measurement again
+    farthest: float  # a more distant edge is likelier another part's
 
 
-NARROW = SearchRange(6, 3.0, 4.0)
-"""Once the body is known to a few pixels."""
+NARROW = SearchRange(6, 3.0, 4.0)  # once the body is known to a few pixels
 
 
 @dataclass(frozen=True, eq=False)
 class Edges:
     """Edges near N contour samples in F frames."""
 
-    distance: Array
-    """(F, N) from the sample along its normal [px]; zero where nothing was found."""
-    variance: Array
-    """(F, N) [px²], infinite where nothing was found."""
+    distance: Array  # (F, N) from the sample along its normal [px]; zero where nothing was found
+    variance: Array  # (F, N) [px²], infinite where nothing was found
 
 
 def find_edges(
@@ -64,15 +56,7 @@ def find_edges(
 ) -> Edges:
     """Search for the edges near predicted contours.
 
-    Args:
-        model: The contours' model.
-        predicted: Its prediction.
-        pose: Forward kinematics of the F postures it was made from.
-        frame: (F,) their indices in the clip.
-        pictures: (F, rows, columns, 3) small pictures of the frames.
-        factor: Pixels of the camera to one of the pictures.
-        appearance: The look of parts and background in them.
-        search: How far from the prediction edges are looked for.
+    `pictures` (F, rows, columns, 3) are small ones, `factor` pixels of the camera to one of theirs.
     """
     behind, shown = _occlusion(model, predicted, model.part_outlines(pose, frame), factor)
     offset = np.arange(-search.reach, search.reach + 1.0)
@@ -155,25 +139,21 @@ def _occlusion(
     return np.where(np.isfinite(depth), nearest, -1), shown
 
 
-# --- How far from the predicted contours edges are looked for, look after look
+# --- Schedule of looks
 
 
 WIDEST_M = (0.25, 0.13, 0.20)
 """Reach, deviation and farthest edge of the first look: interpolation of keyframes errs by 5 to 20 cm."""
-LOOKS = 9
-"""Looks of the schedule; each is about a seventh narrower than the one before."""
-LARGEST_REACH_PX = 36
-"""Bound of the first look's reach, for the sake of time."""
-BY_KEYPOINTS = 0.5
-"""Width of the first look where keypoints locate the limbs: these err by 2 to 6 cm, and at times by more."""
+LOOKS = 9  # looks of the schedule; each is about a seventh narrower than the one before
+LARGEST_REACH_PX = 36  # bound of the first look's reach, for the sake of time
+BY_KEYPOINTS = 0.5  # width of the first look where keypoints locate the limbs, to 2 to 6 cm
 ENDS = (
     ("wrist.L",),
     ("wrist.R",),
     ("ankle.L",),
     ("ankle.R",),
     ("hip.L", "hip.R", "shoulder.L", "shoulder.R"),
-)
-"""Body points of which one of each group locates its limb, or the trunk."""
+)  # body points of which one of each group locates its limb, or the trunk
 HEAD = "head"
 
 
@@ -194,8 +174,7 @@ class Schedule:
         return any(look != NARROW for look in self.looks)
 
 
-BY_MARKERS = Schedule((NARROW, NARROW))
-"""Where markers locate every limb."""
+BY_MARKERS = Schedule((NARROW, NARROW))  # where markers locate every limb
 
 
 def contour_schedule(
@@ -208,13 +187,8 @@ def contour_schedule(
 ) -> Schedule:
     """The looks for a clip.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        factor: Pixels of the camera to one of the pictures.
-        marked: The segments that markers are bound to.
-        prior: F postures, by which the performer's distance is known.
-        keypoints: Of the performer in the F frames.
+    `factor`: pixels of the camera to one of the pictures; `marked`: the segments with markers; the prior
+    tells the performer's distance.
     """
     if all_located(body, marked):
         return BY_MARKERS

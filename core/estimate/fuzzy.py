@@ -56,13 +56,9 @@ class Memberships:
 def keyframe_distance(frame_count: int, keyframes: ArrayLike) -> Array:
     """Distance of each frame from its nearest keyframe, relative to the gap it lies in.
 
-    Args:
-        frame_count: frames F of the clip.
-        keyframes: (K,) increasing indices, K ≥ 1.
-
-    Returns:
-        (F,) in half gaps: 0 on a keyframe, 1 midway between two. Before the first and after the last keyframe
-        the nearest gap is the measure, and 1 the most; with a single keyframe the clip's length is.
+    `keyframes` (K,) increase, K ≥ 1. (F,) in half gaps: 0 on a keyframe, 1 midway between two. Before the
+    first and after the last keyframe the nearest gap is the measure, and 1 the most; with a single keyframe
+    the clip's length is.
     """
     K = np.asarray(keyframes, dtype=np.float64)
     frame = np.arange(frame_count, dtype=np.float64)

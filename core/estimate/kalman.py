@@ -1,4 +1,4 @@
-"""Options of the paper's filter that the paper leaves open: noise and fuzzy sets, with units."""
+"""The paper's filter, method `ekf`, with what the paper leaves open as options: noise and fuzzy sets."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
@@ -43,26 +43,16 @@ class FilterOptions:
         ValueError: A standard deviation or width is not positive, or the gate's probability not below 1.
     """
 
-    centroid_std_px: float = 1.0
-    """Extraction noise of a centroid [px]."""
-    centroid_std_widths: float = 0.25
-    """How far a region's centroid lies from the middle of its segment's line [segment widths]."""
-    angle_std_rad: float = 0.1
-    """Noise of the direction of a region as thin as a line [rad]; rounder regions have more."""
-    log_ratio_std: float = 1.0
-    """Noise of log S_λ: wide, since sleeves and occlusion change the ratio more than the posture does."""
-    depth_std_m: float = DEPTH_STD_M
-    """Noise of the a priori depths [m]."""
-    initial_std: float = 0.5
-    """Deviation of the first frame from the prior [natural deviations]."""
-    near_width: float = 0.3
-    """Half-width of the near rule's output set, a frame's step [natural deviations]."""
-    far_width: float = 0.3
-    """Half-width of the far rule's output set, a frame's step [natural deviations]."""
-    gate_probability: float = 0.999
-    """Share of right observations that pass the gate; a marker past it counts for less in that frame."""
-    memberships: Memberships = field(default_factory=Memberships)
-    """The rules' input sets."""
+    centroid_std_px: float = 1.0  # extraction noise of a centroid [px]
+    centroid_std_widths: float = 0.25  # of a centroid from the middle of its segment's line [widths]
+    angle_std_rad: float = 0.1  # direction of a region as thin as a line; rounder ones have more [rad]
+    log_ratio_std: float = 1.0  # of log S_λ, which sleeves and occlusion change more than posture does
+    depth_std_m: float = DEPTH_STD_M  # noise of the a priori depths [m]
+    initial_std: float = 0.5  # deviation of the first frame from the prior [natural deviations]
+    near_width: float = 0.3  # half-width of the near rule's output set, a frame's step [natural deviations]
+    far_width: float = 0.3  # half-width of the far rule's output set, a frame's step [natural deviations]
+    gate_probability: float = 0.999  # share of right observations that pass; others count for less
+    memberships: Memberships = field(default_factory=Memberships)  # the rules' input sets
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -76,18 +66,12 @@ class FilterOptions:
             )
 
 
-# --- The measurement update of a Kalman filter, for rows scaled by their standard deviations
-
-
 class Update(NamedTuple):
     """Update of a state by measurements."""
 
-    step: Array
-    """(D,) change of the mean."""
-    covariance: Array
-    """(D, D) after the update, symmetric."""
-    normalized_innovation_squared: float
-    """νᵀ S⁻¹ ν; χ² with m degrees of freedom if model and noise are right."""
+    step: Array  # (D,) change of the mean
+    covariance: Array  # (D, D) after the update, symmetric
+    normalized_innovation_squared: float  # νᵀ S⁻¹ ν, χ² with as many degrees of freedom as rows
 
 
 def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> Update:
@@ -96,10 +80,8 @@ def update(covariance: Array, measurement_matrix: Array, innovation: Array) -> U
     The paper scales its observations with their standard deviations too, so R is the identity. Joseph's form
     keeps the covariance symmetric and positive where rounding would not.
 
-    Args:
-        covariance: M (D, D), before the update.
-        measurement_matrix: H (m, D), each row divided by its standard deviation; m may be 0.
-        innovation: ν (m,), observed - predicted, likewise divided.
+    `covariance`: M (D, D), before the update; `measurement_matrix`: H (m, D), each row divided by its
+    standard deviation; m may be 0; `innovation`: ν (m,), observed - predicted, likewise divided.
     """
     M, H = covariance, measurement_matrix
     if not len(H):
@@ -122,37 +104,28 @@ def normalized_innovation_squared(covariance: Array, measurement_matrix: Array, 
 # --- The paper's filter, method `ekf`
 
 
-LEAST_QUALITY = 0.05
-"""Below this a region's noise grows no further; its gate still holds."""
+LEAST_QUALITY = 0.05  # below this a region's noise grows no further; its gate still holds
 LEAST_ANGLE_WEIGHT = 1e-3
-PREVIEW_FRAMES = 12
-"""Frames in one preview."""
+PREVIEW_FRAMES = 12  # frames in one preview
 
 
 @dataclass(frozen=True, eq=False)
 class State:
     """A Gaussian over postures."""
 
-    mean: Posture
-    """A single posture."""
-    covariance: Array
-    """(D, D) of a tangent step at the mean [m², m rad, rad²]."""
+    mean: Posture  # a single posture
+    covariance: Array  # (D, D) of a tangent step at the mean [m², m rad, rad²]
 
 
 @dataclass(frozen=True, eq=False)
 class FilterResult:
     """The filter's estimate of F frames, with its own measures of consistency."""
 
-    posture: Posture
-    """A batch of F postures."""
-    covariance: Array
-    """(F, D, D) of a tangent step at each posture."""
-    normalized_innovation_squared: Array
-    """(F,) of all rows that were used; χ² with `row_count` degrees of freedom if the model is right."""
-    row_count: IndexArray
-    """(F,) number of rows that were used."""
-    gated: BoolArray
-    """(F, M) whether a marker was past its gate and counted in part only."""
+    posture: Posture  # a batch of F postures
+    covariance: Array  # (F, D, D) of a tangent step at each posture
+    normalized_innovation_squared: Array  # νᵀ S⁻¹ ν, χ² with as many degrees of freedom as rows
+    row_count: IndexArray  # (F,) number of rows that were used
+    gated: BoolArray  # (F, M) whether a marker was past its gate and counted in part only
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +135,7 @@ class Correction:
     state: State
     normalized_innovation_squared: float
     row_count: int
-    gated: BoolArray
-    """(M,)."""
+    gated: BoolArray  # (M,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,10 +143,8 @@ class FuzzyKalmanFilter:
     """The filter's two halves, for one clip of F frames; `filter_clip` runs them."""
 
     line_ends: LineEnds
-    prior: Posture
-    """A batch of F a priori postures θ_p."""
-    keyframes: Sequence[int]
-    """Increasing indices of the keyframes, at least one."""
+    prior: Posture  # a batch of F a priori postures θ_p
+    keyframes: Sequence[int]  # increasing indices of the keyframes, at least one
     options: FilterOptions = FilterOptions()
 
     @cached_property
@@ -235,11 +205,7 @@ class FuzzyKalmanFilter:
     def correct(self, state: State, frame: int, observed: Array, quality: Array) -> Correction:
         """Correct a predicted state by its observations (paper, eqs. 12 and 14 to 18).
 
-        Args:
-            state: the prediction for `frame`.
-            frame: index of the frame.
-            observed: (M, 4) characteristics as `observed_characteristics` gives them; NaN brings no row.
-            quality: (M,) in 0..1 how far each region can be trusted.
+        `observed` (M, 4) as `observed_characteristics` gives them, NaN brings no row; `quality` (M,) in 0..1.
         """
         body, camera = self.line_ends.body, self.line_ends.camera
         pose = body.pose(state.mean)
@@ -257,11 +223,8 @@ class FuzzyKalmanFilter:
     def noise_std(self, predicted: Array, observed: Array, quality: Array, width_px: Array) -> Array:
         """Standard deviations (..., M, 4) of the characteristics: the square roots of R's diagonal.
 
-        Args:
-            predicted: (..., M, 4) characteristics.
-            observed: (..., M, 4) characteristics.
-            quality: (..., M) in 0..1, about the share of the region that is seen; divides the variance.
-            width_px: (..., M) width of each segment in the image [px].
+        Characteristics (..., M, 4); `quality` (..., M) in 0..1, about the share of the region that is seen,
+        divides the variance; `width_px` (..., M) of each segment.
         """
         options = self.options
         std = np.empty(np.broadcast_shapes(predicted.shape, observed.shape))
@@ -309,20 +272,7 @@ def filter_clip(
 ) -> Part[FilterResult]:
     """Estimate every frame of a clip by the paper's method.
 
-    Args:
-        body: the actor's body.
-        camera: the camera.
-        tracks: the markers' regions in F frames.
-        marker_segments: segment of each of the M markers, in the tracks' order.
-        prior: a batch of F a priori postures.
-        keyframes: increasing indices of the keyframes, at least one.
-        options: noise and fuzzy sets.
-
-    Yields:
-        The fraction of frames done, and from time to time the frames just estimated.
-
-    Returns:
-        Posture and covariance of every frame.
+    `prior`: F postures; `keyframes`: increasing indices, at least one.
 
     Raises:
         InputError: a marker's segment is unknown.

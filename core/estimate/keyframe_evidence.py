@@ -8,98 +8,119 @@ a marker that never fits is distrusted in all frames.
 """
 
 from collections.abc import Callable, Generator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
+from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
-from ..evidence.regions import RegionModel
-from ..numerics.robust import student_weight
-from .keyframe_rows import (
-    LARGEST,
-    POINT_STD_M,
-    PRIOR_STD,
-    SMALLEST,
-    UNUSED,
-    EvidenceRows,
-    KeyframeRows,
-    KnownFrames,
-    placement_jacobian,
-    placement_values,
-    placements_from,
-    posing_covariance,
-    velocities,
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import (
+    FEATURES,
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    feature_rows,
+    missing_variance,
 )
+from ..footage.camera import Camera
+from ..numerics.robust import DEGREES, student_weight
+from .clip_problem import KeyframeEvidence, uncalibrated
+from .clip_state import evenly_spread
+from .keyframe_error import POINT_STD_M, posing_covariance, velocities
+from .keyframe_rows import UNUSED, EvidenceRows, KeyframeRows
 from .keypoint_evidence import KeypointEvidence, KnownKeypoints, keypoint_rows, learned_std, read_depths
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, feature_rows, missing_variance
-from .terms.term import DEGREES
 
-LEAST_TRUSTED = 0.3
-"""Least visibility and quality of a region that judges a keyframe."""
-MOST_JUDGED = 60
-"""Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters."""
-ITERATIONS = 4
-SCALES = np.geomspace(0.1, 2.5, 17)
-"""Sizes of the posing error tried, relative to a person's usual one."""
-SCALE_MEDIAN, SCALE_SPREAD = 0.7, 1.2
-"""Log-normal prior of the size."""
-TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])
-"""Standard deviations of the timing error tried [frames]."""
-TIMING_MEAN = 0.7
-"""Mean of its exponential prior [frames]."""
-LEARNED_SHARE = 1.3
-"""Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
-keyframes, with their errors, which hides about a quarter of these."""
-LENS_DIFFERENCE = 1e-3
-PARAMETER_COUNT = len(PRIOR_STD)
-MOST_DISTRUST = 10.0
+# --- Placement of the markers, and the limbs' girth
 
 
-ContourReader = Callable[[Posture, IndexArray], EvidenceRows]
-"""Reads the rows of contours at posed postures in given frames."""
+PARAMETERS = tuple(field.name for field in fields(MarkerPlacement) if field.name != "segment")
+PRIOR_STD = np.array([0.08, 0.08, 0.012, 0.012, 0.20])  # first, last, lateral [m], sagittal [m], girth
+DIFFERENCE = np.array([1e-3, 1e-3, 1e-4, 1e-4, 1e-3])
+SMALLEST = np.array([-0.3, 0.3, -0.06, -0.06, 0.5])
+LARGEST = np.array([0.7, 1.3, 0.06, 0.06, 2.0])
 
 
 @dataclass(frozen=True, eq=False)
-class KeyframeEvidence:
-    """The calibrated model and the trust that keyframes and markers deserve."""
+class KnownFrames:
+    """Frames whose posture is known, and the regions seen there."""
 
-    model: RegionModel
-    """With the placements and the lens found."""
-    posing_scale: float
-    """Size of the posing error relative to a person's usual one."""
-    timing_frames: float
-    """Standard deviation of the keyframes' timing error [frames]."""
-    distrust: Array
-    """(M,) factor, at least one, of the expected standard deviation of each marker's regions."""
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
-    information: Array
-    """(K, D, D) inverse covariance of each keyframe's posing error."""
-    keypoints: KeypointEvidence
-    """The calibrated model of keypoints, none where there are none."""
+    pose: Pose  # forward kinematics of K postures
+    frame: IndexArray  # (K,) their indices in the clip
+    observed: ObservedRegions  # regions of those K frames
+
+
+def placement_values(placements: tuple[MarkerPlacement, ...]) -> Array:
+    """The parameters (M, P) of M placements, in the order of `PARAMETERS`."""
+    values = [[getattr(placement, name) for name in PARAMETERS] for placement in placements]
+    return np.array(values).reshape(len(placements), len(PARAMETERS))
+
+
+def placements_from(start: tuple[MarkerPlacement, ...], values: Array) -> tuple[MarkerPlacement, ...]:
+    """Placements on the segments of `start` with other parameters (M, P)."""
+    return tuple(
+        MarkerPlacement(placement.segment, *(float(v) for v in row))
+        for placement, row in zip(start, values, strict=True)
+    )
+
+
+def placement_jacobian(body: Body, camera: Camera, known: KnownFrames, model: RegionModel) -> Array:
+    """Jacobian of the residuals of `feature_rows` by each marker's own parameters, (K, M, 5, P).
+
+    All differences are evaluated at once, as if each marker were worn several times.
+    """
+    start, values = model.placements, placement_values(model.placements)
+    variants = np.concatenate([values[None], values + np.diag(DIFFERENCE)[:, None]])  # (1 + P, M, P)
+    worn = tuple(placement for row in variants for placement in placements_from(start, row))
+    predicted = RegionModel(body, camera, worn).evaluate(known.pose, known.frame)
+    again = np.tile(np.arange(len(start)), len(variants))
+    rows, _ = feature_rows(known.observed[:, again], predicted)
+    rows = rows.reshape(len(rows), len(variants), len(start), -1)
+    return np.asarray((np.moveaxis(rows[:, 1:], 1, -1) - rows[:, 0, ..., None]) / DIFFERENCE)
+
+
+# --- Calibration
+
+
+@dataclass(frozen=True)
+class CalibrationOptions:
+    """Which regions judge keyframes, and priors of what these are judged by."""
+
+    least_trusted: float = 0.3  # least visibility and quality of a region that judges a keyframe
+    # Largest number of keyframes that are judged, evenly spread in time: enough for a few parameters.
+    most_judged: int = 60
+    scale_median: float = 0.7  # log-normal prior of the size
+    scale_spread: float = 1.2
+    timing_mean: float = 0.7  # mean of its exponential prior [frames]
+    # Factor of the posing error by contours alone: the colors that edges are found by are learned at the same
+    # keyframes, with their errors, which hides about a quarter of these.
+    learned_share: float = 1.3
+    most_distrust: float = 10.0
+
+
+CALIBRATION = CalibrationOptions()
+SCALES = np.geomspace(0.1, 2.5, 17)  # sizes of the posing error tried, relative to a person's usual one
+TIMINGS = np.array([0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0])  # deviations of the timing tried [frames]
+LENS_DIFFERENCE = 1e-3
+
+
+ContourReader = Callable[[Posture, IndexArray], EvidenceRows]  # rows at postures in given frames
 
 
 @dataclass(frozen=True, eq=False)
 class SeenAtKeyframes:
     """K keyframes, and what was seen there."""
 
-    frame: IndexArray
-    """(K,) their indices in the clip."""
-    posture: Posture
-    """The K postures."""
-    observed: ObservedRegions
-    """The markers' regions."""
-    width_px: Array
-    """(K, M) half-width of each marker's limb [px]."""
-    keypoints: KeypointEvidence | None = None
-    """Usual evidence of the N keypoints; None for none."""
-    points: ObservedKeypoints | None = None
-    """Those seen."""
-    contours: ContourReader | None = None
-    """Reads the rows of contours at some of the keyframes; None where contours do not judge."""
+    frame: IndexArray  # (K,) their indices in the clip
+    posture: Posture  # the K postures
+    observed: ObservedRegions  # the markers' regions
+    width_px: Array  # (K, M) half-width of each marker's limb [px]
+    keypoints: KeypointEvidence | None = None  # usual evidence of the N keypoints; None for none
+    points: ObservedKeypoints | None = None  # those seen
+    contours: ContourReader | None = None  # reads rows at some keyframes; None where contours judge none
 
     def __getitem__(self, index: IndexArray) -> "SeenAtKeyframes":
         """Some of the keyframes."""
@@ -116,25 +137,17 @@ class SeenAtKeyframes:
 def read_keyframes(
     model: RegionModel, noise: RegionNoise, at: SeenAtKeyframes
 ) -> Generator[None, None, KeyframeEvidence]:
-    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them.
-
-    It yields now and then, so that a job can be canceled.
-
-    Args:
-        model: The region model with average placements.
-        noise: Noise of the regions' features.
-        at: The keyframes.
-    """
+    """Calibrate markers and keypoints on posed keyframes and judge the keyframes by them."""
     posture, frame, points, contours = at.posture, at.frame, at.points, at.contours
     posing = posing_covariance(model.body, model.body.pose(posture))
     velocity = velocities(posture, frame)
     keypoints = at.keypoints or KeypointEvidence.usual(model.body, model.camera, (), ())
     believed = points is not None and points.only(keypoints.trust > 0.0).seen.any()
     if not model.placements and not believed and contours is None:
-        information = keyframe_information(posing, velocity, SCALE_MEDIAN, 0.0)
-        found = replace(uncalibrated(model), posing_scale=SCALE_MEDIAN, information=information)
+        information = keyframe_information(posing, velocity, CALIBRATION.scale_median, 0.0)
+        found = replace(uncalibrated(model), posing_scale=CALIBRATION.scale_median, information=information)
         return replace(found, keypoints=keypoints)
-    judged = evenly_spread(frame, MOST_JUDGED)
+    judged = evenly_spread(frame, CALIBRATION.most_judged)
     pose = model.body.pose(posture[judged])
     known = KnownFrames(pose, frame[judged], at.observed[judged])
     # (J, M, 5); without the slow bias, which at the keyframes is mostly the placements'.
@@ -153,8 +166,8 @@ def read_keyframes(
     weight = np.ones((len(judged), int(size.sum())))
     markers = len(model.placements)
     distrust = np.ones(markers)
-    scale, timing = SCALE_MEDIAN, 0.0
-    for iteration in range(ITERATIONS):
+    scale, timing = CALIBRATION.scale_median, 0.0
+    for iteration in range(4):
         yield
         parts, area_ratio = [], np.ones(0)
         if markers:
@@ -172,7 +185,7 @@ def read_keyframes(
         change, left = seen.calibrated(weight, scale, timing)
         squared = seen.squared(left, size, scale, timing)
         usable = (seen.variance < UNUSED)[:, np.cumsum(size) - 1]
-        ends = markers * PARAMETER_COUNT
+        ends = markers * len(PRIOR_STD)
         calibrated = _changed(model, np.append(change[:ends], change[-1]))
         if markers:
             distrust = _distrust(squared[:, :markers], usable[:, :markers])
@@ -186,7 +199,7 @@ def read_keyframes(
             spread = seen.noise(weight, scale, timing)[:, own, own]
             std_m = learned_std(placed, seen_points, keypoints.std_m, std_m, left[:, own], spread)
     if outlines is not None and not markers and seen_points is None:
-        scale *= LEARNED_SHARE
+        scale *= CALIBRATION.learned_share
     information = keyframe_information(posing, velocity, scale, timing)
     placed = replace(placed, camera=calibrated.camera)
     found_points = replace(keypoints, model=placed, std_m=std_m)
@@ -195,28 +208,6 @@ def read_keyframes(
         depths = read_depths(keypoints.depths, placed, every, frame, points.depth_m, scale * POINT_STD_M)
         found_points = replace(found_points, depths=depths)
     return KeyframeEvidence(calibrated, scale, timing, distrust, area_ratio, information, found_points)
-
-
-def uncalibrated(model: RegionModel) -> KeyframeEvidence:
-    """Evidence before any keyframe is posed: average placements, full trust in all markers."""
-    markers, dofs = len(model.placements), model.body.skeleton.dof_count
-    return KeyframeEvidence(
-        model,
-        1.0,
-        0.0,
-        np.ones(markers),
-        np.ones(markers),
-        np.zeros((0, dofs, dofs)),
-        KeypointEvidence.usual(model.body, model.camera, (), ()),
-    )
-
-
-def evenly_spread(frame: IndexArray, most: int) -> IndexArray:
-    """Indices of at most `most` of the keyframes at increasing frames, evenly spread in time."""
-    if len(frame) <= most:
-        return np.arange(len(frame))
-    wanted = np.linspace(frame[0], frame[-1], most)
-    return np.unique(np.abs(frame[:, None] - wanted).argmin(axis=0))
 
 
 def keyframe_information(posing: Array, velocity: Array, scale: float, timing: float) -> Array:
@@ -249,8 +240,8 @@ def _region_rows(
     residual = residual + (parameter_jacobian @ change[..., None])[..., 0] + by_lens * lens_change
     usable = (
         np.isfinite(residual).all(-1)
-        & (predicted.visible > LEAST_TRUSTED)
-        & (known.observed.quality > LEAST_TRUSTED)
+        & (predicted.visible > CALIBRATION.least_trusted)
+        & (known.observed.quality > CALIBRATION.least_trusted)
     )
     area_ratio = _area_ratios(np.where(usable, known.observed.area / np.maximum(predicted.area, 1.0), np.nan))
     variance = variance + missing_variance(known.observed.area, area_ratio, predicted)
@@ -262,7 +253,7 @@ def _region_rows(
     return (
         EvidenceRows(
             np.where(usable[..., None], residual, 0.0).reshape(rows),
-            own.reshape(*rows, markers * PARAMETER_COUNT),
+            own.reshape(*rows, markers * len(PRIOR_STD)),
             np.where(usable[..., None], by_lens, 0.0).reshape(rows),
             np.where(usable[..., None, None], jacobian, 0.0).reshape(*rows, jacobian.shape[-1]),
             np.where(usable[..., None], variance, UNUSED).reshape(rows),
@@ -285,7 +276,7 @@ def _judging(
 
     The others, of face, hands and feet, err along with these.
     """
-    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * PARAMETER_COUNT, bool)
+    rows, parameters = np.ones(markers * FEATURES, bool), np.ones(markers * len(PRIOR_STD), bool)
     if used:
         points = np.array([name in HUMAN.point_names for name in keypoints.model.names])
         points |= not points.any()
@@ -303,7 +294,10 @@ def _most_likely_sizes(seen: KeyframeRows, weight: Array) -> Generator[None, Non
     for row, scale in zip(logarithm, SCALES, strict=True):
         row[:] = _log_likelihoods(seen, seen.noise(weight, scale, 0.0))
         yield
-    logarithm -= 0.5 * (np.log(SCALES[:, None] / SCALE_MEDIAN) / SCALE_SPREAD) ** 2 + TIMINGS / TIMING_MEAN
+    logarithm -= (
+        0.5 * (np.log(SCALES[:, None] / CALIBRATION.scale_median) / CALIBRATION.scale_spread) ** 2
+        + TIMINGS / CALIBRATION.timing_mean
+    )
     probability = np.exp(logarithm - logarithm.max())
     probability /= probability.sum()
     scale = np.exp(probability.sum(axis=1) @ np.log(SCALES))
@@ -341,4 +335,4 @@ def _distrust(squared: Array, usable: BoolArray) -> Array:
     for marker, (values, used) in enumerate(zip(squared.T, usable.T, strict=True)):
         if used.any():
             ratio[marker] = np.sqrt(np.median(values[used]) / usual)
-    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, MOST_DISTRUST))
+    return np.asarray(np.clip(ratio / max(1.0, float(np.median(ratio))), 1.0, CALIBRATION.most_distrust))

@@ -6,25 +6,23 @@ performer's gait.
 """
 
 from collections.abc import Generator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Array, chunks
 from ..body.posture import Posture
-from ..evidence.regions import RegionModel
+from ..evidence.regions import RegionModel, RegionNoise
 from ..footage.keypoints.keypoints import Keypoints, mirrored_point
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 from ..numerics.vectors import columns_at
 from ..prior.keyframes import Keyframe, interpolate, leave_one_out_residuals
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
-from .keyframe_rows import posing_covariance
-from .match_error import match_covariance
-from .terms.regions import RegionNoise
+from .clip_problem import KeyframeEvidence, uncalibrated
+from .keyframe_error import match_covariance, posing_covariance
+from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 
-FEWEST_POSED = 2
-"""Fewer posed keyframes calibrate nothing."""
+FEWEST_POSED = 2  # fewer posed keyframes calibrate nothing
 
 
 def read_mixed_keyframes(
@@ -32,12 +30,8 @@ def read_mixed_keyframes(
 ) -> Generator[None, None, KeyframeEvidence]:
     """Evidence of keyframes of which some may be matched.
 
-    Args:
-        model: The region model with average placements.
-        noise: Noise of the regions' features.
-        at: The K keyframes.
-        match_scale: (K,) size of the matched ones' error, relative to a usual difference between performers;
-            0 for posed ones.
+    `match_scale` (K,): size of the matched ones' error, relative to a usual difference between performers; 0
+    for posed ones.
     """
     if not match_scale.any():
         return (yield from read_keyframes(model, noise, at))
@@ -54,23 +48,26 @@ def read_mixed_keyframes(
     return evidence if at.keypoints is None else replace(evidence, keypoints=at.keypoints)
 
 
-# --- Selection of matched keyframes
+@dataclass(frozen=True)
+class SelectionOptions:
+    """When a matched keyframe is better than interpolation between posed ones."""
+
+    # a library with a larger error along the line of sight holds another motion
+    largest_library_error_m: float = 0.12
+    # Largest ratio of the library's error to the interpolation's: it knows how the motion goes on.
+    largest_ratio: float = 1.3
+    # Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes
+    # none.
+    least_weight: float = 0.5
+    least_trusted: float = 0.3  # least visibility and quality of a region that counts
+    # Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers.
+    keypoint_columns: int = 10
+    # Error of a usual keypoint along each axis of the image, beside one that is the same at all times [m].
+    keypoint_error_m: float = 0.02
 
 
-LARGEST_LIBRARY_ERROR_M = 0.12
-"""A library with a larger error along the line of sight holds another motion."""
-LARGEST_RATIO = 1.3
-"""Largest ratio of the library's error to the interpolation's: it knows how the motion goes on."""
-LEAST_WEIGHT = 0.5
-"""Least weight, in posed keyframes, that the library's error is divided by: too little evidence excludes
-none."""
-LEAST_TRUSTED = 0.3
-"""Least visibility and quality of a region that counts."""
+SELECTION = SelectionOptions()
 CHUNK_FRAMES = 500
-KEYPOINT_COLUMNS = 10
-"""Weight of the median keypoint of a frame, in coordinates of a marker: as much as five markers."""
-KEYPOINT_ERROR_M = 0.02
-"""Error of a usual keypoint along each axis of the image, beside one that is the same at all times [m]."""
 
 
 def select_keyframes(
@@ -80,15 +77,7 @@ def select_keyframes(
     fps: float,
     keypoints: Keypoints | None = None,
 ) -> tuple[Keyframe, ...]:
-    """The posed keyframes, and those matched ones that are better than interpolation between them.
-
-    Args:
-        keyframes: Posed and matched ones, in order of frame.
-        model: The region model with average placements.
-        tracks: The regions seen.
-        fps: Frames per second.
-        keypoints: The performer's; None for none.
-    """
+    """The posed keyframes, and those matched ones that are better than interpolation between them."""
     posed = tuple(keyframe for keyframe in keyframes if keyframe.matched is None)
     compared = tuple(key for key in keyframes if key.matched is None or not key.matched.is_composed)
     if len(posed) < FEWEST_POSED or len(posed) == len(compared):
@@ -97,7 +86,8 @@ def select_keyframes(
     interpolation_error = _interpolation_error_squared_m(posed, model, tracks)
     if keypoints is not None and keypoints.seen.any():
         by_points = _keypoint_error_squared_m(posed, model, keypoints)
-        interpolation_error = np.hstack([interpolation_error, *[by_points[:, None]] * KEYPOINT_COLUMNS])
+        columns = [by_points[:, None]] * SELECTION.keypoint_columns
+        interpolation_error = np.hstack([interpolation_error, *columns])
     kept = []
     for keyframe in keyframes:
         before = [other.index for other in posed if other.index <= keyframe.index]
@@ -108,7 +98,7 @@ def select_keyframes(
         between = interpolation_error[before[-1] : after[0] + 1]
         seen = between[np.isfinite(between)]
         posed_m = float(np.sqrt(seen.mean())) if len(seen) else np.inf
-        if library_m <= min(LARGEST_LIBRARY_ERROR_M, LARGEST_RATIO * posed_m):
+        if library_m <= min(SELECTION.largest_library_error_m, SELECTION.largest_ratio * posed_m):
             kept.append(keyframe)
     return tuple(kept)
 
@@ -124,7 +114,7 @@ def _library_error_m(
     foretold = body.points(body.pose(posture.plus(-difference)))
     sight = model.camera.sight(points, np.array([[keyframe.index] for keyframe in posed]))
     squared = np.mean(np.sum((foretold - points) * sight, axis=-1) ** 2, axis=-1)  # (P,)
-    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), LEAST_WEIGHT)))
+    return float(np.sqrt(np.sum(weight * squared) / max(float(weight.sum()), SELECTION.least_weight)))
 
 
 def _interpolation_error_squared_m(
@@ -141,7 +131,7 @@ def _interpolation_error_squared_m(
     offset = np.empty((frames, len(model.placements), 2))
     for frame in chunks(np.arange(frames), CHUNK_FRAMES):
         predicted = model.evaluate(model.body.pose(prior[frame]), frame)
-        trusted = (predicted.visible > LEAST_TRUSTED) & (tracks.quality[frame] > LEAST_TRUSTED)
+        trusted = np.minimum(predicted.visible, tracks.quality[frame]) > SELECTION.least_trusted
         meters = camera.depth(prior[frame].translation, frame) / camera.focal_px
         apart = (predicted.centroid - tracks.centroid[frame]) * meters[:, None, None]
         offset[frame] = np.where(trusted[..., None], apart, np.nan)
@@ -175,4 +165,4 @@ def _keypoint_error_squared_m(posed: tuple[Keyframe, ...], model: RegionModel, k
         median = np.full(frames, np.nan)
         median[some] = np.nanmedian(squared[some], axis=1)
         errors.append(median)
-    return np.maximum(np.fmin(*errors) - KEYPOINT_ERROR_M**2, 0.0)
+    return np.maximum(np.fmin(*errors) - SELECTION.keypoint_error_m**2, 0.0)

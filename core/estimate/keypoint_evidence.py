@@ -11,25 +11,36 @@ import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Body, Pose
-from ..evidence.keypoints import USUAL_PLACES, DepthLinks, KeypointModel
+from ..evidence.keypoints import (
+    LEAST_CONFIDENCE,
+    PIXEL_STD,
+    USUAL_PLACES,
+    DepthLinks,
+    KeypointModel,
+    ObservedKeypoints,
+)
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import mirrored_point
 from .keyframe_rows import UNUSED, EvidenceRows
-from .terms.keypoints import LEAST_CONFIDENCE, PIXEL_STD, ObservedKeypoints
 
-USUAL_ERROR = 0.2
-"""Error of a guess over the link's length: the sine of some twelve degrees."""
-GAIN_STD, OFFSET_STD = 0.5, 0.2
-"""Standard deviation of the gain from 1, and of the offset over the link's length."""
-NAME_COUNT, LINK_COUNT = 12.0, 6.0
-"""Numbers of errors that the usual error, and that of a link's name, weigh as much as."""
-CLIP_FACTOR = 1.4
-"""Between keyframes errors count as this many times as large: those of neighboring links are alike."""
-MEMORY_S = 0.25
-"""Time in which an error fades to a third."""
-ROUNDS = 4
-LARGEST_ERROR = 4.0
-"""A larger error, in standard deviations, counts as one this large."""
+
+@dataclass(frozen=True)
+class HintOptions:
+    """Usual errors of guessed depths."""
+
+    usual_error: float = 0.2  # error of a guess over the link's length: the sine of some twelve degrees
+    gain_std: float = 0.5  # standard deviation of the gain from 1, and of the offset over the link's length
+    offset_std: float = 0.2
+    # Numbers of errors that the usual error, and that of a link's name, weigh as much as.
+    name_count: float = 12.0
+    link_count: float = 6.0
+    # Between keyframes errors count as this many times as large: those of neighboring links are alike.
+    clip_factor: float = 1.4
+    memory_s: float = 0.25  # time in which an error fades to a third
+
+
+HINTS = HintOptions()
+LARGEST_ERROR = 4.0  # a larger error, in standard deviations, counts as one this large
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,25 +48,21 @@ class DepthEvidence:
     """What the L links' guesses are worth."""
 
     links: DepthLinks
-    gain: Array
-    """(L,) expected depth by a guess: gain times guess plus offset."""
-    offset_m: Array
-    """(L,)."""
-    std_m: Array
-    """(L,) error of what is expected [m]."""
-    memory_s: float = MEMORY_S
-    """Time in which an error fades to a third [s]."""
+    gain: Array  # (L,) expected depth by a guess: gain times guess plus offset
+    offset_m: Array  # (L,)
+    std_m: Array  # (L,) error of what is expected [m]
+    memory_s: float = HINTS.memory_s  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(cls, links: DepthLinks, model: KeypointModel) -> "DepthEvidence":
         """Guesses taken as they are, before any keyframe is posed."""
         length = links.lengths_m(model)
-        return cls(links, np.ones_like(length), np.zeros_like(length), USUAL_ERROR * length)
+        return cls(links, np.ones_like(length), np.zeros_like(length), HINTS.usual_error * length)
 
     @property
     def error_m(self) -> Array:
         """(L,) error that the estimate of a clip reckons with [m]."""
-        return CLIP_FACTOR * self.std_m
+        return HINTS.clip_factor * self.std_m
 
     def expected(self, depth: Array) -> Array:
         """(F, L) expected depths of the links by the points' guessed depths (F, N) [m]."""
@@ -72,29 +79,23 @@ def read_depths(
 ) -> DepthEvidence:
     """The evidence as K posed keyframes have it.
 
-    Args:
-        evidence: The usual one.
-        model: The points' calibrated model.
-        pose: The keyframes' poses.
-        frame: (K,) their frames.
-        depth: (K, N) the points' guessed depths there [m].
-        posing_std_m: Error of a posed point [m].
+    `depth` (K, N): the points' guessed depths there [m]; `posing_std_m`: error of a posed point [m].
     """
     links = evidence.links
     guessed, true = links.guessed(depth), links.depths(model, pose, frame)
     known = np.isfinite(guessed)
     guess = np.where(known, guessed, 0.0)
     length = links.lengths_m(model)
-    usual = (USUAL_ERROR * length) ** 2
+    usual = (HINTS.usual_error * length) ** 2
     posing = 2.0 * posing_std_m**2
     variance, gain, offset = usual.copy(), evidence.gain.copy(), evidence.offset_m.copy()
     names = np.array(links.names)
-    for _ in range(ROUNDS):
+    for _ in range(4):
         squared = np.zeros_like(guess)
         for i in range(len(names)):
             rows = np.stack([guess[:, i], np.ones(len(guess))], axis=-1) * known[:, i, None]
             noise = variance[i] + posing
-            prior = np.array([GAIN_STD, OFFSET_STD * length[i]]) ** -2.0
+            prior = np.array([HINTS.gain_std, HINTS.offset_std * length[i]]) ** -2.0
             information = rows.T @ rows / noise + np.diag(prior)
             wanted = rows.T @ np.where(known[:, i], true[:, i], 0.0) / noise + prior * [1.0, 0.0]
             gain[i], offset[i] = np.linalg.solve(information, wanted)
@@ -105,45 +106,45 @@ def read_depths(
         for name in np.unique(names):
             same = names == name
             total, count = np.where(known, squared, 0.0)[:, same].sum(axis=0), known[:, same].sum(axis=0)
-            pooled = (NAME_COUNT * usual[same].mean() + total.sum()) / (NAME_COUNT + count.sum())
-            variance[same] = (LINK_COUNT * pooled + total) / (LINK_COUNT + count)
+            pooled = (HINTS.name_count * usual[same].mean() + total.sum()) / (HINTS.name_count + count.sum())
+            variance[same] = (HINTS.link_count * pooled + total) / (HINTS.link_count + count)
     return replace(evidence, gain=gain, offset_m=offset, std_m=np.sqrt(variance))
 
 
-# --- Calibration of keypoints on posed keyframes
+# --- Keypoints
 
 
-MIRRORED = 0.7
-"""Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
-sides."""
-NAME_COUNT_KEYPOINT_EVIDENCE, POINT_COUNT = 40.0, 12.0
-"""Numbers of errors that the usual error, and that of a point's name, weigh as much as."""
-MEMORY_S_KEYPOINT_EVIDENCE = 0.15
-"""Time in which an error fades to a third."""
-CLIP_FACTOR_KEYPOINT_EVIDENCE = 3.0
-"""Between keyframes errors count as this many times as large. Those of neighboring points are alike, so that
-a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it too short
-turns it a long way toward or away from the camera, of which a linearised row knows nothing."""
+@dataclass(frozen=True)
+class PointOptions:
+    """Usual errors of keypoints."""
+
+    # Correlation of the places of a point and its mirror image: what one detector calls a hip it does on both
+    # sides.
+    mirrored: float = 0.7
+    # Numbers of errors that the usual error, and that of a point's name, weigh as much as.
+    name_count: float = 40.0
+    point_count: float = 12.0
+    memory_s: float = 0.15  # time in which an error fades to a third
+    # Between keyframes errors count as this many times as large. Those of neighboring points are alike, so
+    # that a dozen say as much as half a dozen; and where a limb lies across the view, an error that makes it
+    # too short turns it a long way toward or away from the camera, of which a linearised row knows nothing.
+    clip_factor: float = 3.0
+
+
+POINTS = PointOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class KeypointEvidence:
     """The calibrated model of N keypoints, and the trust they deserve."""
 
-    model: KeypointModel
-    """With the places and the lens found."""
-    sources: tuple[str, ...]
-    """(N,) what saw each."""
-    std_m: Array
-    """(N,) error of a sure detection along each axis of the image [m]."""
-    trust: Array
-    """(N,) 1 for points that are believed, 0 for those left out."""
-    lag: Mapping[str, int]
-    """By source that is left out for it: frames by which it is late, or early where negative."""
-    depths: DepthEvidence
-    """What the hints of depth are worth."""
-    memory_s: float = MEMORY_S_KEYPOINT_EVIDENCE
-    """Time in which an error fades to a third [s]."""
+    model: KeypointModel  # with the places and the lens found
+    sources: tuple[str, ...]  # (N,) what saw each
+    std_m: Array  # (N,) error of a sure detection along each axis of the image [m]
+    trust: Array  # (N,) 1 for points that are believed, 0 for those left out
+    lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
+    depths: DepthEvidence  # what the hints of depth are worth
+    memory_s: float = POINTS.memory_s  # time in which an error fades to a third [s]
 
     @classmethod
     def usual(
@@ -157,7 +158,7 @@ class KeypointEvidence:
     @property
     def error_m(self) -> Array:
         """(N,) error along each axis of the image that the estimate of a clip reckons with [m]."""
-        return np.where(self.trust > 0.0, CLIP_FACTOR_KEYPOINT_EVIDENCE * self.std_m, np.inf)
+        return np.where(self.trust > 0.0, POINTS.clip_factor * self.std_m, np.inf)
 
     def with_camera(self, camera: Camera) -> "KeypointEvidence":
         """The same before another camera."""
@@ -183,10 +184,8 @@ def usual_std_m(names: tuple[str, ...], sources: tuple[str, ...]) -> Array:
 class KnownKeypoints:
     """Keypoints at J frames whose posture is known."""
 
-    pose: Pose
-    """Forward kinematics of the postures."""
-    frame: IndexArray
-    """(J,) their indices in the clip."""
+    pose: Pose  # forward kinematics of the postures
+    frame: IndexArray  # (J,) their indices in the clip
     observed: ObservedKeypoints
 
 
@@ -195,11 +194,8 @@ def keypoint_rows(
 ) -> EvidenceRows:
     """Two rows a keypoint, with three parameters each, its place.
 
-    Args:
-        model: The points at the places found so far, before the lens found so far.
-        usual: The points at their usual places, before the stated lens, which parameters count from.
-        known: The keypoints seen.
-        std_m: (N,) error of a sure detection.
+    `model` has the places and the lens found so far, `usual` the usual ones, which parameters count from;
+    `std_m` (N,) is the error of a sure detection.
     """
     pixel = model.pixels(known.pose, known.frame)
     by_place = model.place_jacobian(known.pose, known.frame)
@@ -234,7 +230,7 @@ def place_covariance(names: tuple[str, ...]) -> Array:
     for first, name in enumerate(names):
         for second, other in enumerate(names):
             if first != second and other == mirrored_point(name):
-                shared[first, second] = MIRRORED
+                shared[first, second] = POINTS.mirrored
     shared *= std[:, None] * std
     covariance = np.zeros((count, 3, count, 3))
     for axis, sign in enumerate((-1.0, 1.0, 1.0)):  # a mirror image is one along x
@@ -249,13 +245,8 @@ def learned_std(
 
     A step of expectation maximization, in which the rows' error is what is not known.
 
-    Args:
-        model: The points' model.
-        known: The keypoints seen at J keyframes.
-        usual_m: (N,) usual errors.
-        std_m: (N,) the errors so far.
-        left: (J, 2 N) rows that the calibrated places leave.
-        noise: (J, 2 N, 2 N) their covariance.
+    `usual_m` and `std_m` (N,) are the usual errors and those so far, `left` (J, 2 N) the rows that the
+    calibrated places leave, `noise` (J, 2 N, 2 N) their covariance.
     """
     judged, points = known.observed.confidence.shape
     scale = _scale(model, known) / np.maximum(known.observed.confidence, LEAST_CONFIDENCE)
@@ -272,10 +263,10 @@ def learned_std(
     variance = np.empty(points)
     for stem in np.unique(stems):
         same = stems == stem
-        pooled = (NAME_COUNT_KEYPOINT_EVIDENCE * usual[same].mean() + total[same].sum()) / (
-            NAME_COUNT_KEYPOINT_EVIDENCE + count[same].sum()
+        pooled = (POINTS.name_count * usual[same].mean() + total[same].sum()) / (
+            POINTS.name_count + count[same].sum()
         )
-        variance[same] = (POINT_COUNT * pooled + total[same]) / (POINT_COUNT + count[same])
+        variance[same] = (POINTS.point_count * pooled + total[same]) / (POINTS.point_count + count[same])
     return np.sqrt(variance)
 
 

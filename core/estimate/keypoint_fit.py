@@ -10,40 +10,28 @@ from ..arrays import Array, BoolArray
 from ..body.body_volume import TRUNK
 from ..body.posture import Posture
 from ..errors import pluralize
-from ..evidence.keypoints import USUAL_PLACES
+from ..evidence.keypoints import USUAL_PLACES, ObservedKeypoints
 from ..files.fields import listed
 from ..footage.keypoints.keypoints import Keypoints
+from ..numerics.robust import DEGREES, student_weight
 from .keypoint_evidence import KeypointEvidence
-from .terms.keypoints import KeypointTerm, ObservedKeypoints
-
-THROWN_OUT = 0.25
-"""Weight below which a keypoint counts as thrown out: it is off by more than three standard deviations."""
+from .terms.keypoints import KeypointTerm
 
 
 @dataclass(frozen=True, eq=False)
 class KeypointFit:
     """N keypoints in F frames beside what the estimate predicts of them."""
 
-    keypoints: Keypoints
-    """As they were compared: left and right exchanged back where they were swapped."""
-    predicted_px: Array
-    """(F, N, 2) where the estimate has them [px]."""
-    residual_px: Array
-    """(F, N) distance between the two [px]; NaN where not seen."""
-    std_px: Array
-    """(F, N) expected error along each axis [px]; infinite for points that are left out."""
-    weight: Array
-    """(F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out."""
-    thrown_out: BoolArray
-    """(F, N) those seen that had next to no weight: jumps to another thing, person or side."""
-    swapped: BoolArray
-    """(F, N) those that the source had on the other side of the body."""
-    trust: Array
-    """(N,) share of the usual trust in each point, 0 for one that is left out all along."""
-    source_trust: Mapping[str, float]
-    """By source: mean trust in its points, 0 for one that is left out."""
-    lag: Mapping[str, int]
-    """By source that is left out for it: frames by which it is late, or early where negative."""
+    keypoints: Keypoints  # as they were compared: left and right exchanged back where they were swapped
+    predicted_px: Array  # (F, N, 2) where the estimate has them [px]
+    residual_px: Array  # (F, N) distance between the two [px]; NaN where not seen
+    std_px: Array  # (F, N) expected error along each axis [px]; infinite for points that are left out
+    weight: Array  # (F, N) share of the usual weight that each had, 0 to 1; 0 where not seen or left out
+    thrown_out: BoolArray  # (F, N) seen, with next to no weight: jumps to another thing, person or side
+    swapped: BoolArray  # (F, N) those that the source had on the other side of the body
+    trust: Array  # (N,) share of the usual trust in each point, 0 for one that is left out all along
+    source_trust: Mapping[str, float]  # by source: mean trust in its points, 0 for one that is left out
+    lag: Mapping[str, int]  # by source left out for it: frames late, or early where negative
 
 
 def keypoint_fit(
@@ -53,27 +41,17 @@ def keypoint_fit(
     swapped: BoolArray,
     posture: Posture,
 ) -> KeypointFit:
-    """Compare keypoints with an estimate.
-
-    Args:
-        evidence: What the keyframes say of them.
-        keypoints: As they are compared.
-        points: The same, with their confidence.
-        swapped: (F, N) those exchanged with their mirror image.
-        posture: The F postures.
-    """
+    """Compare keypoints with an estimate."""
     model, frame = evidence.model, np.arange(posture.batch[0])
     pose = model.body.pose(posture)
-    term = KeypointTerm(model, points, evidence.error_m, np.zeros((max(len(frame) - 1, 0), 1)))
-    _, std_px, _ = term.errors(pose, frame)
+    error, std_px, used = KeypointTerm(model, points, evidence.error_m, None).errors(pose, frame)
     predicted = model.pixels(pose, frame)
     residual = np.linalg.norm(predicted - points.pixel, axis=-1)
-    weight = term.weigh(pose, frame).level
+    squared = np.where(used[..., None], error, 0.0) ** 2
+    weight = np.where(used, student_weight(squared.sum(-1), DEGREES, 2), 0.0)
+    sources = np.array(evidence.sources)
     trust = {
-        source: float(
-            np.mean([t for t, own in zip(evidence.trust, evidence.sources, strict=True) if own == source])
-        )
-        for source in dict.fromkeys(evidence.sources)
+        source: float(evidence.trust[sources == source].mean()) for source in dict.fromkeys(evidence.sources)
     }
     doubted = points.seen & (keypoints.score == 0.0)
     return KeypointFit(
@@ -82,7 +60,7 @@ def keypoint_fit(
         residual,
         std_px,
         weight,
-        points.seen & (weight < THROWN_OUT) | doubted,
+        points.seen & (weight < 0.25) | doubted,  # by more than three standard deviations
         swapped,
         evidence.trust,
         MappingProxyType(trust),
@@ -102,17 +80,6 @@ def observed_joints(fit: KeypointFit) -> tuple[tuple[str, ...], BoolArray]:
     return joints, (fit.weight > 0.0) & ~fit.thrown_out
 
 
-# --- Notes on keypoints for people
-
-
-THROUGHOUT = 0.5
-"""Share of the frames from which on sides are exchanged throughout."""
-MANY_THROWN_OUT = 0.2
-"""Share of a source's keypoints that are thrown out which gets a note."""
-MOST_NAMED = 4
-"""Largest number of points that a note names."""
-
-
 def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
     """Notes on each source of keypoints that was not taken as it stands."""
     notes: list[str] = []
@@ -124,13 +91,13 @@ def keypoint_notes(fit: KeypointFit) -> tuple[str, ...]:
         notes += _exchanged(source, fit.swapped[:, own])
         doubted = np.flatnonzero(own & (fit.trust == 0.0))
         if len(doubted):
-            named = listed([fit.keypoints.names[i] for i in doubted], MOST_NAMED)
+            named = listed([fit.keypoints.names[i] for i in doubted], 4)
             notes.append(
                 f"keypoints of {source} that lie elsewhere than in the keyframes are left out: {named}"
             )
         seen = fit.keypoints.seen & own & (fit.trust > 0.0)
         share = fit.thrown_out[seen].mean() if seen.any() else 0.0
-        if share > MANY_THROWN_OUT:
+        if share > 0.2:
             notes.append(
                 f"{share:.0%} of the keypoints of {source} lie far from where everything else has "
                 "the performer and are thrown out; check whom and what they follow"
@@ -155,8 +122,7 @@ def _exchanged(source: str, swapped: BoolArray) -> list[str]:
     frames = int(swapped.any(axis=1).sum())
     if not frames:
         return []
-    if frames > THROUGHOUT * len(swapped):
+    if frames > 0.5 * len(swapped):
         return [f"{source} takes left for right throughout; the estimate exchanged its keypoints back"]
-    return [
-        (f"{source} takes left for right in {pluralize(frames, 'frame')}; the estimate exchanged them back")
-    ]
+    seen = pluralize(frames, "frame")
+    return [f"{source} takes left for right in {seen}; the estimate exchanged them back"]

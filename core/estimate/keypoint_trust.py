@@ -14,39 +14,38 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.human import HUMAN
 from ..body.kinematics import Pose
-from ..evidence.keypoints import USUAL_PLACES, KeypointModel
+from ..evidence.keypoints import USUAL_PLACES, KeypointModel, ObservedKeypoints
 from ..footage.keypoints.keypoints import Keypoints, mirror_images
-from ..numerics.robust import multivariate_cost
-from .terms.keypoints import ObservedKeypoints
-from .terms.term import DEGREES
+from ..numerics.markov_chain import cheapest_path
+from ..numerics.robust import DEGREES, multivariate_cost
 
-LIMB_WIDTH_M = 0.07
-"""About the half-width of a thigh and the width of an arm [m]."""
-TURNED = 2.0
-"""How many of a point's usual errors are added to it: hands and feet turn."""
-USUAL_QUANTILE = 0.4
-"""Of the distances at the keyframes: a few that are far off are outliers, of a point that is believed."""
-FEWEST_BELIEVED = 0.5
-"""A source of whose principal points a smaller share is believed is left out."""
-LONGEST_LAG = 15
-"""Largest number of frames by which a source is thought to be early or late."""
-LEAST_LAG = 2
-LAGGED_SHARE = 0.6
-"""A source is early or late if its points' usual distance becomes this share of what it is, or less."""
-LEAST_MISFIT_M = 0.03
-"""Nearer points are right as they stand [m]."""
+
+@dataclass(frozen=True)
+class TrustOptions:
+    """When keypoints are believed."""
+
+    limb_width_m: float = 0.07  # about the half-width of a thigh and the width of an arm [m]
+    turned: float = 2.0  # how many of a point's usual errors are added to it: hands and feet turn
+    # Of the distances at the keyframes: a few that are far off are outliers, of a point that is believed.
+    usual_quantile: float = 0.4
+    fewest_believed: float = 0.5  # a source of whose principal points a smaller share is believed is left out
+    longest_lag: int = 15  # largest number of frames by which a source is thought to be early or late
+    least_lag: int = 2
+    # A source is early or late if its points' usual distance becomes this share of what it is, or less.
+    lagged_share: float = 0.6
+    least_misfit_m: float = 0.03  # nearer points are right as they stand [m]
+
+
+TRUST = TrustOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class KeypointTrust:
     """What the keyframes say of N keypoints of several sources."""
 
-    trust: Array
-    """(N,) 1 for points that are believed, 0 for others."""
-    distance_m: Array
-    """(N,) usual distance across the view from where keyframes have each [m]; NaN where not seen at any."""
-    lag: Mapping[str, int]
-    """By source: frames by which it is late, or early where negative; 0 for one that is neither."""
+    trust: Array  # (N,) 1 for points that are believed, 0 for others
+    distance_m: Array  # (N,) usual distance across the view from keyframes [m]; NaN where not seen
+    lag: Mapping[str, int]  # by source: frames late, or early where negative; 0 for neither
 
 
 def keypoint_trust(
@@ -54,19 +53,14 @@ def keypoint_trust(
 ) -> KeypointTrust:
     """Compare keypoints with posed keyframes.
 
-    Args:
-        model: The points at their usual places.
-        sources: (N,) what saw each.
-        points: Those seen in all F frames.
-        pose: Poses of the K posed keyframes.
-        frame: (K,) their frames.
+    `points` are those of all F frames, `pose` and `frame` (K,) the posed keyframes'.
     """
     predicted, depth = model.camera.project(model.world(pose), frame[:, None])
     predicted *= np.maximum(depth, 0.1)[..., None] / model.camera.focal_px  # to meters across the view
     scale = np.maximum(depth, 0.1) / model.camera.focal_px
     at_keyframes = _distances(points, predicted, scale, frame)
     usual = np.array([USUAL_PLACES[name].error_std_m for name in model.names])
-    trust = np.where(at_keyframes > LIMB_WIDTH_M + TURNED * usual, 0.0, 1.0)
+    trust = np.where(at_keyframes > TRUST.limb_width_m + TRUST.turned * usual, 0.0, 1.0)
     lags = {}
     for source in dict.fromkeys(sources):
         own = np.array([name == source for name in sources])
@@ -75,7 +69,7 @@ def keypoint_trust(
         if not counted.any():
             continue
         lags[source] = _lag(points, predicted, scale, frame, counted)
-        if lags[source] or trust[counted].mean() < FEWEST_BELIEVED:
+        if lags[source] or trust[counted].mean() < TRUST.fewest_believed:
             trust[own] = 0.0
     return KeypointTrust(trust, at_keyframes, lags)
 
@@ -85,22 +79,22 @@ def _distances(points: ObservedKeypoints, predicted: Array, scale: Array, frame:
     distance = np.linalg.norm(points.pixel[frame] * scale[..., None] - predicted, axis=-1)
     usual = np.full(distance.shape[1], np.nan)
     known = np.isfinite(distance).any(axis=0)
-    usual[known] = np.nanquantile(distance[:, known], USUAL_QUANTILE, axis=0)
+    usual[known] = np.nanquantile(distance[:, known], TRUST.usual_quantile, axis=0)
     return usual
 
 
 def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: IndexArray, own: BoolArray) -> int:
     frames, misfit = len(points.pixel), {}
-    for lag in range(-LONGEST_LAG, LONGEST_LAG + 1):
+    for lag in range(-TRUST.longest_lag, TRUST.longest_lag + 1):
         inside = (frame + lag >= 0) & (frame + lag < frames)
         if 2 * inside.sum() >= len(frame):
             found = _distances(points, predicted[inside], scale[inside], frame[inside] + lag)[own]
             if np.isfinite(found).any():
                 misfit[lag] = float(np.nanmean(found))
-    if misfit.get(0, 0.0) < LEAST_MISFIT_M:
+    if misfit.get(0, 0.0) < TRUST.least_misfit_m:
         return 0
     best = min(misfit, key=lambda lag: misfit[lag])
-    return best if abs(best) >= LEAST_LAG and misfit[best] < LAGGED_SHARE * misfit[0] else 0
+    return best if abs(best) >= TRUST.least_lag and misfit[best] < TRUST.lagged_share * misfit[0] else 0
 
 
 # --- Left and right exchanged by a detector
@@ -108,23 +102,30 @@ def _lag(points: ObservedKeypoints, predicted: Array, scale: Array, frame: Index
 
 ARMS = ("shoulder", "elbow", "wrist", "index", "thumb", "pinky")
 LEGS = ("hip", "knee", "ankle", "heel", "toe", "small_toe")
-FACE = ("eye", "ear")
-"""Too near each other to tell: exchanged where arms and legs are."""
-STATES = np.array([[False, False], [True, False], [False, True], [True, True]])
-"""Whether arms, and whether legs, are exchanged."""
-PLACE_STD_M = 0.04
-"""Error of a point where a keyframe is: the detector's, the posing error, and what places differ by."""
-LEAST_SPEED_M_PER_S, SPEED_QUANTILE = 0.3, 0.8
-"""Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
-interpolated, and at least so fast: a running leg is anywhere a few frames later."""
-JITTER_STD_M, ACCELERATION_M_PER_S2 = 0.04, 40.0
-"""How far a point is from where its velocity takes it: a detector's jitter, and fast limbs."""
-ALIKE = 0.5
-"""The points of a limb err alike: each counts as half."""
-CHANGE = 1.0 / 60.0
-"""Probability that limbs begin or cease to be exchanged, a frame."""
-SLIDING_S = 0.07
-"""Before and after a change: a detector that follows limbs slides from one to the other for a while."""
+FACE = ("eye", "ear")  # too near each other to tell: exchanged where arms and legs are
+STATES = np.array([[False, False], [True, False], [False, True], [True, True]])  # arms, legs exchanged
+
+
+@dataclass(frozen=True)
+class SwapOptions:
+    """How keypoints of swapped limbs are told."""
+
+    # Error of a point where a keyframe is: the detector's, the posing error, and what places differ by.
+    place_std_m: float = 0.04
+    # Away from a keyframe it grows with this quantile of the speeds at which points depart from what is
+    # interpolated, and at least so fast: a running leg is anywhere a few frames later.
+    least_speed_m_per_s: float = 0.3
+    speed_quantile: float = 0.8
+    # How far a point is from where its velocity takes it: a detector's jitter, and fast limbs.
+    jitter_std_m: float = 0.04
+    acceleration_m_per_s2: float = 40.0
+    alike: float = 0.5  # the points of a limb err alike: each counts as half
+    change: float = 1.0 / 60.0  # probability that limbs begin or cease to be exchanged, a frame
+    # Before and after a change: a detector that follows limbs slides from one to the other for a while.
+    sliding_s: float = 0.07
+
+
+SWAPS = SwapOptions()
 
 
 def find_swaps(
@@ -132,25 +133,18 @@ def find_swaps(
 ) -> BoolArray:
     """(F, N) which keypoints are exchanged with their mirror image.
 
-    Args:
-        keypoints: The performer's.
-        predicted: (F, N, 2) where the interpolated keyframes have them [px].
-        scale: (F,) pixels of a meter on the performer.
-        keyframes: (K,) frames of the keyframes.
-        time_s: (F,) times of the frames [s].
+    `predicted` (F, N, 2): where the interpolated keyframes have them [px]; `scale` (F,): pixels of a meter.
     """
     swapped = np.zeros(keypoints.seen.shape, dtype=bool)
     away_s = np.abs(time_s[:, None] - time_s[keyframes]).min(axis=1)
     step_s = np.maximum(np.diff(time_s), 1e-3)
-    move_std = np.hypot(JITTER_STD_M, ACCELERATION_M_PER_S2 * step_s**2)[:, None, None]
+    move_std = np.hypot(SWAPS.jitter_std_m, SWAPS.acceleration_m_per_s2 * step_s**2)[:, None, None]
     for source in dict.fromkeys(keypoints.sources):
         pairs = [_pairs(keypoints, source, limbs) for limbs in (ARMS, LEGS)]
         if not any(len(own) for own in pairs):
             continue
-        place, move = (
-            np.zeros((len(time_s), len(STATES))),
-            np.zeros((len(time_s) - 1, len(STATES), len(STATES))),
-        )
+        place = np.zeros((len(time_s), len(STATES)))
+        move = np.zeros((len(time_s) - 1, len(STATES), len(STATES)))
         for own, exchanged in zip(pairs, STATES.T, strict=True):
             if not len(own):
                 continue
@@ -158,7 +152,7 @@ def find_swaps(
                 array[:, own] / scale[:, None, None, None] for array in (keypoints.pixel, predicted)
             )
             speed = _departure_speed(seen - guessed, step_s)
-            place_std = PLACE_STD_M + speed[:, None] * away_s[:, None, None]
+            place_std = SWAPS.place_std_m + speed[:, None] * away_s[:, None, None]
             kept = _cost(seen - guessed, place_std)
             other = _cost(seen[:, :, ::-1] - guessed, place_std)
             place += np.where(exchanged, other[:, None], kept[:, None])
@@ -166,8 +160,8 @@ def find_swaps(
             stays = _cost(seen[1:] - onward, move_std)
             turns = _cost(seen[1:, :, ::-1] - onward, move_std)
             differs = exchanged[:, None] != exchanged
-            move += np.where(differs, (turns - np.log(CHANGE))[:, None, None], stays[:, None, None])
-        exchanged = STATES[_most_probable(place, move)]  # (F, 2)
+            move += np.where(differs, (turns - np.log(SWAPS.change))[:, None, None], stays[:, None, None])
+        exchanged = STATES[cheapest_path(list(place), list(move))]  # (F, 2)
         pairs.append(_pairs(keypoints, source, FACE))
         for own, state in zip(pairs, [*exchanged.T, exchanged.all(axis=1)], strict=True):
             swapped[:, own.ravel()] |= state[:, None]
@@ -189,18 +183,12 @@ def exchanged_back(keypoints: Keypoints, swapped: BoolArray) -> Keypoints:
 
 
 def doubted_at_changes(keypoints: Keypoints, swapped: BoolArray, time_s: Array) -> Keypoints:
-    """The keypoints without their confidence and hints in frames near a change of what is exchanged.
-
-    Args:
-        keypoints: The performer's, exchanged back.
-        swapped: (F, N) which of them were exchanged.
-        time_s: (F,) times of the frames [s].
-    """
+    """The keypoints without their confidence and hints in frames near a change of what is exchanged."""
     doubted = np.zeros_like(swapped)
     for frame in np.flatnonzero((swapped[1:] != swapped[:-1]).any(axis=1)):
         changed = (swapped[frame + 1] != swapped[frame]) & keypoints.seen[[frame, frame + 1]].all(axis=0)
         middle_s = 0.5 * (time_s[frame] + time_s[frame + 1])
-        doubted |= (np.abs(time_s - middle_s) <= SLIDING_S)[:, None] & changed
+        doubted |= (np.abs(time_s - middle_s) <= SWAPS.sliding_s)[:, None] & changed
     if not doubted.any():
         return keypoints
     return replace(
@@ -227,10 +215,10 @@ def _departure_speed(departure: Array, step_s: Array) -> Array:
     """(P,) usual speed [m/s] at which pairs of points (F, P, 2, 2) depart from what is expected."""
     speed = np.linalg.norm(np.diff(departure, axis=0), axis=-1) / step_s[:, None, None]
     usual = [
-        np.quantile(one[np.isfinite(one)], SPEED_QUANTILE) if np.isfinite(one).any() else 0.0
+        np.quantile(one[np.isfinite(one)], SWAPS.speed_quantile) if np.isfinite(one).any() else 0.0
         for one in np.moveaxis(speed, 1, 0)
     ]
-    return np.maximum(np.array(usual), LEAST_SPEED_M_PER_S)
+    return np.maximum(np.array(usual), SWAPS.least_speed_m_per_s)
 
 
 def _extrapolated(seen: Array, step_s: Array) -> Array:
@@ -245,18 +233,4 @@ def _cost(error: Array, std: Array) -> Array:
     """(F,) negative logarithm of Student's t of errors (F, P, 2, 2) [m]; what is not seen costs nothing."""
     squared = (error**2).sum(axis=-1) / std**2
     cost = multivariate_cost(squared, DEGREES, 2)
-    return np.asarray(ALIKE * np.nan_to_num(cost).sum(axis=(1, 2)))
-
-
-def _most_probable(place: Array, move: Array) -> IndexArray:
-    """(F,) the sequence of states of least cost; `place` (F, S), `move` (F - 1, S, S) from row to column."""
-    best, came = place[0], np.zeros(place.shape, dtype=np.intp)
-    for frame in range(1, len(place)):
-        total = best[:, None] + move[frame - 1]
-        came[frame] = total.argmin(axis=0)
-        best = total.min(axis=0) + place[frame]
-    state = np.empty(len(place), dtype=np.intp)
-    state[-1] = best.argmin()
-    for frame in range(len(place) - 1, 0, -1):
-        state[frame - 1] = came[frame, state[frame]]
-    return state
+    return np.asarray(SWAPS.alike * np.nan_to_num(cost).sum(axis=(1, 2)))

@@ -7,17 +7,9 @@ from ..footage.region_tracks import RegionTracks
 from ..prior.keyframes import Matched
 from ..take.clip_check import VARIABLE_RATE
 from ..take.take import Take
-from .keyframe_evidence import KeyframeEvidence
+from .clip_problem import KeyframeEvidence
 
-DOUBTED_LENS = 0.03
-"""Difference of the calibrated from the stated lens, as a share, that gets a note."""
-DOUBTED_TIMING_FRAMES = 1.0
-DOUBTED_POSING = 2.0
-"""Size of the posing error, in usual ones, that gets a note."""
-DOUBTED_MARKER = 3.0
-"""Distrust of a marker that gets a note."""
-MOST_NAMED = 3
-"""Largest number of frames that a note names."""
+MOST_NAMED = 3  # largest number of frames that a note names
 
 
 def marker_notes(tracks: RegionTracks) -> tuple[str, ...]:
@@ -39,23 +31,23 @@ def evidence_notes(take: Take, evidence: KeyframeEvidence) -> tuple[str, ...]:
     """Notes where the footage at the keyframes contradicts the take: lens, timing, posing, markers."""
     notes = []
     lens, stated = evidence.model.camera.lens_mm, take.camera.lens_mm
-    if abs(lens / stated - 1.0) > DOUBTED_LENS:
+    if abs(lens / stated - 1.0) > 0.03:
         notes.append(
             f"the lens is {lens:.1f} mm by keyframes and footage, and the estimate used that "
             f"instead of {stated:.1f} mm as stated; check the camera"
         )
-    if evidence.timing_frames > DOUBTED_TIMING_FRAMES:
+    if evidence.timing_frames > 1.0:
         notes.append(
             f"the keyframes are about {evidence.timing_frames:.0f} frames early or late by the "
             "footage; check the frames they are set at"
         )
-    if evidence.posing_scale > DOUBTED_POSING:
+    if evidence.posing_scale > 2.0:
         notes.append(
             "the keyframes differ from the footage by much more than the usual posing error; check "
             f"the camera, the actor's lengths{_and_what_is_seen(take)}"
         )
     for marker, distrust in zip(take.markers, evidence.distrust, strict=True):
-        if distrust > DOUBTED_MARKER:
+        if distrust > 3.0:
             notes.append(
                 f"marker {marker.name} is seldom where the keyframes put it and counts for little; "
                 "check whether another thing has its color"
@@ -75,11 +67,9 @@ def contour_notes(take: Take, followed: bool) -> tuple[str, ...]:
     if followed or not take.contours or take.markers or take.keypoints:
         return ()
     return (
-        (
-            "contours were not followed: too little of the background stands still; between keyframes "
-            "the motion is their interpolation alone; hold the camera still, or add keypoints or "
-            "markers"
-        ),
+        "contours were not followed: too little of the background stands still; between keyframes "
+        "the motion is their interpolation alone; hold the camera still, or add keypoints or "
+        "markers",
     )
 
 
@@ -126,7 +116,6 @@ def found_notes(take: Take) -> tuple[str, ...]:
 
 
 def _origin(found: Sequence[Matched]) -> str:
-    """What found keyframes were made of."""
     libraries = sorted({said.library for said in found if not said.is_composed})
     parts = ["postures composed of all libraries"] if any(said.is_composed for said in found) else []
     parts += [f"postures of the library {' and '.join(libraries)}"] if libraries else []
@@ -135,20 +124,15 @@ def _origin(found: Sequence[Matched]) -> str:
 
 def filter_notes(take: Take) -> tuple[str, ...]:
     """Notes on what the paper's filter does not know of: keypoints, and other people's keyframes."""
-    notes: tuple[str, ...] = ()
+    notes = []
     if take.keypoints:
-        notes = (
-            (
-                "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; "
-                "method map (Whole Clip) follows both"
-            ),
+        notes.append(
+            "method ekf (Fuzzy Kalman Filter) follows markers alone and leaves keypoints aside; "
+            "method map (Whole Clip) follows both"
         )
-    if all(keyframe.matched is None for keyframe in take.keyframes):
-        return notes
-    return (
-        *notes,
-        (
+    if any(keyframe.matched is not None for keyframe in take.keyframes):
+        notes.append(
             "method ekf (Fuzzy Kalman Filter) takes found keyframes for posed ones; method map (Whole "
             "Clip) allows for the larger errors of found keyframes"
-        ),
-    )
+        )
+    return tuple(notes)

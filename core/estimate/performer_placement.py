@@ -5,6 +5,7 @@ and not from the library's own ankles, which are raised by feet that cannot bend
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,23 +23,16 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.keypoints.performer import principal_keypoints
 from ..footage.region_tracks import RegionTracks
 
-TOUCHING_PERCENT = 30.0
-"""Percentile of the lowest soles that is the floor: more than half touch it, except for runners."""
-SHOE_M = 0.012
-"""Thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor."""
+TOUCHING_PERCENT = 30.0  # of the lowest soles, the floor: more than half touch it, but for runners
+SHOE_M = 0.012  # thickness of a shoe's sole, and of a heel that hardly ever lies wholly on the floor
 ANKLE_HEIGHT_STD_M = 0.03
-SAME_FLOOR_M = 0.12
-"""Ankles that stand within this of a given floor stand on it."""
+SAME_FLOOR_M = 0.12  # ankles that stand within this of a given floor stand on it
 
 
 def lower_ankle_m(body: Body, matched: Posture, index: IndexArray, frames: int) -> Array:
     """(F,) usual height of the lower ankle [m].
 
-    Args:
-        body: The actor's body.
-        matched: K matched postures, as the library has them.
-        index: (K,) their indices in the clip, in order.
-        frames: Frames of the clip, F.
+    `matched`: K postures as the library has them; `index` (K,): their indices in the clip, in order.
     """
     soles = sole_heights_m(body, body.pose(matched)).min(axis=-1)
     floor = np.percentile(soles, TOUCHING_PERCENT)
@@ -60,12 +54,8 @@ def found_ankle_m(
 
     Their rigid feet may point into the floor, so that their soles tell nothing of it.
 
-    Args:
-        body: The actor's body.
-        found: K postures put together from parts and held against the footage.
-        index: (K,) their indices in the clip, in order.
-        frames: Frames of the clip, F.
-        floor_m: Height of the floor; by the ankles themselves where None.
+    `found`: K postures put together from parts and held against the footage, at `index` (K,), in order;
+    `floor_m`: by the ankles themselves where None.
     """
     points = body.points(body.pose(found))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
@@ -76,18 +66,27 @@ def found_ankle_m(
     return np.asarray(standing + np.interp(np.arange(frames), index, np.maximum(lower - standing, 0.0)))
 
 
-# --- Placement of a standing performer before the camera, before any keyframe is posed
+# --- A standing performer, before any keyframe is posed
 
 
-FILLED_SHARE = 0.7
-"""Share of the picture's height that a body fills where no region is seen."""
-SIZE_STD = 0.08
-"""Standard deviation of a distance by size in the picture, as a share."""
-TRUNK_AREA_STD, LIMB_AREA_STD, LEGS_STD = 0.12, 0.2, 0.08
-"""The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
-bend)."""
-AGREEING = 1.5
-"""Largest difference, in standard deviations, of sizes that agree on a distance."""
+@dataclass(frozen=True)
+class SizeOptions:
+    """How exactly sizes in the picture tell a distance, as shares of it."""
+
+    filled_share: float = 0.7  # share of the picture's height that a body fills where no region is seen
+    size_std: float = 0.08  # standard deviation of a distance by size in the picture, as a share
+    # The same by a region's area (bodies turn, sleeves differ), by the trunk's height over the shins (knees
+    # bend).
+    trunk_area_std: float = 0.12
+    limb_area_std: float = 0.2
+    legs_std: float = 0.08
+    agreeing: float = 1.5  # largest difference, in standard deviations, of sizes that agree on a distance
+    floor_std_m: float = 0.05  # standard deviation of the soles' height above the floor [m]
+    floor_doubted: float = 3.0  # standard deviations beyond which the ground is not at z = 0
+    least_height_px: float = 20.0
+
+
+SIZES = SizeOptions()
 TRUNK = ("trunk", "chest", "pelvis")
 PAIR_SPANS = {("shoulder", "hip"): 0.12, ("hip", "ankle"): 0.1, ("shoulder", "ankle"): 0.08}
 """Standard deviation of a distance by that of two pairs of keypoints in the picture, as a share: trunks lean,
@@ -97,16 +96,8 @@ LIMB_SPANS = {
     ("knee", "ankle"): 0.1,
     ("shoulder", "elbow"): 0.15,
     ("elbow", "wrist"): 0.15,
-}
-"""The same by single limbs, of which one lies across the view even in someone who bends or sits."""
+}  # the same by single limbs, of which one lies across the view even in someone who bends or sits
 _TRUNK_POINTS = np.array([name.split(".")[0] in ("hip", "shoulder") for name in HUMAN.point_names])
-FLOOR_STD_M = 0.05
-"""Standard deviation of the soles' height above the floor [m]."""
-FLOOR_DOUBTED = 3.0
-"""Standard deviations beyond which the ground is not at z = 0."""
-ROUNDS = 6
-LEAST_DEPTH_M = 0.3
-LEAST_HEIGHT_PX = 20.0
 
 
 def place_standing(
@@ -119,17 +110,8 @@ def place_standing(
 ) -> Posture:
     """A body that stands upright where the performer is, facing the camera.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        regions: The markers' regions in this frame, as tracks of one frame; where none is seen, the body
-            goes to the picture's middle.
-        segments: The segment each marker is bound to.
-        keypoints: Those of this frame alone; markers are not asked where its hips or shoulders are seen.
-
-    Returns:
-        A single posture.
+    `regions` and `keypoints` are those of this frame alone; markers are not asked where hips or shoulders are
+    seen. Where nothing is seen, the body goes to the picture's middle.
     """
     rotation, _ = camera.pose(frame)
     heading = facing_rad(rotation[:, 2])  # the camera looks along its -Z
@@ -143,8 +125,12 @@ def place_standing(
             return _center(shown, known), _relative_span(shown, seen)
 
         return _by_size(body, camera, frame, standing, _center(seen, known), by_points)
-    usable = _usable(regions, segments)
-    if regions is None or not usable.any():
+    if regions is None:
+        return _in_the_middle(body, camera, frame, standing)
+    usable = regions.visible[0] & ~regions.clipped[0]
+    trunk = usable & _bound(segments, *TRUNK)
+    usable = trunk if trunk.any() else usable
+    if not usable.any():
         return _in_the_middle(body, camera, frame, standing)
     model = RegionModel(body, camera, tuple(MarkerPlacement.usual(segment) for segment in segments))
     centroid, area = regions.centroid[0], regions.area[0]
@@ -167,25 +153,19 @@ def _by_size(
 ) -> Posture:
     """The standing body where it is as large in the picture as what was seen.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        frame: The frame's index in the clip.
-        standing: The body that stands anywhere.
-        center: (2,) middle of what was seen [px].
-        shown_from: Middle (2,) [px] of the same of a body that stands somewhere, and the ratio of its size to
-            the one seen.
+    `center` (2,) is the middle of what was seen [px]; `shown_from` gives the middle of the same of a body
+    that stands somewhere, and the ratio of its size to the one seen.
     """
     _, location = camera.pose(frame)
     _, direction = camera.rays(center, frame)
     distance, offset = _usual_distance(body, camera), np.zeros(3)
-    for _ in range(ROUNDS):
+    for _ in range(6):
         shown, ratio = shown_from(_at(standing, location + distance * direction))
         # What is seen has its middle off the hips, by the same offset there as here.
         _, ray = camera.rays(shown, frame)
         offset = (ray - direction) * distance
-        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), LEAST_DEPTH_M)
-    return _on_floor(location + distance * direction - offset, direction, distance, standing, body)
+        distance = max(distance * float(np.clip(ratio, 0.25, 4.0)), 0.3)
+    return _at(standing, _on_floor(location + distance * direction - offset, direction, distance, body))
 
 
 def _relative_span(shown: Array, seen: Array) -> float:
@@ -207,14 +187,17 @@ def _relative_span(shown: Array, seen: Array) -> float:
 
 
 def _points(part: str) -> list[int]:
-    """Indices of both sides' points, left first."""
     return [HUMAN.point_names.index(f"{part}.{side}") for side in SIDES]
 
 
-def _on_floor(by_size: Array, direction: Array, distance: float, standing: Posture, body: Body) -> Posture:
-    """The standing body with hips where sizes have them, moved along the line of sight toward the floor."""
-    along = _floor_step(float(by_size[2]) - hip_height_m(body), float(direction[2]), distance)
-    return _at(standing, by_size + along * direction)
+def _on_floor(hips: Array, direction: Array, distance: float, body: Body) -> Array:
+    """Hips where sizes have them, moved along the line of sight toward the floor."""
+    above_m, down = float(hips[2]) - hip_height_m(body), float(direction[2])
+    variance = (SIZES.size_std * distance) ** 2
+    spread = SIZES.floor_std_m**2 + variance * down**2
+    if above_m**2 > SIZES.floor_doubted**2 * spread:
+        return hips
+    return hips - above_m * down * variance / spread * direction
 
 
 def ground_place(
@@ -222,21 +205,16 @@ def ground_place(
 ) -> Array:
     """The ground, (3,) in the world [m], between the feet of someone who stands there upright.
 
-    Args:
-        camera: The camera.
-        frame: The frame's index in the clip, for a moving camera.
-        stature_m: Body height [m].
-        crown_px: (2,) top of the head in the picture [px].
-        ground_px: (2,) the ground between the feet [px].
+    `crown_px` and `ground_px` (2,): top of the head, and the ground between the feet [px].
 
     Raises:
         InputError: The two points in the picture cannot be a person's.
     """
     crown, ground = np.asarray(crown_px, dtype=np.float64), np.asarray(ground_px, dtype=np.float64)
-    if np.linalg.norm(crown - ground) < LEAST_HEIGHT_PX:
+    if np.linalg.norm(crown - ground) < SIZES.least_height_px:
         raise InputError(
             f"top of the head and ground are {np.linalg.norm(crown - ground):.0f} pixels apart in the "
-            f"picture; at least {LEAST_HEIGHT_PX:.0f} are needed to measure by"
+            f"picture; at least {SIZES.least_height_px:.0f} are needed to measure by"
         )
     location, up = camera.rays(crown, frame)
     _, down = camera.rays(ground, frame)
@@ -249,15 +227,6 @@ def ground_place(
             "the ground between the feet"
         )
     return np.asarray(location + far[0] * down)
-
-
-def _usable(regions: RegionTracks | None, segments: tuple[str, ...]) -> BoolArray:
-    """(M,) the markers to place the body by: the trunk's, or all visible ones without it."""
-    if regions is None:
-        return np.zeros(len(segments), dtype=bool)
-    seen = regions.visible[0] & ~regions.clipped[0]
-    trunk = seen & _bound(segments, *TRUNK)
-    return np.asarray(trunk if trunk.any() else seen)
 
 
 def _bound(segments: tuple[str, ...], *parts: str) -> BoolArray:
@@ -286,40 +255,25 @@ def _relative_size(
     shins = np.isfinite(seen_area) & _bound(segments, "shin")
     measured = known | shins
     logarithms = 0.5 * np.log(shown_area[measured] / seen_area[measured])
-    errors = np.where(_bound(segments, *TRUNK), TRUNK_AREA_STD, LIMB_AREA_STD)[measured]
+    errors = np.where(_bound(segments, *TRUNK), SIZES.trunk_area_std, SIZES.limb_area_std)[measured]
     trunk = known & _bound(segments, *TRUNK)
     if trunk.any() and shins.sum() == 2:
         apart = [float(np.linalg.norm(_center(p, trunk) - _center(p, shins))) for p in (shown, seen)]
         logarithms = np.append(logarithms, np.log(max(apart[0], 1.0)) - np.log(max(apart[1], 1.0)))
-        errors = np.append(errors, LEGS_STD)
+        errors = np.append(errors, SIZES.legs_std)
     return _largest_size(logarithms, errors)
 
 
 def _largest_size(logarithms: Array, errors: Array) -> float:
     """Ratio by all sizes that agree with the largest, given the logarithms of each one's ratio."""
     nearest = int(np.argmin(logarithms))
-    fits = logarithms - logarithms[nearest] <= AGREEING * np.hypot(errors, errors[nearest])
+    fits = logarithms - logarithms[nearest] <= SIZES.agreeing * np.hypot(errors, errors[nearest])
     return float(np.exp(np.average(logarithms[fits], weights=errors[fits] ** -2)))
-
-
-def _floor_step(above_m: float, down: float, distance: float) -> float:
-    """Correction along the line of sight that brings the soles to the floor [m].
-
-    Args:
-        above_m: Height of the soles by the region's size [m].
-        down: Vertical share of the line of sight.
-        distance: By the region's size [m].
-    """
-    variance = (SIZE_STD * distance) ** 2
-    spread = FLOOR_STD_M**2 + variance * down**2
-    if above_m**2 > FLOOR_DOUBTED**2 * spread:
-        return 0.0
-    return -above_m * down * variance / spread
 
 
 def _usual_distance(body: Body, camera: Camera) -> float:
     """Distance at which the body fills the usual share of the picture's height [m]."""
-    return body.actor.stature_m * camera.focal_px / (FILLED_SHARE * camera.resolution[1])
+    return body.actor.stature_m * camera.focal_px / (SIZES.filled_share * camera.resolution[1])
 
 
 def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) -> Posture:
@@ -330,7 +284,7 @@ def _in_the_middle(body: Body, camera: Camera, frame: int, standing: Posture) ->
     stature = body.actor.stature_m
     hips = middle + np.array([0.0, 0.0, hip_height_m(body) - 0.5 * stature])
     soles = float(hips[2]) - hip_height_m(body)
-    off_the_picture = 0.5 * (1.0 / FILLED_SHARE - 1.0) * stature
+    off_the_picture = 0.5 * (1.0 / SIZES.filled_share - 1.0) * stature
     if abs(soles) <= off_the_picture:
         hips[2] -= soles
     return _at(standing, hips)

@@ -28,24 +28,16 @@ from ..take.read_footage import average_model, read_footage
 from ..take.take import Take
 from .fuzzy import Memberships, keyframe_distance
 from .kalman import filter_clip
+from .keyframe_error import place_depth_std_m, undetermined_covariance, unobserved_variance
 from .keyframe_trust import select_keyframes
 from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
-from .match_error import place_depth_std_m, undetermined_covariance, unobserved_variance
-from .notes import (
-    contour_notes,
-    evidence_notes,
-    filter_notes,
-    found_notes,
-    left_out_notes,
-    marker_notes,
-)
+from .notes import contour_notes, evidence_notes, filter_notes, found_notes, left_out_notes, marker_notes
 from .performer_placement import found_ankle_m
 from .second_look import seen_tracks
 from .whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
-EXTRACTION_SHARE = 0.6
-"""Usual share of the work of reading the footage."""
+EXTRACTION_SHARE = 0.6  # usual share of the work of reading the footage
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,20 +45,13 @@ class Reconstruction:
     """A motion and the intermediate results it was made from."""
 
     motion: Motion
-    interpolation: Motion
-    """The keyframes interpolated without the footage, for comparison."""
-    reading: Reading
-    """Data read from the clip, for another reconstruction of it."""
-    speed: Array
-    """(F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]."""
-    notes: tuple[str, ...]
-    """Notes on the result for people, one sentence each."""
-    keypoints: Keypoints
-    """The performer's keypoints in every frame, none where the take has none."""
-    model: RegionModel
-    """The markers' region model: calibrated on the keyframes, or of average placements."""
-    solution: WholeClipResult | None = None
-    """Result of method `map`, for another to start from."""
+    interpolation: Motion  # the keyframes interpolated without the footage, for comparison
+    reading: Reading  # data read from the clip, for another reconstruction of it
+    speed: Array  # (F,) V_sum of all evidence, with markers alone that of paper eq. 8 [px per frame]
+    notes: tuple[str, ...]  # notes on the result for people, one sentence each
+    keypoints: Keypoints  # the performer's keypoints in every frame, none where the take has none
+    model: RegionModel  # the markers' region model: calibrated on the keyframes, or of average placements
+    solution: WholeClipResult | None = None  # result of method `map`, for another to start from
 
     @property
     def keypoint_fit(self) -> KeypointFit | None:
@@ -81,25 +66,13 @@ class Reconstruction:
 
 
 def reconstruct(
-    take: Take,
-    method: str = "map",
-    reading: Reading | None = None,
-    earlier: Reconstruction | None = None,
+    take: Take, method: str = "map", reading: Reading | None = None, earlier: Reconstruction | None = None
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
-    Args:
-        take: A validated take with at least two keyframes.
-        method: `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`.
-        reading: Data that `read_footage` or an earlier reconstruction has read from the same clip, which is
-            then not opened again.
-        earlier: A reconstruction to start from; parts that no longer hold are recognized and not used.
-
-    Yields:
-        Progress; closing the generator cancels the job, which has no effects of its own.
-
-    Returns:
-        The motion of every frame of the clip.
+    `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `reading` has
+    what was read from the same clip before, which is then not opened again; of `earlier` those parts are used
+    that still hold. Closing the generator cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The clip cannot be used, a color matches nothing in it, or the method is unknown.
@@ -188,7 +161,6 @@ def _usable(earlier: Reconstruction | None, reading: Reading) -> WholeClipResult
 
 
 def _check_tracks(take: Take, tracks: RegionTracks) -> None:
-    """Check tracks that were found earlier against the take."""
     names = tuple(style.name for style in take.markers)
     if tracks.names != names:
         raise ValueError(f"the tracks are those of {tracks.names}, not of the take's markers {names}")
@@ -205,36 +177,22 @@ def _whole_clip(
     begun: float,
     earlier: WholeClipResult | None,
 ) -> Job[WholeClipResult]:
-    estimate = estimate_whole_clip(
-        take.body,
-        take.camera,
-        Seen(
-            reading.tracks,
-            take.marker_segments,
-            keypoints,
-            reading.album,
-            IgnoredPixels(take.ignored_regions, take.camera.resolution),
-        ),
-        Believed(prior, take.keyframe_indices, match_scale, _found_ankle(take, prior)),
-        earlier=earlier,
-    )
+    ignored = IgnoredPixels(take.ignored_regions, take.camera.resolution)
+    seen = Seen(reading.tracks, take.marker_segments, keypoints, reading.album, ignored)
+    ankle, index = None, np.array(take.keyframe_indices, dtype=np.intp)
+    if _is_composed(take):
+        ankle = found_ankle_m(take.body, prior[index], index, prior.batch[0])
+    believed = Believed(prior, take.keyframe_indices, match_scale, ankle)
+    estimate = estimate_whole_clip(take.body, take.camera, seen, believed, earlier=earlier)
     return (yield from within("Estimating the motion", estimate, begun, 1.0))
 
 
 def _is_composed(take: Take) -> bool:
-    """Whether all keyframes were put together from parts."""
     return all(key.matched is not None and key.matched.is_composed for key in take.keyframes)
 
 
-def _found_ankle(take: Take, prior: Posture) -> Array | None:
-    """(F,) height of the lower ankle by keyframes composed of parts [m]; None where there are others."""
-    if not _is_composed(take):
-        return None
-    index = np.array(take.keyframe_indices, dtype=np.intp)
-    return found_ankle_m(take.body, prior[index], index, prior.batch[0])
-
-
 def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_scale: Array) -> Motion:
+    fit = result.keypoints
     diagnostics = {
         "residual_px": result.residual_px,
         "quality": tracks.quality,
@@ -242,20 +200,21 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
         "timing_frames": np.array(result.evidence.timing_frames),
         "lens_mm": np.array(result.evidence.model.camera.lens_mm),
         "distrust": result.evidence.distrust,
-        **_keypoint_diagnostics(result),
     }
+    if result.problem.keypoints.names:
+        diagnostics |= {
+            "keypoint_residual_px": fit.residual_px,
+            "keypoint_weight": fit.weight,
+            "keypoint_swapped": fit.swapped.astype(np.float64),
+        }
     index = np.array(take.keyframe_indices, dtype=np.intp)
-    points, seen = observed_joints(result.keypoints)
+    points, seen = observed_joints(fit)
     if result.outlined is not None and result.contours is not None:
         points = (*points, *result.contours.model.parts.segments)
         seen = np.concatenate([seen, result.outlined], axis=1)
-    unseen = unobserved_variance(
-        take.body.skeleton,
-        (*take.marker_segments, *points),
-        np.concatenate([tracks.visible, seen], axis=1),
-        index,
-        tracks.time_s,
-    )
+    visible = np.concatenate([tracks.visible, seen], axis=1)
+    names = (*take.marker_segments, *points)
+    unseen = unobserved_variance(take.body.skeleton, names, visible, index, tracks.time_s)
     motion = _motion(take, tracks, result.posture, result.covariance, "map", diagnostics, unseen)
     if not match_scale.any():
         return motion
@@ -267,18 +226,6 @@ def _solved(take: Take, tracks: RegionTracks, result: WholeClipResult, match_sca
     sure = np.array([1.0 if key.matched is None else key.matched.confidence for key in take.keyframes])
     open_depth = undetermined_covariance(motion.points, take.camera, index, match_scale, sure, place_std_m)
     return replace(motion, point_covariance=motion.point_covariance + open_depth)
-
-
-def _keypoint_diagnostics(result: WholeClipResult) -> dict[str, Array]:
-    """How far keypoints are from the motion, and their weight, in the order of the record of a conversion."""
-    if not result.problem.keypoints.names:
-        return {}
-    fit = result.keypoints
-    return {
-        "keypoint_residual_px": fit.residual_px,
-        "keypoint_weight": fit.weight,
-        "keypoint_swapped": fit.swapped.astype(np.float64),
-    }
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture, begun: float) -> Job[Motion]:
@@ -302,13 +249,11 @@ def _motion(
     diagnostics: dict[str, Array] | None = None,
     unseen: Array | None = None,
 ) -> Motion:
-    pose = take.body.pose(posture)
-    points = take.body.points(pose)
+    points = take.body.points(take.body.pose(posture))
     distance = keyframe_distance(tracks.frame_count, take.keyframe_indices)
     said = {"nearness": Memberships().near(distance), **(diagnostics or {})}
-    if covariance is None:
-        spread = np.full((*points.shape, 3), np.nan)
-    else:
+    spread = np.full((*points.shape, 3), np.nan)
+    if covariance is not None:
         spread = point_covariance(take.body, posture, covariance, unseen)
     return Motion(
         take.body,
@@ -327,11 +272,7 @@ def _motion(
 def point_covariance(body: Body, posture: Posture, covariance: Array, more: Array | None = None) -> Array:
     """Covariance (F, P, 3, 3) [m²] of the principal points from the posture's (F, D, D).
 
-    Args:
-        body: The actor's body.
-        posture: F postures.
-        covariance: Theirs.
-        more: (F, D) variances added to it.
+    `more` (F, D): variances added to it.
     """
     points = len(body.skeleton.points)
     spread = np.empty((len(covariance), points, 3, 3))

@@ -10,7 +10,7 @@ models Shumway & Stoffer 1982, *An approach to time series smoothing and forecas
 """
 
 from collections.abc import Generator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,20 +29,31 @@ from .turn_choice import choose_turns
 from .warm_start import changed_gaps
 from .window_problem import WindowProblem
 
-USUAL_SIZE = 0.15
-"""Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
-solution is smoother than the motion, whose size is one."""
-SHRINKAGE = 0.7
-"""Power of the size: what a solution shows of a limb's motion is partly what was assumed of it."""
-LARGEST, LARGEST_PER_GAP_S, LARGEST_OF_ALL = 1.5, 4.5, 3.0
-"""Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a third of a
-second apart and show less of the swings between them. A looser motion has more local optima."""
-DEPENDENT_ROWS = 8.0
-"""Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
-but count as rows of their own."""
-BODY_SHARE = 0.5
-"""Share of the whole body's in a point's squared miss: depths of one body err together."""
-LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M = 0.1, 3.0
+
+@dataclass(frozen=True)
+class SizeOptions:
+    """How sizes of motion follow from a solution."""
+
+    # Root mean square second difference of a limb's unknowns at which the keyframes told the size right: a
+    # solution is smoother than the motion, whose size is one.
+    usual_size: float = 0.15
+    # Power of the size: what a solution shows of a limb's motion is partly what was assumed of it.
+    shrinkage: float = 0.7
+    # Bound of a limb's factor, which is never below 1: 1.5, or more where keyframes lie more than a third of
+    # a second apart and show less of the swings between them. A looser motion has more local optima.
+    largest: float = 1.5
+    largest_per_gap_s: float = 4.5
+    largest_of_all: float = 3.0
+    # Factor on the depths' deviation: a frame's 13 depths and those of about five frames around err together,
+    # but count as rows of their own.
+    dependent_rows: float = 8.0
+    # share of the whole body's in a point's squared miss: depths of one body err together
+    body_share: float = 0.5
+    least_depth_std_m: float = 0.1
+    most_depth_std_m: float = 3.0
+
+
+SIZES = SizeOptions()
 
 
 def adapted(
@@ -54,18 +65,9 @@ def adapted(
 ) -> Generator[None, None, tuple[ClipProblem, list[ClipState]]]:
     """The problem with sizes learned from its states, and the states that follow from it.
 
-    It yields now and then, so that a job can be canceled.
-
-    Args:
-        problem: The clip's problem, with sizes as the keyframes tell them.
-        spans: The windows.
-        states: The state of each by the markers.
-        among: (F,) frames in whose gaps it is asked how far the prior misses.
-        earlier: The problem of an earlier estimate, whose limbs keep their sizes, and which knows how far the
-            prior misses in all other gaps; None without one.
-
-    Returns:
-        The same problem and states where the markers or keypoints do not show the whole body.
+    `among` (F,): frames in whose gaps it is asked how far the prior misses; `earlier`: the problem of an
+    earlier estimate, which knows the limbs' sizes and all other gaps. Nothing changes where neither markers
+    nor keypoints show the whole body.
     """
     segments = tuple(one.segment for one in problem.evidence.model.placements)
     if not (all_located(problem.body, segments) or points_locate(problem.keypoints)) or not spans:
@@ -85,13 +87,7 @@ def adapted(
 
 
 def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState]) -> Array:
-    """(D,) factor on the usual accelerations of each degree of freedom's limb.
-
-    Args:
-        problem: The clip's problem.
-        spans: Windows that keep all of its frames.
-        states: The state of each.
-    """
+    """(D,) factor on the usual accelerations of each degree of freedom's limb."""
     kept = [state.variation[window.kept] for window, state in zip(spans, states, strict=True)]
     pace = float(np.median(problem.step_s)) / REFERENCE_STEP_S if len(problem.step_s) else 1.0
     variation = np.concatenate(kept)
@@ -100,9 +96,9 @@ def limb_sizes(problem: ClipProblem, spans: list[Window], states: list[ClipState
         return size
     squared = (np.diff(variation, n=2, axis=0) ** 2).mean(axis=0) / pace**3
     gap_s = float(np.median(np.diff(problem.keyframes))) * pace * REFERENCE_STEP_S
-    largest = float(np.clip(LARGEST_PER_GAP_S * gap_s, LARGEST, LARGEST_OF_ALL))
+    largest = float(np.clip(SIZES.largest_per_gap_s * gap_s, SIZES.largest, SIZES.largest_of_all))
     for limb in problem.body.skeleton.limbs:
-        found = (np.sqrt(squared[limb].mean()) / USUAL_SIZE) ** SHRINKAGE
+        found = (np.sqrt(squared[limb].mean()) / SIZES.usual_size) ** SIZES.shrinkage
         size[limb] = np.clip(found, 1.0, largest)
     return size
 
@@ -129,12 +125,9 @@ def _depth_factor(
     count = np.bincount(gap[told], minlength=gaps)
     total = np.stack([np.bincount(gap[told], one[told], minlength=gaps) for one in squared.T], axis=-1)
     mean = total / np.maximum(count, 1)[:, None]
-    mean = (1.0 - BODY_SHARE) * mean + BODY_SHARE * mean.mean(axis=-1, keepdims=True)
-    std = np.clip(DEPENDENT_ROWS * np.sqrt(mean), LEAST_DEPTH_STD_M, MOST_DEPTH_STD_M)
+    mean = (1.0 - SIZES.body_share) * mean + SIZES.body_share * mean.mean(axis=-1, keepdims=True)
+    std = np.clip(SIZES.dependent_rows * np.sqrt(mean), SIZES.least_depth_std_m, SIZES.most_depth_std_m)
     return np.where((count > 0)[gap][:, None], (std / DEPTH_STD_M)[gap], known)
-
-
-# --- What is learned once the markers are followed, before contours join them
 
 
 def refine(
@@ -148,21 +141,9 @@ def refine(
 ) -> Part[tuple[ClipProblem, list[ClipState], ContourEvidence | None]]:
     """Learn from the footage what the keyframes could not tell.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows.
-        states: The state of each by its markers.
-        album: Pictures of all frames; None where contours are left out.
-        anew: (F,) the frames that are decided anew, and with them the gaps between keyframes they lie in.
-        contours: What is known of contours already; None to learn it.
-        earlier: The problem of an earlier estimate, which knows the rest; None without one.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        Problem and states with all that was learned, and the look of performer and background; None where no
-        background can be trusted.
+    `anew` (F,): the frames that are decided anew, and with them the gaps they lie in; `album` and `contours`
+    None leave contours out, or to be learned; `earlier`: the problem of an earlier estimate, which knows the
+    rest.
     """
     problem, states = yield from scaled(choose_turns(problem, states, changed_gaps(problem, anew)), 0.0, 0.3)
     problem, states = yield from scaled(adapted(problem, spans, states, anew, earlier), 0.3, 0.4)
@@ -179,7 +160,6 @@ def refine(
 def _learned(
     problem: ClipProblem, spans: list[Window], states: list[ClipState], album: Album
 ) -> Part[ContourEvidence | None]:
-    """The look of performer and background, and the shapes of the performer's parts."""
     camera = problem.evidence.model.camera  # with the lens that was found
     segments = tuple(one.segment for one in problem.evidence.model.placements)
     schedule = contour_schedule(
@@ -191,7 +171,6 @@ def _learned(
 
 
 def _kept(spans: list[Window], states: list[ClipState]) -> Posture:
-    """The postures of all frames."""
     return Posture.concatenate(
         [state.posture[window.kept] for state, window in zip(states, spans, strict=True)]
     )

@@ -1,4 +1,4 @@
-"""Tracks as the estimate has seen them: those of the reading, and the regions found at a second look."""
+"""A second look for markers that were lost, blurred or half hidden, once it is known where they should be."""
 
 from collections.abc import Generator
 from dataclasses import dataclass, replace
@@ -10,6 +10,7 @@ from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.body_volume import body_pieces
 from ..body.human import limb_of
 from ..body.posture import Posture
+from ..evidence.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from ..footage.ignored_regions import is_ignored
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import centroid_and_second_moment
@@ -19,7 +20,6 @@ from ..progress import Part, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
-from .terms.regions import FEATURES, SMALLEST_DEVIATION_PX, ObservedRegions
 from .window_problem import WindowProblem
 
 
@@ -35,67 +35,58 @@ def seen_tracks(tracks: RegionTracks, observed: ObservedRegions) -> RegionTracks
     )
 
 
-# --- A second look for markers that were lost, blurred or half hidden, once it is known where they should
-# be
+ROUNDS = 3  # looks at most: what is found moves the body, and with it where the rest is looked for
 
 
-ROUNDS = 3
-"""Looks at most: what is found moves the body, and with it where the rest is looked for."""
-LOST = 0.5
-"""Quality below which a tracked region beside lost ones is looked at again."""
-BESIDE = 2
-"""Frames from lost ones within which it is: a blur comes and goes."""
-MORE = 1.3
-"""How much larger than such a region a find must be to replace it, and the prediction to look for it."""
-LEAST_AREA_PX = 6.0
-"""Least predicted area, in pixels of the album."""
-LEAST_GAIN = 10.0
-"""Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance."""
-LEAST_REST_GAIN = 3.0
-"""Of what something before it cuts off from a find."""
-LEAST_PEAK = 0.3
-"""Least of a find's largest shares; colors that were never learned pass for less."""
-LEAST_CERTAINTY = 0.25
-"""Least mean gain of its pixels, relative to the largest: what others explain as well tells no place."""
-LEAST_SIZE, MOST_SIZE = 0.15, 2.0
-"""Area of a find relative to the predicted one."""
-SIZE_DEVIATION = 1.2
-"""Standard deviation of its logarithm, as for tracking."""
-NEAR = 1.0
-"""Distance from the prediction, in the marker's lengths, within which a find stands alone."""
-WIDENING = 0.5
-"""Growth of the distance that is searched with each frame in which the marker is lost, in its lengths."""
-FARTHEST = 5.0
-"""Largest such distance: that from one side of the body to the other, two arms long."""
-STRETCHED = 80.0
-"""Percentile of its predicted lengths that is a marker's own, hardly foreshortened."""
-HALF = 0.6
-"""Half of the marker's length, and its blur."""
-MOVING = 0.3
-"""Distance of a find from the prediction, in the marker's lengths, from which on its window is solved anew;
-what is nearer is taken in by the steps that follow with contours."""
-STEP = 1.0
-"""Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear."""
-REST_REACH = 0.7
-"""Distance of such a rest from the find, in the marker's lengths."""
-PLACE_STD = 0.5
-"""Standard deviation of a find's features beyond a tracked region's, in pixels of the album."""
-SHUTTER = 0.5
-"""Share of the time between frames in which the shutter is open: between nothing and all of it."""
+@dataclass(frozen=True)
+class LookOptions:
+    """What is looked for at a second look, and what is believed of it."""
+
+    lost: float = 0.5  # quality below which a tracked region beside lost ones is looked at again
+    beside: int = 2  # frames from lost ones within which it is: a blur comes and goes
+    # How much larger than such a region a find must be to replace it, and the prediction to look for it.
+    more: float = 1.3
+    least_area_px: float = 6.0  # least predicted area, in pixels of the album
+    # Log likelihood ratio of a find: a window has e^8 places for it, and one in e^2 of all may be chance.
+    least_gain: float = 10.0
+    least_rest_gain: float = 3.0  # of what something before it cuts off from a find
+    least_peak: float = 0.3  # least of a find's largest shares; colors that were never learned pass for less
+    # Least mean gain of its pixels, relative to the largest: what others explain as well tells no place.
+    least_certainty: float = 0.25
+    least_size: float = 0.15  # area of a find relative to the predicted one
+    most_size: float = 2.0
+    size_deviation: float = 1.2  # standard deviation of its logarithm, as for tracking
+    # distance from the prediction, in the marker's lengths, within which a find stands alone
+    near: float = 1.0
+    # Growth of the distance that is searched with each frame in which the marker is lost, in its lengths.
+    widening: float = 0.5
+    farthest: float = 5.0  # largest such distance: that from one side of the body to the other, two arms long
+    # percentile of its predicted lengths that is a marker's own, hardly foreshortened
+    stretched: float = 80.0
+    half: float = 0.6  # half of the marker's length, and its blur
+    # Distance of a find from the prediction, in the marker's lengths, from which on its window is solved
+    # anew; what is nearer is taken in by the steps that follow with contours.
+    moving: float = 0.3
+    # Largest step of a limb between frames, in its marker's lengths: longer ones leave nothing but a smear.
+    step: float = 1.0
+    rest_reach: float = 0.7  # distance of such a rest from the find, in the marker's lengths
+    # standard deviation of a find's features beyond a tracked region's, in pixels of the album
+    place_std: float = 0.5
+    # share of the time between frames in which the shutter is open: between nothing and all of it
+    shutter: float = 0.5
+
+
+LOOK = LookOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
     """What is looked for, and before what: the colors of M markers, of the bare body and the background."""
 
-    contours: ContourEvidence
-    """The clip's pictures, and the look of performer and background."""
-    palettes: tuple[Palette | None, ...]
-    """(M,) None for a marker whose color was never seen well."""
-    background: SingleArray
-    """(rows, columns, 3) blue, green, red; NaN where unknown."""
-    deviation: SingleArray
-    """(rows, columns) its standard deviation."""
+    contours: ContourEvidence  # the clip's pictures, and the look of performer and background
+    palettes: tuple[Palette | None, ...]  # (M,) None for a marker whose color was never seen well
+    background: SingleArray  # (rows, columns, 3) blue, green, red; NaN where unknown
+    deviation: SingleArray  # (rows, columns) its standard deviation
 
     @classmethod
     def of(cls, problem: ClipProblem, contours: ContourEvidence) -> "Search":
@@ -120,18 +111,13 @@ class Search:
     ) -> Generator[float, None, tuple[ObservedRegions, IndexArray]]:
         """Look for what is missed; yields the fraction done.
 
-        Args:
-            problem: The clip's problem.
-            posture: Postures of the frames, by what was observed so far.
-            frame: (N,) ascending frames that are looked at; in others nothing changes.
-
-        Returns:
-            The observed regions with those found, and the frames of finds that are far from the prediction.
+        `frame` (N,): ascending frames that are looked at. The regions observed with those found, and the
+        frames of finds that are far from the prediction.
         """
         album, observed = self.contours.album, problem.observed[frame]
         expected = _Expected.of(problem, posture, frame)
         there = np.array([int(index) in album for index in frame], dtype=np.bool_)[:, None]
-        wanted = there & expected.missed(observed, LEAST_AREA_PX * album.factor**2)
+        wanted = there & expected.missed(observed, LOOK.least_area_px * album.factor**2)
         wanted &= np.array([palette is not None for palette in self.palettes])
         moments, certainty = np.full((*wanted.shape, 6), np.nan), np.zeros(wanted.shape)
         rows = np.flatnonzero(wanted.any(axis=1))
@@ -163,8 +149,8 @@ class Search:
         ]
         found_regions, kept = expected.held(observed, moments, certainty, alike, album.factor)
         row, marker = np.nonzero(kept)
-        off = np.linalg.norm(found_regions.centroid - expected.centroid, axis=-1) > MOVING * expected.length
-        far = frame[(kept & off).any(axis=1)]
+        away = np.linalg.norm(found_regions.centroid - expected.centroid, axis=-1)
+        far = frame[(kept & (away > LOOK.moving * expected.length)).any(axis=1)]
         return problem.observed.replaced((frame[row], marker), found_regions[row, marker]), far
 
 
@@ -177,12 +163,7 @@ def find_lost(
 ) -> Part[ClipProblem]:
     """The problem with lost markers observed where they are found; states follow those that are far off.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows.
-        states: The state of each by the markers so far; those with far finds are replaced.
-        contours: The look of performer and background, and the clip's pictures.
-        among: (F,) frames that are looked at; the others keep what is observed in them.
+    `among` (F,): frames that are looked at; states with far finds are replaced.
     """
     if not spans or not among.any():
         return problem
@@ -212,41 +193,34 @@ def find_lost(
 class _Expected:
     """What is predicted of M markers in N frames, in pixels of the clip."""
 
-    frame: IndexArray
-    """(N,)."""
-    centroid: Array
-    """(N, M, 2)."""
-    area: Array
-    """(N, M)."""
-    seen: BoolArray
-    """(N, M) whether enough of it is predicted in sight to be compared."""
-    length: Array
-    """(M,) the marker's length where it is hardly foreshortened."""
-    reach: Array
-    """(N, M) how far around is searched."""
-    sweep: Array
-    """(N, M, 2) motion while the shutter is open."""
+    frame: IndexArray  # (N,)
+    centroid: Array  # (N, M, 2)
+    area: Array  # (N, M)
+    seen: BoolArray  # (N, M) whether enough of it is predicted in sight to be compared
+    length: Array  # (M,) the marker's length where it is hardly foreshortened
+    reach: Array  # (N, M) how far around is searched
+    sweep: Array  # (N, M, 2) motion while the shutter is open
 
     @classmethod
     def of(cls, problem: ClipProblem, posture: Posture, frame: IndexArray) -> "_Expected":
         evidence = problem.evidence
         predicted = evidence.model.evaluate(problem.body.pose(posture), frame)
         longest = np.sqrt(12.0 * np.linalg.eigvalsh(predicted.second_moment)[..., 1])
-        length = np.percentile(longest, STRETCHED, axis=0)
-        away = _frames_away(problem.observed.quality >= LOST)[frame]
-        reach = length * np.minimum(NEAR + WIDENING * away, FARTHEST)
+        length = np.percentile(longest, LOOK.stretched, axis=0)
+        away = _frames_away(problem.observed.quality >= LOOK.lost)[frame]
+        reach = length * np.minimum(LOOK.near + LOOK.widening * away, LOOK.farthest)
         seen = predicted.visible > problem.noise.least_visible
         sweep = np.zeros_like(predicted.centroid)
         if len(frame) > 1:
-            sweep = SHUTTER * np.gradient(predicted.centroid, frame.astype(np.float64), axis=0)
+            sweep = LOOK.shutter * np.gradient(predicted.centroid, frame.astype(np.float64), axis=0)
         area = predicted.area * evidence.area_ratio
         return cls(frame, predicted.centroid, area, seen, length, reach, sweep)
 
     def missed(self, observed: ObservedRegions, least_area: float) -> BoolArray:
         """(N, M) which markers should be seen by more than they are."""
         hidden = np.isnan(observed.centroid[..., 0])
-        beside = binary_dilation(hidden, np.ones((2 * BESIDE + 1, 1), dtype=np.bool_))
-        small = ~(observed.area * MORE > self.area) & (observed.quality < LOST)
+        beside = binary_dilation(hidden, np.ones((2 * LOOK.beside + 1, 1), dtype=np.bool_))
+        small = ~(observed.area * LOOK.more > self.area) & (observed.quality < LOOK.lost)
         return np.asarray(self.seen & (self.area >= least_area) & beside & small)
 
     def window(
@@ -254,7 +228,7 @@ class _Expected:
     ) -> tuple[tuple[int, int], tuple[int, int]] | None:
         """First and last row, and column, that are searched in a picture of a shape; None without any."""
         # So wide that what has its center within reach lies in it as a whole.
-        reach = (self.reach[row, marker] + HALF * self.length[marker]) / factor
+        reach = (self.reach[row, marker] + LOOK.half * self.length[marker]) / factor
         center = self.centroid[row, marker] / factor
         size = np.array([shape[1], shape[0]])
         left, top = np.clip(np.floor(center - reach), 0, size).astype(np.intp).tolist()
@@ -267,15 +241,18 @@ class _Expected:
         centroid, _ = centroid_and_second_moment(moments)
         away = np.linalg.norm(centroid - self.centroid[row, marker], axis=-1) / self.reach[row, marker]
         size = moments[:, 0] / self.area[row, marker]
-        likely = (gain >= LEAST_GAIN) & (found.peak >= LEAST_PEAK) & (away <= 1.0)
-        likely &= (found.certainty >= LEAST_CERTAINTY) & (size >= LEAST_SIZE) & (size <= MOST_SIZE)
+        likely = (gain >= LOOK.least_gain) & (found.peak >= LOOK.least_peak) & (away <= 1.0)
+        likely &= (found.certainty >= LOOK.least_certainty) & (size >= LOOK.least_size)
+        likely &= size <= LOOK.most_size
         if not likely.any():
             return None
-        cost = 0.5 * (np.log(np.maximum(size, LEAST_SIZE)) / SIZE_DEVIATION) ** 2 + 0.5 * (2.0 * away) ** 2
+        by_size = np.log(np.maximum(size, LOOK.least_size)) / LOOK.size_deviation
+        cost = 0.5 * by_size**2 + 0.5 * (2.0 * away) ** 2
         main = int(np.where(likely, cost, np.inf).argmin())
         apart = np.linalg.norm(centroid - centroid[main], axis=-1)
-        own = np.flatnonzero((gain >= LEAST_REST_GAIN) & (apart <= REST_REACH * self.length[marker]))
-        return own if size[own].sum() <= MOST_SIZE else np.array([main])
+        near = apart <= LOOK.rest_reach * self.length[marker]
+        own = np.flatnonzero((gain >= LOOK.least_rest_gain) & near)
+        return own if size[own].sum() <= LOOK.most_size else np.array([main])
 
     def held(
         self,
@@ -287,18 +264,13 @@ class _Expected:
     ) -> tuple[ObservedRegions, BoolArray]:
         """Finds (N, M), and which of them hold against the frames beside them and against markers alike.
 
-        Args:
-            observed: What is observed already, in the N frames.
-            moments: (N, M, 6) raw moments of the finds, NaN for none.
-            certainty: (N, M).
-            alike: Pairs of markers of one color.
-            factor: Pixels of the clip to one of the album.
+        `moments` (N, M, 6): raw moments of the finds, NaN for none; `alike`: pairs of markers of one color.
         """
         centroid, second = centroid_and_second_moment(moments)
         area, known = moments[..., 0], np.isfinite(observed.centroid[..., 0])
         kept = np.isfinite(area)
         same = np.linalg.norm(centroid - observed.centroid, axis=-1) < self.length
-        kept &= ~known | (same & (area > MORE * observed.area))
+        kept &= ~known | (same & (area > LOOK.more * observed.area))
         place = np.where(kept[..., None], centroid, observed.centroid)
         kept &= self._in_line(place)
         away = np.linalg.norm(centroid - self.centroid, axis=-1)
@@ -312,7 +284,7 @@ class _Expected:
         whole = np.clip(np.minimum(ratio, 1.5 / np.maximum(ratio, 1e-6)), 0.0, 1.0)
         second = np.where(kept[..., None, None], second, np.eye(2))
         found = ObservedRegions.found(
-            centroid, second, area, whole * certainty, self._variance(second, PLACE_STD * factor)
+            centroid, second, area, whole * certainty, self._variance(second, LOOK.place_std * factor)
         )
         return found, kept
 
@@ -323,7 +295,7 @@ class _Expected:
         nothing = np.full((1, place.shape[1]), np.inf)
         least = np.minimum(np.concatenate([nothing, step]), np.concatenate([step, nothing]))
         away = np.linalg.norm(place - self.centroid, axis=-1)
-        return np.asarray((away <= NEAR * self.length) | (least <= STEP * self.length))
+        return np.asarray((away <= LOOK.near * self.length) | (least <= LOOK.step * self.length))
 
     def _variance(self, second: Array, place_std: float) -> Array:
         """(N, M, 5) variance of finds' features beyond that of tracked regions [px²].

@@ -1,48 +1,49 @@
-"""How far what is seen of one frame lies from where a posture has it, and what it does not explain."""
+"""One frame's posture from its regions and keypoints, and what of them the posture does not explain."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture
 from ..evidence import keypoints as depths
-from ..evidence.regions import RegionModel
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import FEATURES, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.keypoints.keypoints import mirror_images
 from ..footage.region_tracks import ExpectedRegions
 from ..prior.frame_prior import FramePrior
 from ..progress import run
+from .clip_problem import KeyframeEvidence, uncalibrated
 from .clip_state import ClipState
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes, uncalibrated
+from .keyframe_evidence import SeenAtKeyframes, read_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .terms.assembly import frame_terms
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from .terms.term import NormalEquations, Term, total_cost
 
-MISPLACED_WIDTHS = 1.5
-"""A marker farther off than this many of its limb's half-widths is misplaced ..."""
-MISPLACED_PX = 4.0
-"""... unless it is nearer than this [px]."""
-MISPLACED_M = 0.12
-"""A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less."""
-SURE = 0.5
-"""Least confidence of a keypoint that is called misplaced."""
+
+@dataclass(frozen=True)
+class MisplacedOptions:
+    """When a posture does not explain what is seen."""
+
+    widths: float = 1.5  # a marker farther off than this many of its limb's half-widths is misplaced ...
+    px: float = 4.0  # ... unless it is nearer than this [px]
+    # A sure keypoint farther off than this is misplaced, too: a limb's width and a detector's error are less.
+    m: float = 0.12
+    sure: float = 0.5  # least confidence of a keypoint that is called misplaced
+
+
+MISPLACED = MisplacedOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class FrameResiduals:
     """Distances in the picture, and what is misplaced."""
 
-    marker_px: Array
-    """(M,) of the centroids [px]; NaN where a marker is hidden."""
-    keypoint_px: Array
-    """(N,) of the keypoints [px]; NaN where one is not seen."""
-    markers: tuple[int, ...]
-    """Indices of the markers that the posture does not explain."""
-    points: tuple[str, ...]
-    """Body points of the keypoints that it does not explain."""
+    marker_px: Array  # (M,) of the centroids [px]; NaN where a marker is hidden
+    keypoint_px: Array  # (N,) of the keypoints [px]; NaN where one is not seen
+    markers: tuple[int, ...]  # indices of the markers that the posture does not explain
+    points: tuple[str, ...]  # body points of the keypoints that it does not explain
 
 
 def frame_residuals(
@@ -54,38 +55,26 @@ def frame_residuals(
 ) -> FrameResiduals:
     """Compare a posture with what is seen of one frame.
 
-    Args:
-        evidence: The models of markers and keypoints.
-        observed: The regions of this one frame, (1, M).
-        points: The keypoints of this one frame, (1, N); None for none.
-        posture: A single posture.
-        frame: The frame's index in the clip.
+    Regions (1, M) and keypoints (1, N) are those of this one frame.
     """
     model, index = evidence.model, np.array([frame])
     pose = model.body.pose(Posture.stack([posture]))
     off = np.linalg.norm(model.evaluate(pose, index).centroid - observed.centroid, axis=-1)[0]
     width = limb_widths(model, posture.translation[None], index)[0]
-    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED_WIDTHS * width, MISPLACED_PX))
+    markers = np.flatnonzero(np.nan_to_num(off) > np.maximum(MISPLACED.widths * width, MISPLACED.px))
     if points is None:
         return FrameResiduals(off, np.zeros(0), tuple(map(int, markers)), ())
     own = evidence.keypoints.model
     depth = own.camera.depth(own.world(pose), index[:, None])[0]
-    far_px = MISPLACED_M * own.camera.focal_px / np.maximum(depth, 0.1)
+    far_px = MISPLACED.m * own.camera.focal_px / np.maximum(depth, 0.1)
     point_off = np.linalg.norm(own.pixels(pose, index) - points.pixel, axis=-1)[0]
-    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED_PX)
-    misplaced = np.flatnonzero(far & (points.confidence[0] >= SURE))
+    far = np.nan_to_num(point_off) > np.maximum(far_px, MISPLACED.px)
+    misplaced = np.flatnonzero(far & (points.confidence[0] >= MISPLACED.sure))
     names = tuple(dict.fromkeys(own.names[row] for row in misplaced))
     return FrameResiduals(off, point_off, tuple(map(int, markers)), names)
 
 
-# --- Gauss-Newton from several starts of one frame, side by side, each as if it were a frame of its own
-
-
-TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))
-"""From a start that may be far off; image noise is widened by these factors."""
-LARGEST_STEP = 0.4
-"""Largest change of a posture's unknown in one step [m, rad]."""
-CONVERGED = 2e-3
+TEMPERATURES = (64.0, 32.0, 16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(10)))  # of image noise, from far off
 
 
 def descend(
@@ -93,13 +82,8 @@ def descend(
 ) -> tuple[ClipState, Array]:
     """Descend from every start of a state.
 
-    Args:
-        state: The starts; where each descent's prior lies elsewhere is a candidate, too.
-        terms: The frame's terms, for as many states of it.
-        temperatures: Factors of the image noise, one a step.
-
-    Returns:
-        The best state of each descent, never less probable than its prior's mean, and their costs (S,).
+    `terms` are the frame's, for as many states of it; where a start's prior lies elsewhere it is a candidate,
+    too. The best state of each descent, never less probable than its prior's mean, and their costs (S,).
     """
     best = replace(state, variation=np.zeros_like(state.variation))
     least = total_cost(terms, best)
@@ -108,7 +92,7 @@ def descend(
         for term in terms:
             term.add_to(equations, state, temperature)
         step = equations.matrix.factorize().solve(-equations.gradient)
-        state, moved = state.stepped(step, LARGEST_STEP)
+        state, moved = state.stepped(step, 0.4)
         if temperature > 1.0:
             continue
         costs = total_cost(terms, state)
@@ -119,40 +103,24 @@ def descend(
             bias=np.where(better[:, None], state.bias, best.bias),
         )
         least = np.minimum(costs, least)
-        if moved < CONVERGED:
+        if moved < 2e-3:
             break
     return best, least
 
 
-# --- One frame's posture from that frame's marker regions and keypoints
-
-
-CALIBRATED_FROM = 5
-"""Fewest keyframes that calibrate: their placements are better than average ones."""
-EXPECTED_RADIUS_M = 0.9
-"""Largest distance of a marker from where it is believed to be."""
-EXCHANGED_COST = 3.0
-"""Cost of taking a detector's left for right: it is wrong in one frame of twenty."""
+EXPECTED_RADIUS_M = 0.9  # largest distance of a marker from where it is believed to be
+EXCHANGED_COST = 3.0  # cost of taking a detector's left for right: it is wrong in one frame of twenty
 
 
 @dataclass(frozen=True, eq=False)
 class FrameFit:
     """The posture found for one frame."""
 
-    posture: Posture
-    """A single posture."""
-    residual_px: Array
-    """(M,) distance between each marker's predicted and observed centroid [px]; NaN where it is hidden."""
-    before_px: Array
-    """(M,) the same for the believed posture."""
-    misplaced: tuple[int, ...]
-    """Indices of the markers that the posture does not explain."""
-    keypoint_residual_px: Array = field(default_factory=lambda: np.zeros(0))
-    """(N,) distance between each keypoint's predicted and observed place [px]; NaN where it is not seen."""
-    misplaced_points: tuple[str, ...] = ()
-    """Body points of the keypoints that the posture does not explain."""
-    cost: float = 0.0
-    """Negative logarithm of its probability, up to a constant of the frame."""
+    posture: Posture  # a single posture
+    residual_px: Array  # (M,) predicted to observed centroids [px]; NaN where hidden
+    misplaced: tuple[int, ...]  # indices of the markers that the posture does not explain
+    misplaced_points: tuple[str, ...]  # body points of the keypoints that the posture does not explain
+    cost: float  # negative logarithm of its probability, up to a constant of the frame
 
 
 def fit_frame(
@@ -160,26 +128,17 @@ def fit_frame(
     observed: ObservedRegions,
     belief: FramePrior,
     frame: int,
-    noise: RegionNoise | None = None,
     points: ObservedKeypoints | None = None,
 ) -> FrameFit:
     """The most probable posture of one frame.
 
-    Args:
-        evidence: The models of markers and keypoints, as calibrated on keyframes or of average proportions
-            (`uncalibrated`).
-        observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: Prior belief in the posture.
-        frame: The frame's index in the clip, which a moving camera's pose depends on.
-        noise: Noise of the regions' features.
-        points: The keypoints of this one frame, (1, N); None for none.
+    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
-    noise = noise or RegionNoise()
-    fit = _Descent(evidence, observed, belief, frame, noise, points).fit()
+    fit = _fitted(evidence, observed, belief, frame, points)
     if points is None or not points.seen.any():
         return fit
     mirrored = exchanged(points, evidence.keypoints.model.names, evidence.keypoints.sources)
-    other = _Descent(evidence, observed, belief, frame, noise, mirrored).fit()
+    other = _fitted(evidence, observed, belief, frame, mirrored)
     return other if other.cost + EXCHANGED_COST < fit.cost else fit
 
 
@@ -203,15 +162,9 @@ def calibrated(
 ) -> KeyframeEvidence:
     """Evidence calibrated on keyframes, or uncalibrated where there are too few of them.
 
-    Args:
-        model: The region model with average placements.
-        observed: Regions observed at the K keyframes.
-        keyframes: The K postures.
-        frame: (K,) their indices in the clip.
-        keypoints: Usual evidence of the N keypoints; None for none.
-        points: Those seen at the keyframes, (K, N).
+    Regions and keypoints are those seen at the K keyframes.
     """
-    if len(frame) < CALIBRATED_FROM:
+    if len(frame) < 5:
         found = uncalibrated(model)
         return found if keypoints is None else replace(found, keypoints=keypoints)
     width_px = limb_widths(model, keyframes.translation, frame)
@@ -227,55 +180,26 @@ def expected_in_frame(model: RegionModel, belief: FramePrior, frame: int) -> Exp
     return ExpectedRegions(predicted.centroid, np.full(predicted.visible.shape, radius))
 
 
-class _Descent:
-    """Gauss-Newton from several starts of one frame, side by side."""
-
-    def __init__(
-        self,
-        evidence: KeyframeEvidence,
-        observed: ObservedRegions,
-        belief: FramePrior,
-        frame: int,
-        noise: RegionNoise,
-        points: ObservedKeypoints | None,
-    ) -> None:
-        self.evidence, self.points = evidence, points
-        count = belief.starts.batch[0]
-        self.model, self.observed = evidence.model, observed
-        body = evidence.model.body
-        self.width_px = limb_widths(self.model, belief.posture.translation[None], np.array([frame]))
-        self.believed = Posture.stack([belief.posture] * count)
-        deviation = belief.starts.minus(self.believed)
-        factor = _factor(evidence.model, belief, frame)
-        self.state = ClipState(
-            body,
-            self.believed,
-            np.full(count, frame, dtype=np.intp),
-            factor,
-            np.linalg.solve(factor, deviation.T).T,
-            np.zeros((count, len(self.model.placements) * FEATURES)),
-        )
-        self.terms = frame_terms(evidence, observed, belief, noise, self.width_px, points)
-
-    def fit(self) -> FrameFit:
-        """Descend and choose."""
-        best, least = descend(self.state, self.terms)
-        chosen = int(np.argmin(least))
-        posture = best.posture[chosen]
-        found, before = (self._residuals(each) for each in (posture, self.believed[0]))
-        return FrameFit(
-            posture,
-            found.marker_px,
-            before.marker_px,
-            found.markers,
-            found.keypoint_px,
-            found.points,
-            float(least[chosen]),
-        )
-
-    def _residuals(self, posture: Posture) -> FrameResiduals:
-        frame = int(self.state.frame[0])
-        return frame_residuals(self.evidence, self.observed, self.points, posture, frame)
+def _fitted(
+    evidence: KeyframeEvidence,
+    observed: ObservedRegions,
+    belief: FramePrior,
+    frame: int,
+    points: ObservedKeypoints | None,
+) -> FrameFit:
+    model, count = evidence.model, belief.starts.batch[0]
+    believed = Posture.stack([belief.posture] * count)
+    factor = _factor(model, belief, frame)
+    variation = np.linalg.solve(factor, belief.starts.minus(believed).T).T
+    bias = np.zeros((count, len(model.placements) * FEATURES))
+    frames = np.full(count, frame, dtype=np.intp)
+    state = ClipState(model.body, believed, frames, factor, variation, bias)
+    width_px = limb_widths(model, belief.posture.translation[None], np.array([frame]))
+    best, least = descend(state, frame_terms(evidence, observed, belief, RegionNoise(), width_px, points))
+    chosen = int(np.argmin(least))
+    posture, cost = best.posture[chosen], float(least[chosen])
+    found = frame_residuals(evidence, observed, points, posture, frame)
+    return FrameFit(posture, found.marker_px, found.markers, found.points, cost)
 
 
 def _factor(model: RegionModel, belief: FramePrior, frame: int) -> Array:

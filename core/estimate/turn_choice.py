@@ -1,4 +1,4 @@
-"""Local alternatives: a stretch of the clip solved from another start, and held against the estimate by cost.
+"""Which way round the body turns between two keyframes: alternatives, held against it by cost.
 
 Gauss-Newton ends in the optimum next to its start. Where interpolation is a guess there may be a better one.
 """
@@ -15,15 +15,35 @@ from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .window_problem import WindowProblem, image_cost
 
-BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)
-"""Factors of the image's variance in an alternative's first steps: enough to tell a hopeless one."""
-HOPELESS_SHARE, HOPELESS_COST = 0.3, 50.0
-"""An alternative that costs more than the estimate by more than this share of it and this much besides is
-given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth."""
-GONE_ON = tuple(1.0 for _ in range(10))
-"""An alternative's other steps, which are needed where it departs as far from the prior as in long gaps."""
-SETTLED = tuple(1.0 for _ in range(4))
-"""Steps of the estimate in the meantime, whose window was solved already."""
+BEGUN = (8.0, 4.0, 2.0, 1.0, 1.0)  # image variance in an alternative's first steps, which tell a hopeless one
+
+
+@dataclass(frozen=True)
+class TurnOptions:
+    """When another turn between two keyframes is tried, and when it is taken."""
+
+    # An alternative that costs more than the estimate by more than this share of it and this much besides is
+    # given up by then. The other steps save a third of an alternative's cost at most, and mostly a tenth.
+    hopeless_share: float = 0.3
+    hopeless_cost: float = 50.0
+    # a turn between keyframes from which on the other way round is tried
+    large_step_rad: float = np.radians(60.0)
+    # Nobody turns faster between two keyframes: dancers make two to three turns a second.
+    fastest_rad_per_s: float = 3.0 * FULL_TURN
+    long_s: float = 0.3  # gaps of this time and longer ...
+    # ... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
+    # would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well.
+    doubted_cost: float = 0.5
+    margin_s: float = 0.2  # how far beyond its keyframes, which hold it, a stretch is solved
+    # another turn is taken where it costs less by so much: it is twenty times as probable
+    cheaper: float = 3.0
+
+
+TURNS = TurnOptions()
+GONE_ON = (
+    1.0,
+) * 10  # its other steps, which are needed where it departs far from the prior, as in long gaps
+SETTLED = (1.0,) * 4  # those of the estimate in the meantime, whose window was solved already
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +52,7 @@ class Alternative:
 
     problem: ClipProblem
     state: ClipState
-    gain: float
-    """How much less it costs than the estimate, in negative log probability."""
+    gain: float  # how much less it costs than the estimate, in negative log probability
 
 
 def alternative(
@@ -41,15 +60,7 @@ def alternative(
 ) -> Generator[None, None, Alternative | None]:
     """Solve a stretch of consecutive frames once more from where it is, and about another prior.
 
-    It yields now and then, so that a job can be canceled.
-
-    Args:
-        problem: The clip's problem.
-        state: Its solution in the stretch, cut from that of a window.
-        other: The problem about the other prior.
-
-    Returns:
-        None where the other prior is hopeless.
+    `state` is the solution in the stretch, cut from a window's. None where the other prior is hopeless.
     """
     first, last = int(state.frame[0]), int(state.frame[-1]) + 1
     window = Window(first, last, first, last)
@@ -57,7 +68,7 @@ def alternative(
     there = WindowProblem(other, window, other.start(window))
     known = yield from here.descend(())
     begun = yield from there.descend(BEGUN)
-    if begun.sum() > (1.0 + HOPELESS_SHARE) * known.sum() + HOPELESS_COST:
+    if begun.sum() > (1.0 + TURNS.hopeless_share) * known.sum() + TURNS.hopeless_cost:
         return None
     settled = yield from here.descend(SETTLED)
     ended = yield from there.descend(GONE_ON)
@@ -65,14 +76,7 @@ def alternative(
 
 
 def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipState | None:
-    """The state of the frames `first` to `last - 1` and a margin around them; None where no window has all.
-
-    Args:
-        states: Of windows, in order, which may overlap.
-        first: A frame of the clip.
-        last: One past another.
-        margin: Frames more on either side, where the window has them.
-    """
+    """The state of frames `first` to `last - 1` and a margin around them; None where no window has all."""
     for state in states:
         begin, end = int(state.frame[0]), int(state.frame[-1]) + 1
         if begin <= first and last <= end:
@@ -80,42 +84,20 @@ def cut(states: list[ClipState], first: int, last: int, margin: int) -> ClipStat
     return None
 
 
-# --- Which way round the body turns between two keyframes
-
-
-LARGE_STEP_RAD = np.radians(60.0)
-"""A turn between keyframes from which on the other way round is tried."""
-FASTEST_RAD_PER_S = 3.0 * FULL_TURN
-"""Nobody turns faster between two keyframes: dancers make two to three turns a second."""
-LONG_S = 0.3
-"""Gaps of this time and longer ..."""
-DOUBTED_COST = 0.5
-"""... in which each marker seen costs more than this are tried both ways round. With noise as assumed it
-would cost 2; the slow biases take most of that, so that it is 0.1 to 0.2 where all is well."""
-MARGIN_S = 0.2
-"""How far beyond its keyframes, which hold it, a stretch is solved."""
-CHEAPER = 3.0
-"""Another turn is taken where it costs less by so much: it is twenty times as probable."""
-
-
 @dataclass(frozen=True)
 class DoubtedTurn:
     """A gap between keyframes in which the body may turn another way."""
 
     gap: int
-    turns: tuple[int, ...]
-    """Whole turns that may have to be added to the short way round."""
-    strength: float
-    """By which the most doubtful gap comes first."""
+    turns: tuple[int, ...]  # whole turns that may have to be added to the short way round
+    strength: float  # by which the most doubtful gap comes first
 
 
 def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[DoubtedTurn]:
     """Gaps to be tried another way round, the most doubtful first.
 
-    Args:
-        problem: The clip's problem.
-        cost: (F,) what each marker seen costs on average in each frame, the short way round.
-        among: (K - 1,) the gaps that are asked for.
+    `cost` (F,): what each marker seen costs on average, the short way round; `among` (K - 1,): the gaps asked
+    for.
     """
     keyframes = problem.keyframes
     step = heading_steps_rad(problem.interpolated[keyframes])
@@ -126,11 +108,12 @@ def doubted_turns(problem: ClipProblem, cost: Array, among: BoolArray) -> list[D
             continue
         time_s = float(problem.step_s[first:last].sum())
         misfit = float(cost[first + 1 : last].mean())
-        doubted = time_s >= LONG_S and misfit > DOUBTED_COST
-        if abs(step[gap]) < LARGE_STEP_RAD and not doubted:
+        doubted = time_s >= TURNS.long_s and misfit > TURNS.doubted_cost
+        if abs(step[gap]) < TURNS.large_step_rad and not doubted:
             continue
         ways = (-1, 1) if doubted else (-1 if step[gap] > 0.0 else 1,)
-        possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= FASTEST_RAD_PER_S * time_s]
+        farthest = TURNS.fastest_rad_per_s * time_s
+        possible = [way for way in ways if abs(step[gap] + FULL_TURN * way) <= farthest]
         if possible:
             found.append(DoubtedTurn(gap, tuple(possible), misfit + abs(float(step[gap])) / np.pi))
     return sorted(found, key=lambda doubt: (-doubt.strength, doubt.gap))
@@ -141,19 +124,10 @@ def choose_turns(
 ) -> Part[tuple[ClipProblem, list[ClipState]]]:
     """Turn the other way round where that costs less.
 
-    Args:
-        problem: The clip's problem, which turns the short way in these gaps.
-        states: Windows of it, solved; they may overlap.
-        among: (K - 1,) the gaps that are asked for.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The problem with the turns chosen, and its windows, solved.
+    `states` are windows, solved, which may overlap; `among` (K - 1,) the gaps that are asked for.
     """
     states = list(states)
-    margin = round(MARGIN_S / float(np.median(problem.step_s))) if len(problem.step_s) else 0
+    margin = round(TURNS.margin_s / float(np.median(problem.step_s))) if len(problem.step_s) else 0
     seen = bool(problem.observed.quality.any() or problem.points.seen.any())  # contours alone decide nothing
     doubts = doubted_turns(problem, image_cost(problem, states), among) if seen else []
     for number, doubt in enumerate(doubts):
@@ -163,7 +137,7 @@ def choose_turns(
             continue
         trying = _best(problem, state, doubt)
         best = yield from scaled(trying, number / len(doubts), (number + 1) / len(doubts))
-        if best is not None and best.gain > CHEAPER:
+        if best is not None and best.gain > TURNS.cheaper:
             before, problem = problem, best.problem
             turned = (problem.prior.rotations != before.prior.rotations).any(axis=(1, 2, 3))
             for index, one in enumerate(states):

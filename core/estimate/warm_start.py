@@ -9,38 +9,42 @@ Of 100 s with a keyframe moved or added, measured against estimating all anew: 0
 99 of 100 points within 1.2 mm, a few in frames that hardly anything determines by up to 14 mm.
 """
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
 from ..arrays import Array, BoolArray
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import ObservedRegions
 from ..footage.camera import Camera
-from .clip_problem import ClipProblem
+from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
-from .keyframe_evidence import KeyframeEvidence, keyframe_information
-from .keyframe_rows import PRIOR_STD, placement_values, posing_covariance, velocities
+from .keyframe_error import posing_covariance, velocities
+from .keyframe_evidence import PRIOR_STD, keyframe_information, placement_values
 from .keypoint_evidence import KeypointEvidence
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import ObservedRegions
 
-SAME = 1e-7
-"""Differences of a posture's unknowns [m, rad] from reading it from Blender once more."""
-SAME_PLACEMENT = 0.06
-"""Difference of placements in standard deviations of their prior: 0.3 mm on average."""
-SAME_LENS = 5e-4
-"""Difference of the focal length's logarithm."""
-SAME_SIZE = 0.1
-"""Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in
-frames."""
-SAME_ANKLE_HEIGHT_M = 2e-3
-"""Difference of the lower ankle's usual height."""
-SAME_PLACE_M = 2e-3
-"""Difference of keypoints' places."""
-SAME_GAIN = 0.1
-"""Difference of the depth hints' gains, and of offsets in links' errors."""
-SAME_FACTOR = 0.15
-"""Difference of the accelerations' log covariance, in the direction of the largest difference."""
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Differences up to which an earlier estimate still holds."""
+
+    # differences of a posture's unknowns [m, rad] from reading it from Blender once more
+    posture: float = 1e-7
+    # difference of placements in standard deviations of their prior: 0.3 mm on average
+    placement: float = 0.06
+    lens: float = 5e-4  # difference of the focal length's logarithm
+    # Difference of logarithms of the posing error's size, markers' distrust and area ratios; timing in
+    # frames.
+    size: float = 0.1
+    ankle_height_m: float = 2e-3  # difference of the lower ankle's usual height
+    place_m: float = 2e-3  # difference of keypoints' places
+    gain: float = 0.1  # difference of the depth hints' gains, and of offsets in links' errors
+    # Difference of the accelerations' log covariance, in the direction of the largest difference.
+    factor: float = 0.15
+
+
+SAME = Tolerances()
 
 
 def continued(earlier: ClipProblem, now: ClipProblem) -> tuple[ClipProblem, BoolArray] | None:
@@ -69,7 +73,6 @@ def changed_gaps(problem: ClipProblem, changed: BoolArray) -> BoolArray:
 
 
 def _same_setup(earlier: ClipProblem, now: ClipProblem) -> bool:
-    """Whether body, camera, markers, keypoints, noise and frames' times are the same."""
     cameras = [
         [getattr(problem.camera, field.name) for field in fields(Camera)] for problem in (earlier, now)
     ]
@@ -90,7 +93,8 @@ def _with_evidence(earlier: ClipProblem, now: ClipProblem) -> ClipProblem | None
     """The problem with the earlier one's evidence, where they agree within the tolerances; else None."""
     same = _same_evidence(earlier.evidence, now.evidence)
     same = same and _same_keypoints(earlier.evidence.keypoints, now.evidence.keypoints)
-    if not same or not _same_factor(earlier.factor, now.factor):
+    ratio = np.linalg.svd(np.linalg.solve(earlier.factor, now.factor), compute_uv=False)
+    if not (same and np.abs(np.log(ratio**2)).max() < SAME.factor):
         return None
     posed = now.prior[now.keyframes]
     information = keyframe_information(
@@ -115,43 +119,32 @@ def _same_evidence(one: KeyframeEvidence, other: KeyframeEvidence) -> bool:
     sizes -= np.log([other.posing_scale, *other.distrust, *other.area_ratio])
     lens = np.log(one.model.camera.lens_mm / other.model.camera.lens_mm)
     return bool(
-        np.abs(placed / PRIOR_STD).max(initial=0.0) < SAME_PLACEMENT
-        and abs(lens) < SAME_LENS
-        and np.abs(sizes).max() < SAME_SIZE
-        and abs(one.timing_frames - other.timing_frames) < SAME_SIZE
+        np.abs(placed / PRIOR_STD).max(initial=0.0) < SAME.placement
+        and abs(lens) < SAME.lens
+        and np.abs(sizes).max() < SAME.size
+        and abs(one.timing_frames - other.timing_frames) < SAME.size
     )
 
 
 def _same_keypoints(one: KeypointEvidence, other: KeypointEvidence) -> bool:
-    """Whether places, errors, trust and what hints of depth are worth are the same, within the tolerances."""
     if not one.model.names:
         return True
     moved = np.abs(one.model.place - other.model.place).max()
     sizes = np.abs(np.log(one.std_m / other.std_m)).max()
     before, after = one.depths, other.depths
-    hints = np.abs(
-        [
-            before.gain - after.gain,
-            (before.offset_m - after.offset_m) / after.std_m,
-            np.log(before.std_m / after.std_m),
-        ]
-    )
+    offset = (before.offset_m - after.offset_m) / after.std_m
+    hints = np.abs([before.gain - after.gain, offset, np.log(before.std_m / after.std_m)])
     return bool(
         np.array_equal(one.trust, other.trust)
-        and moved < SAME_PLACE_M
-        and sizes < SAME_SIZE
-        and (hints < SAME_GAIN).all()
+        and moved < SAME.place_m
+        and sizes < SAME.size
+        and (hints < SAME.gain).all()
     )
-
-
-def _same_factor(one: Array, other: Array) -> bool:
-    ratio = np.linalg.solve(one, other)
-    return bool(np.abs(np.log(np.linalg.svd(ratio, compute_uv=False) ** 2)).max() < SAME_FACTOR)
 
 
 def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     """(F,) whether a frame's prior, keyframe or observations differ."""
-    changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME)
+    changed = np.asarray(np.abs(now.prior.minus(earlier.prior)).max(axis=1) > SAME.posture)
     changed |= _observations_differ(earlier.tracked, now.tracked)
     changed |= _observations_differ(earlier.points, now.points)
     changed |= (earlier.depth_std_m != now.depth_std_m) | _ankle_heights_differ(earlier, now)
@@ -166,7 +159,7 @@ def _changed_frames(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
 def _ankle_heights_differ(earlier: ClipProblem, now: ClipProblem) -> BoolArray:
     if earlier.ankle_height_m is None or now.ankle_height_m is None:
         return np.full(now.frames, earlier.ankle_height_m is not now.ankle_height_m)
-    return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME_ANKLE_HEIGHT_M
+    return np.abs(now.ankle_height_m - earlier.ankle_height_m) > SAME.ankle_height_m
 
 
 def _observations_differ(
@@ -183,10 +176,8 @@ def _observations_differ(
 def revised_windows(changed: BoolArray, length: int, margin: int) -> list[Window]:
     """Windows around changed frames (F,), in order; their kept frames do not overlap.
 
-    Args:
-        changed: The frames.
-        length: Largest number of frames kept of a window.
-        margin: Frames over which a change, or the end of a window, may have an effect.
+    `length`: most frames kept of a window; `margin`: frames over which a change, or a window's end, has an
+    effect.
     """
     count = len(changed)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], changed.astype(np.int8), [0]]))).tolist()
@@ -213,10 +204,6 @@ def blend_weight(changed: BoolArray, margin: int) -> Array:
     """(F,) weight of the new estimate against the earlier one, so that they blend without a jump.
 
     Farther away from a change than the margin both are right.
-
-    Args:
-        changed: (F,) the changed frames.
-        margin: As for the windows.
     """
     if not changed.any():
         return np.zeros(len(changed))

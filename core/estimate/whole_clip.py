@@ -15,8 +15,8 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..evidence.keypoints import KeypointModel
-from ..evidence.regions import MarkerPlacement, RegionModel
+from ..evidence.keypoints import KeypointModel, ObservedKeypoints
+from ..evidence.regions import MarkerPlacement, ObservedRegions, RegionModel, RegionNoise, limb_widths
 from ..footage.camera import Camera
 from ..footage.clips.album import Album
 from ..footage.ignored_regions import IgnoredPixels
@@ -24,25 +24,22 @@ from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks
 from ..prior.frame_prior import REFERENCE_STEP_S, process_noise_factor
 from ..progress import Part, scaled
-from .clip_problem import ClipProblem
+from .clip_problem import ClipProblem, KeyframeEvidence
 from .clip_state import Window, windows
 from .contour_evidence import ContourEvidence, contour_rows, learn_contours
 from .contour_search import all_located, contour_schedule
-from .keyframe_evidence import KeyframeEvidence, SeenAtKeyframes
+from .keyframe_error import depth_std_m
+from .keyframe_evidence import SeenAtKeyframes
 from .keyframe_trust import FEWEST_POSED, read_mixed_keyframes
 from .keypoint_evidence import KeypointEvidence
 from .keypoint_fit import KeypointFit, keypoint_fit
 from .keypoint_trust import doubted_at_changes, exchanged_back, find_swaps, keypoint_trust
-from .match_error import depth_std_m
 from .performer_placement import lower_ankle_m
 from .refinement import refine
-from .terms.keypoints import ObservedKeypoints
-from .terms.regions import ObservedRegions, RegionNoise, limb_widths
 from .warm_start import blend_weight, continued, revised_windows
 from .window_problem import WindowProblem
 
-MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6
-"""Shares of the work that following the markers is, and all before contours are measured."""
+MARKERS_SHARE, REFINED_SHARE = 0.35, 0.6  # of the work: following markers, all before contours
 
 
 @dataclass(frozen=True)
@@ -50,59 +47,43 @@ class WholeClipOptions:
     """Noise of the whole-clip estimate, and the length of its windows."""
 
     regions: RegionNoise = field(default_factory=RegionNoise)
-    window_s: float = 20.0
-    """Longer clips are solved in windows of about this length [s] ..."""
-    margin_s: float = 3.0
-    """... that reach this far into their neighbors: several times as far as any term remembers [s]."""
+    window_s: float = 20.0  # longer clips are solved in windows of about this length [s] ...
+    margin_s: float = 3.0  # ... that overlap by this, several times as far as any term remembers [s]
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
     """What was seen in the F frames of a clip."""
 
-    tracks: RegionTracks
-    """Regions of M markers."""
-    segments: tuple[str, ...]
-    """The segment each marker is bound to."""
-    keypoints: Keypoints | None = None
-    """The performer's; None for none."""
-    album: Album | None = None
-    """Pictures of all frames, in which contours are measured; None leaves them out."""
-    ignored: IgnoredPixels | None = None
-    """What of the pictures is never a marker; None for nothing."""
+    tracks: RegionTracks  # regions of M markers
+    segments: tuple[str, ...]  # the segment each marker is bound to
+    keypoints: Keypoints | None = None  # the performer's; None for none
+    album: Album | None = None  # pictures of all frames, in which contours are measured; None leaves them out
+    ignored: IgnoredPixels | None = None  # what of the pictures is never a marker; None for nothing
 
 
 @dataclass(frozen=True, eq=False)
 class Believed:
     """What is believed of the motion before the footage is asked."""
 
-    prior: Posture
-    """F postures that pass through the keyframes."""
-    keyframes: tuple[int, ...]
-    """Frames of the K keyframes, at least one."""
+    prior: Posture  # F postures that pass through the keyframes
+    keyframes: tuple[int, ...]  # frames of the K keyframes, at least one
     match_scale: Array | None = None
     """(K,) size of each matched keyframe's error, relative to a usual difference between performers; 0 for
     posed ones, which all are by default."""
-    lower_ankle: Array | None = None
-    """(F,) height of the lower ankle where all keyframes are matched [m]; by their soles where None."""
+    lower_ankle: Array | None = None  # (F,) where all keyframes are matched [m]; by soles where None
 
 
 @dataclass(frozen=True, eq=False)
 class WholeClipResult:
     """The estimate of F frames; another estimate of the same clip may start from it."""
 
-    posture: Posture
-    """A batch of F postures."""
-    covariance: Array
-    """(F, D, D) of the posture's own tangent."""
-    residual_px: Array
-    """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
-    problem: ClipProblem
-    """The problem it solves."""
-    contours: ContourEvidence | None
-    """The look of performer and background; None where no background can be trusted."""
-    outlined: BoolArray | None = None
-    """(F, O) which parts' contours were seen, where limbs without markers follow them; else None."""
+    posture: Posture  # a batch of F postures
+    covariance: Array  # (F, D, D) of the posture's own tangent
+    residual_px: Array  # (F, M) predicted to observed centroids [px]; NaN where not compared
+    problem: ClipProblem  # the problem it solves
+    contours: ContourEvidence | None  # None where no background can be trusted
+    outlined: BoolArray | None = None  # (F, O) which parts' contours were seen, where limbs have no markers
 
     @cached_property
     def keypoints(self) -> KeypointFit:
@@ -127,17 +108,8 @@ def estimate_whole_clip(
 ) -> Part[WholeClipResult]:
     """Estimate every frame's posture from all frames.
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        seen: The evidence.
-        believed: The keyframes, and the motion through them.
-        options: Noise and windows.
-        earlier: An estimate of the same pictures, reused for frames that have not changed since, within the
-            tolerances of `warm_start`.
-
-    Yields:
-        The fraction done, from 0 to 1, and a preview of a window's postures after every step.
+    `earlier`: an estimate of the same pictures, reused for frames that have not changed since, within the
+    tolerances of `warm_start`. Yields the fraction done and previews of windows.
     """
     options = options or WholeClipOptions()
     tracks, segments, album, prior = seen.tracks, seen.segments, seen.album, believed.prior
@@ -161,20 +133,16 @@ def estimate_whole_clip(
         schedule = contour_schedule(body, camera, album.factor, segments, prior)
         learning = learn_contours(body, camera, album, prior, posed, schedule)
         contours = yield from scaled(learning, 0.0, 0.0)
-    reading = read_mixed_keyframes(
-        model,
-        options.regions,
-        SeenAtKeyframes(
-            index,
-            prior[index],
-            observed[index],
-            width_px[index],
-            usual,
-            points[index],
-            None if contours is None else partial(contour_rows, contours),
-        ),
-        match_scale,
+    outlines = None if contours is None else partial(contour_rows, contours)
+    at = SeenAtKeyframes(
+        index, prior[index], observed[index], width_px[index], usual, points[index], outlines
     )
+    reading = read_mixed_keyframes(model, options.regions, at, match_scale)
+    ankle_height_m = None  # posed keyframes say where the floor is, and better
+    if matched.all():
+        ankle_height_m = believed.lower_ankle
+        if ankle_height_m is None:
+            ankle_height_m = lower_ankle_m(body, prior[index], index, prior.batch[0])
     problem = ClipProblem(
         body=body,
         camera=camera,
@@ -187,8 +155,7 @@ def estimate_whole_clip(
         prior=prior,
         turns=np.zeros(max(len(index) - 1, 0), dtype=np.intp),
         depth_std_m=depth_std_m(index, matched, tracks.frame_count),
-        # Posed keyframes say where the floor is, and better.
-        ankle_height_m=_lower_ankle(body, believed, index) if matched.all() else None,
+        ankle_height_m=ankle_height_m,
         limb_size=np.ones(body.skeleton.dof_count),
         depth_factor=np.ones((tracks.frame_count, len(body.skeleton.points))),
         observed=observed,
@@ -203,11 +170,6 @@ def estimate_whole_clip(
     # Nothing but contours moves the postures away from the prior that they were learned from.
     kept = contours if not (segments or keypoints.names or matched.any()) else None
     return (yield from _solve(problem, options, album, earlier, kept))
-
-
-def _lower_ankle(body: Body, believed: Believed, index: IndexArray) -> Array:
-    prior, known = believed.prior, believed.lower_ankle
-    return lower_ankle_m(body, prior[index], index, prior.batch[0]) if known is None else known
 
 
 def _swaps(
@@ -256,13 +218,8 @@ def _solve_windows(
 ) -> Part[WholeClipResult]:
     """Estimate the frames that windows keep.
 
-    Args:
-        problem: The clip's problem.
-        spans: The windows; without an earlier estimate they keep all of the clip's frames.
-        anew: (F,) the frames that are decided anew.
-        album: Pictures of all frames.
-        earlier: An estimate of all other frames.
-        contours: What was learned of them already; None to learn it once the markers are followed.
+    `anew` (F,): the frames decided anew; of all others `earlier` knows the estimate; `contours` None: to be
+    learned once the markers are followed.
     """
     total = max(sum(window.keep_last - window.keep_first for window in spans), 1)
     shares = np.concatenate([[0.0], np.cumsum([w.keep_last - w.keep_first for w in spans]) / total])
@@ -301,7 +258,6 @@ def _solve_windows(
 
 
 def _spliced(base: Posture, spans: list[Window], pieces: list[Posture]) -> Posture:
-    """A batch of postures in which the frames that windows keep are replaced."""
     translation, rotations, angles = base.translation.copy(), base.rotations.copy(), base.angles.copy()
     for window, piece in zip(spans, pieces, strict=True):
         inner = slice(window.keep_first, window.keep_last)

@@ -7,38 +7,25 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.posture import Posture
+from ..evidence.regions import FEATURES
 from ..progress import Part, Preview, scaled
 from .clip_problem import ClipProblem
 from .clip_state import ClipState, Window
 from .contour_evidence import ContourEvidence
-from .terms.assembly import window_terms, with_contours
+from .terms.assembly import window_terms
 from .terms.contours import AxialTerm, ContourTerm
 from .terms.keypoints import KeypointTerm
-from .terms.regions import FEATURES, RegionTerm
+from .terms.regions import RegionTerm
 from .terms.term import NormalEquations, total_cost
 
-TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)
-"""Of a first descent: what is learned from its postures changes the problem before they have converged."""
+TEMPERATURES = (8.0, 4.0, 2.0, 1.0, 1.0, 1.0)  # of a first descent, which need not converge yet
 MATCHED_TEMPERATURES = (64.0, 32.0, 16.0, 16.0, 8.0, 8.0, 4.0, 4.0, 2.0, 2.0, *(1.0 for _ in range(14)))
 """From matched keyframes the descent is longer and has more local minima."""
-SETTLING_TEMPERATURES = (1.0, 1.0)
-"""Of the steps from postures that were found with less knowledge."""
-CONVERGING_TEMPERATURES = tuple(1.0 for _ in range(9))
-"""Of the last steps where no contours follow."""
-CONTOUR_TEMPERATURES = (1.0, 1.0)
-"""Of the steps with contours, once the markers have brought these within reach of their edges."""
-LARGEST_STEP = 0.5
-"""Largest change of a posture's unknown in one step [m, rad]."""
-CONVERGED = 3e-3
-"""Converged once no unknown of any posture changes by more in a step [m, rad]."""
-MOST_UNPACKED = 256 << 20
-"""Bytes of pictures that are unpacked once instead of at every look: half a minute at 320 x 240."""
+MOST_UNPACKED = 256 << 20  # bytes of pictures unpacked once: half a minute at 320 x 240
 UNMARKED_DOUBT = 9.0
 """Factor of the contours' variance in the covariance of limbs without markers: what errs in one part does so
 for many frames and in its neighbors too, and rows linearized where a limb leans toward the camera know of no
 other side."""
-MEASURING_SHARE = 0.5
-"""Share of following the contours that measuring their edges is."""
 
 
 @dataclass(eq=False)
@@ -60,20 +47,17 @@ class WindowProblem:
 
     def settle(self) -> Part[None]:
         """Gauss-Newton from markers followed already, after something else is known; yields likewise."""
-        yield from self._gauss_newton(SETTLING_TEMPERATURES, 0.0, 1.0)
+        yield from self._gauss_newton((1.0, 1.0), 0.0, 1.0)
 
     def converge(self) -> Part[None]:
         """Gauss-Newton to the end with the terms there are; yields likewise."""
-        yield from self._gauss_newton(CONVERGING_TEMPERATURES, 0.0, 1.0)
+        yield from self._gauss_newton(tuple(1.0 for _ in range(9)), 0.0, 1.0)
 
     def descend(self, temperatures: tuple[float, ...]) -> Generator[None, None, Array]:
-        """Gauss-Newton steps with the terms there are; it yields now and then.
+        """Gauss-Newton steps with the terms there are.
 
-        Args:
-            temperatures: Factor of the image's variance in each step.
-
-        Returns:
-            (F,) negative logarithm of the probability of each frame where the steps end, up to a constant.
+        (F,) negative logarithm of each frame's probability where the steps end, up to a constant;
+        `temperatures` are factors of the image's variance.
         """
         for _ in self._gauss_newton(temperatures, 0.0, 1.0):
             yield
@@ -86,28 +70,27 @@ class WindowProblem:
         looks = len(contours.schedule.looks)
         for number, search in enumerate(contours.schedule.looks):
             measuring = contours.measure(self.state.posture, self.state.frame, search)
-            begun, measured = number / looks, (number + MEASURING_SHARE) / looks
+            begun, measured = number / looks, (number + 0.5) / looks
             term = yield from scaled(measuring, begun, measured)
-            self.terms = with_contours(others, term)
+            self.terms = [*others, term]
             if contours.along is not None:
                 shifts = contours.measure_along(
                     self.state.posture, self.state.frame, search, self.clip.step_s
                 )
                 self.terms.append((yield from scaled(shifts, measured, measured)))
-            yield from self._gauss_newton(CONTOUR_TEMPERATURES, measured, (number + 1) / looks)
+            yield from self._gauss_newton((1.0, 1.0), measured, (number + 1) / looks)
 
     def _gauss_newton(self, temperatures: tuple[float, ...], begun: float, ended: float) -> Part[None]:
-        """Gauss-Newton steps until convergence."""
         for i, temperature in enumerate(temperatures):
             done = begun + (ended - begun) * i / len(temperatures)
             equations = NormalEquations(self.state.frames, self.state.unknowns.shape[1])
             for _ in self._assemble(equations, temperature):
                 yield done
             step = equations.matrix.factorize().solve(-equations.gradient)
-            self.state, moved = self.state.stepped(step, LARGEST_STEP)
+            self.state, moved = self.state.stepped(step, 0.5)
             yield begun + (ended - begun) * (i + 1) / len(temperatures)
             yield Preview(self.window.keep_first, self.state.posture[self.window.kept])
-            if temperature == 1.0 and moved < CONVERGED:
+            if temperature == 1.0 and moved < 3e-3:
                 break
 
     def outlined(self) -> BoolArray:
@@ -116,10 +99,7 @@ class WindowProblem:
         return term.parts_seen()[self.window.kept]
 
     def solution(self) -> Generator[None, None, tuple[Posture, Array, Array]]:
-        """Postures, their covariance and the centroids' residuals of the frames the window keeps.
-
-        It yields now and then, so that a job can be canceled.
-        """
+        """Postures, their covariance and the centroids' residuals of the frames the window keeps."""
         state, kept = self.state, self.window.kept
         dofs = state.variation.shape[1]
         equations = NormalEquations(state.frames, state.unknowns.shape[1])
@@ -156,9 +136,7 @@ def image_cost(clip: ClipProblem, states: list[ClipState]) -> Array:
 
     A keypoint has two of a marker's five rows and counts as much less.
 
-    Args:
-        clip: The clip's problem.
-        states: Of windows, in order; where two overlap, the later one counts.
+    Where states overlap, the later one counts.
     """
     cost = np.zeros(clip.frames)
     for state in states:

@@ -18,31 +18,22 @@ from ..body.kinematics import Body, Pose
 from ..footage.camera import Camera
 from .occlusion import PartOutlines, View, part_outlines, view_pieces
 
-SHARES = (0.2, 0.4, 0.6, 0.8)
-"""Positions of the samples along a part; its ends are left out, as they overlap with other parts."""
+SHARES = (0.2, 0.4, 0.6, 0.8)  # of the samples along a part, whose ends overlap with other parts
 SIDES = (-1.0, 1.0)
-SHAPE = 4
-"""Corrections of a part's shape: thickness at both ends, displacement along lateral and sagittal [m]."""
+SHAPE = 4  # corrections of a part [m]: thickness at both ends, lateral and sagittal displacement
 
 
 @dataclass(frozen=True, eq=False)
 class ContourPrediction:
     """N contour samples in F frames."""
 
-    world: Array
-    """(F, N, 3) [m]."""
-    pixel: Array
-    """(F, N, 2) [px]."""
-    depth: Array
-    """(F, N) camera depth [m]."""
-    normal: Array
-    """(F, N, 2) unit outward normal in the image."""
-    slope: Array
-    """(F, N, 2, 3) d pixel / d world [px per m]."""
-    half_width: Array
-    """(F, N) half-width of the part at the sample [px]."""
-    shape_rate: Array
-    """(F, N, SHAPE) motion of a sample along the normal by each correction [px per m]."""
+    world: Array  # (F, N, 3) [m]
+    pixel: Array  # (F, N, 2) [px]
+    depth: Array  # (F, N) camera depth [m]
+    normal: Array  # (F, N, 2) unit outward normal in the image
+    slope: Array  # (F, N, 2, 3) d pixel / d world [px per m]
+    half_width: Array  # (F, N) half-width of the part at the sample [px]
+    shape_rate: Array  # (F, N, SHAPE) motion of a sample along the normal by each correction [px per m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,17 +121,10 @@ def _taper(share: Array) -> Array:
 
 
 def _between(view: View, part: IndexArray, share: Array) -> Array:
-    """(F, N, 3) points on the parts' axes."""
     return np.asarray(view.start[:, part] + share[:, None] * (view.end - view.start)[:, part])
 
 
-# --- Part segmentation of the body
-
-
-NO_PART = 255
-"""-1 as a signed byte."""
-SUBPIXEL_BITS = 4
-"""Fractional bits of the coordinates that outlines are drawn with."""
+SUBPIXEL_BITS = 4  # fractional bits of the coordinates that outlines are drawn with
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
 CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
@@ -149,16 +133,10 @@ CIRCLE = np.stack([np.cos(_TURN), np.sin(_TURN)])
 def part_map(parts: PartOutlines, frame: int, size: tuple[int, int], factor: float) -> NDArray[np.int8]:
     """Draw the body of one frame, the farthest part first.
 
-    Args:
-        parts: Outlines of the O parts in all frames.
-        frame: Index of the frame to draw.
-        size: Columns and rows of the map.
-        factor: Pixels of the camera to one of the map.
-
-    Returns:
-        (rows, columns) index of the visible part, -1 for none.
+    (rows, columns) index of the visible part, -1 for none; `size`: columns and rows; `factor`: pixels of the
+    camera to one of the map.
     """
-    labels = np.full((size[1], size[0]), NO_PART, dtype=np.uint8)
+    labels = np.full((size[1], size[0]), 255, dtype=np.uint8)
     outlines = _outlines(parts, frame) / factor - 0.5
     whole = np.isfinite(outlines).all(axis=(1, 2))
     corners = np.round(np.where(whole[:, None, None], outlines, 0.0) * 2**SUBPIXEL_BITS).astype(np.int32)
@@ -180,11 +158,7 @@ def _outlines(parts: PartOutlines, frame: int) -> Array:
     return np.asarray((ends[:, :, None] + out + past).reshape(len(ends), -1, 2))
 
 
-# --- The axes of the body's parts in the image, with Jacobians
-
-
-FREE, UNKNOWN = -1, -2
-"""What lies beyond a part's end: the background, or any of several things."""
+FREE, UNKNOWN = -1, -2  # what lies beyond a part's end: the background, or any of several things
 BEYOND: dict[str, tuple[str | int, str | int]] = {
     "pelvis": (UNKNOWN, "chest"),
     "chest": ("pelvis", "head"),
@@ -195,8 +169,7 @@ BEYOND: dict[str, tuple[str | int, str | int]] = {
     "thigh": ("pelvis", "shin"),
     "shin": ("thigh", "foot"),
     "foot": ("shin", FREE),
-}
-"""By kind of segment: the part before its start, and the one after its end."""
+}  # by kind of segment: the part before its start, and the one after its end
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,14 +202,7 @@ class LimbAxes:
         return world, self.camera.project(world, frame[:, None])[0]
 
     def jacobian(self, pose: Pose, frame: IndexArray, world: Array, direction: Array) -> Array:
-        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad].
-
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) their indices in the clip.
-            world: (F, O, 3) the points [m].
-            direction: (F, O, 2) unit directions in the image.
-        """
+        """(F, O, D) d (direction · pixel) / d tangent of points (F, O, 3) [px per m or rad]."""
         slope = self.camera.project_jacobian(world, frame[:, None])
         force = (direction[..., None, :] @ slope)[..., 0, :]
         return pose.along_jacobian(self.parts.joint, world, force)

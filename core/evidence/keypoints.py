@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, IndexArray
+from ..arrays import Array, BoolArray, IndexArray
 from ..body.body_volume import HEAD_OVERSHOOT, HEEL_BEHIND
 from ..body.human import HUMAN, WAIST_HEIGHT
 from ..body.kinematics import Body, Pose
@@ -21,28 +21,22 @@ from ..body.posture import Posture
 from ..body.rotations import cross
 from ..body.skeleton import SIDES, Placement
 from ..footage.camera import Camera
+from ..footage.keypoints.keypoints import Keypoints
 
 
 @dataclass(frozen=True)
 class UsualPlace:
     """Where a point of the body usually is, and by how much a detector's point differs from it."""
 
-    joint: str
-    """The joint in whose frame it is fixed."""
-    placement: Placement
-    """Its place there, in shares of the actor's lengths."""
-    place_std_m: float
-    """Standard deviation, along each axis, of where detectors and performers have it [m]."""
-    error_std_m: float
-    """Usual error of a sure detection, along each axis of the image [m]."""
+    joint: str  # the joint in whose frame it is fixed
+    placement: Placement  # its place there, in shares of the actor's lengths
+    place_std_m: float  # standard deviation, along each axis, of where detectors and performers have it [m]
+    error_std_m: float  # usual error of a sure detection, along each axis of the image [m]
 
 
 JOINT_PLACE_STD_M, WIDE_PLACE_STD_M = 0.02, 0.035
 """Of limbs' joints; and of hips, shoulders, head and trunk, which detectors define as they please [m]."""
-JOINT_ERROR_STD_M = 0.02
-"""An error of a fifth of a limb's length at most, as detectors have; also what annotators differ by."""
-WRIST_TURN_RAD, ANKLE_TURN_RAD = 0.35, 0.35
-"""How far hands and feet usually turn about wrist and ankle, which no posture tells [rad]."""
+JOINT_ERROR_STD_M = 0.02  # at most a fifth of a limb's length; also what annotators differ by
 NECK_HEAD = "neck_head"
 # Heights and breadths of the head over `neck_head`, from averages of adults (Gordon et al. 2014, as in
 # `body_volume`): pupils level with the head's center and 32 mm off the middle, tragus 15 mm below it.
@@ -91,12 +85,12 @@ def _usual_places() -> dict[str, UsualPlace]:
         length = HUMAN_LENGTHS_M["hand"]
         for name, (along, back, up) in HAND.items():
             placement = {f"forearm.{side}": (sign, 0.0, 0.0), f"hand.{side}": (sign * along, back, up)}
-            turned = WRIST_TURN_RAD * length * along
+            turned = 0.35 * length * along
             places[f"{name}.{side}"] = _at_an_extremity(f"forearm.{side}", placement, turned)
         length = HUMAN_LENGTHS_M["foot"]
         for name, (out, back, up) in FOOT.items():
             placement = {f"shin.{side}": (0.0, 0.0, -1.0), f"foot.{side}": (sign * out, back, up)}
-            turned = ANKLE_TURN_RAD * length * float(np.hypot(back, up))
+            turned = 0.35 * length * float(np.hypot(back, up))
             places[f"{name}.{side}"] = _at_an_extremity(f"shin.{side}", placement, turned)
     return places
 
@@ -109,8 +103,7 @@ def _at_an_extremity(joint: str, placement: Placement, turned_m: float) -> Usual
     return UsualPlace(joint, placement, JOINT_PLACE_STD_M, error)
 
 
-USUAL_PLACES: Mapping[str, UsualPlace] = _usual_places()
-"""By the name of the body point."""
+USUAL_PLACES: Mapping[str, UsualPlace] = _usual_places()  # by the name of the body point
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,10 +112,8 @@ class KeypointModel:
 
     body: Body
     camera: Camera
-    names: tuple[str, ...]
-    """(N,) the body points; the same one may occur several times."""
-    place: Array
-    """(N, 3) where each sits in its joint's frame [m]."""
+    names: tuple[str, ...]  # (N,) the body points; the same one may occur several times
+    place: Array  # (N, 3) where each sits in its joint's frame [m]
 
     @classmethod
     def usual(cls, body: Body, camera: Camera, names: tuple[str, ...]) -> "KeypointModel":
@@ -152,10 +143,7 @@ class KeypointModel:
     def pixels_jacobian(self, pose: Pose, frame: IndexArray, factor: Array | None = None) -> Array:
         """(F, N, 2, D) derivative of the pixels by the posture's tangent [px per m or rad].
 
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) their indices in the clip.
-            factor: (F, N) factor on each point's rows, zero for one that does not count; None for 1.
+        `factor` (F, N) on each point's rows, zero for one that does not count; None for 1.
         """
         rows, world = self._rows(pose, frame)
         if factor is not None:
@@ -183,12 +171,10 @@ class KeypointModel:
 # --- Links of the body whose depth a network guesses
 
 
-Ends = tuple[str, ...]
-"""Body points whose middle is the end of a link."""
+Ends = tuple[str, ...]  # body points whose middle is the end of a link
 HIPS: Ends = ("hip.L", "hip.R")
 SHOULDERS: Ends = ("shoulder.L", "shoulder.R")
-HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))
-"""What may stand for the head, the first that a layout has."""
+HEADS: tuple[Ends, ...] = (("head",), ("nose",), ("ear.L", "ear.R"))  # what may stand for it, by preference
 LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "ankle"))
 
 
@@ -196,21 +182,13 @@ LIMBS = (("shoulder", "elbow"), ("elbow", "wrist"), ("hip", "knee"), ("knee", "a
 class DepthLinks:
     """L links between the N points of a model."""
 
-    names: tuple[str, ...]
-    """(L,) without the side, which links on both sides share."""
-    sources: tuple[str, ...]
-    """(L,) whose points they join."""
-    ends: Array
-    """(L, N) weights of the points: 1 in all for the far end, -1 for the near one."""
+    names: tuple[str, ...]  # (L,) without the side, which links on both sides share
+    sources: tuple[str, ...]  # (L,) whose points they join
+    ends: Array  # (L, N) weights of the points: 1 in all for the far end, -1 for the near one
 
     @classmethod
     def between(cls, names: Sequence[str], sources: Sequence[str]) -> "DepthLinks":
-        """All links between points that one source has.
-
-        Args:
-            names: (N,) the body points.
-            sources: (N,) what saw each.
-        """
+        """All links between points that one source has."""
         found: list[tuple[str, str, Array]] = []
         for source in dict.fromkeys(sources):
             index = {n: i for i, (n, s) in enumerate(zip(names, sources, strict=True)) if s == source}
@@ -264,25 +242,17 @@ def _links(index: dict[str, int]) -> list[tuple[str, Ends, Ends]]:
     ]
 
 
-# --- d(θ)
+# --- Depths of the principal points, d(θ) of the paper
 
 
-DEPTH_VARIANCE_M2 = 0.1
-"""Variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²."""
+DEPTH_VARIANCE_M2 = 0.1  # variance of each depth's noise v_d [m²]: the paper's 10⁵ mm²
 DEPTH_STD_M = DEPTH_VARIANCE_M2**0.5
 
 
 def evaluate(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = None) -> Array:
     """Depths of the principal points along the viewing axis (paper, eq. 9).
 
-    Args:
-        body: The actor's body.
-        camera: The camera.
-        pose: The body's pose, of any batch shape.
-        frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
-
-    Returns:
-        (..., P) [m], positive in front of the camera.
+    (..., P) [m], positive in front of the camera, of poses of any batch shape; `frame` of the batch shape.
     """
     return camera.depth(body.points(pose), _per_point(frame))
 
@@ -296,3 +266,49 @@ def jacobian(body: Body, camera: Camera, pose: Pose, frame: ArrayLike | None = N
 
 def _per_point(frame: ArrayLike | None) -> IndexArray | None:
     return None if frame is None else np.asarray(frame, dtype=np.intp)[..., None]
+
+
+PIXEL_STD = 0.35  # standard deviation of a perfect detection, as of a region's centroid [px]
+LEAST_CONFIDENCE = 0.1  # a doubtful detection errs by up to ten times as much as a sure one
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedKeypoints:
+    """N keypoints in F frames, with their confidence relative to the source's sure ones."""
+
+    pixel: Array  # (F, N, 2) [px], NaN where not seen
+    confidence: Array  # (F, N) 0.1 to 1; 0 where not seen
+    depth_m: Array  # (F, N) guessed distance behind the hips' middle [m]; NaN where there is none
+
+    @classmethod
+    def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
+        """The keypoints of a clip."""
+        seen, confidence = keypoints.seen, np.zeros(keypoints.score.shape)
+        for source in dict.fromkeys(keypoints.sources):
+            own = np.array([name == source for name in keypoints.sources])
+            scores = keypoints.score[:, own]
+            if seen[:, own].any():
+                sure = max(float(np.quantile(scores[seen[:, own]], 0.9)), 1e-6)
+                confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
+        return cls(
+            np.where(seen[..., None], keypoints.pixel, np.nan),
+            np.where(seen, confidence, 0.0),
+            np.where(seen, keypoints.hint_m[..., 2], np.nan),
+        )
+
+    @property
+    def seen(self) -> BoolArray:
+        """(F, N) whether each is seen."""
+        return np.asarray(self.confidence > 0.0)
+
+    def only(self, kept: BoolArray) -> "ObservedKeypoints":
+        """The same without those points that are not among `kept` (N,)."""
+        return ObservedKeypoints(
+            np.where(kept[:, None], self.pixel, np.nan),
+            np.where(kept, self.confidence, 0.0),
+            np.where(kept, self.depth_m, np.nan),
+        )
+
+    def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
+        """Those of some frames."""
+        return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])

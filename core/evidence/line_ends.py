@@ -21,11 +21,9 @@ from ..footage.camera import Camera
 from ..footage.region_tracks import RegionTracks
 from ..footage.segmentation.moments import axis_angle_difference, characteristics
 
-X, Y, ANGLE, LOG_RATIO = range(4)
-"""Columns of the characteristics: S_x, S_y [px], S_θ [rad, modulo π], log S_λ."""
+X, Y, ANGLE, LOG_RATIO = range(4)  # columns: S_x, S_y [px], S_θ [rad, modulo π], log S_λ
 
-JointPoint = tuple[int, Array]
-"""A joint and a point in its frame, (3,) [m]."""
+JointPoint = tuple[int, Array]  # a joint and a point in its frame, (3,) [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +36,7 @@ class LineEnds:
 
     body: Body
     camera: Camera
-    segments: tuple[str, ...]
-    """Segment of each marker: one of the skeleton's, or `trunk` (hips' midpoint to shoulders' midpoint)."""
+    segments: tuple[str, ...]  # the skeleton's, or `trunk` (from hips' to shoulders' midpoint)
 
     def __post_init__(self) -> None:
         """Refuse unknown segments."""
@@ -80,12 +77,8 @@ class LineEnds:
         rectangle's sides (eq. 6 is the square of Figure 4's a/b) when seen from the side, and 1, a round
         region, when seen end on.
 
-        Args:
-            pose: The body's pose, of any batch shape.
-            frame: Index of each pose's camera, integers of the batch shape; a fixed camera ignores it.
-
-        Returns:
-            (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO; NaN for a segment not in front of the camera.
+        (..., M, 4) in the order X, Y, ANGLE, LOG_RATIO, of poses of any batch shape; NaN for a segment not in
+        front of the camera.
         """
         pixels, depth = self.camera.project(self._world_ends(pose), _per_end(frame))  # (..., M, 2, 2)
         line = pixels[..., 1, :] - pixels[..., 0, :]

@@ -7,7 +7,8 @@ so moving the samples rigidly with the segment moves the silhouette correctly to
 Arrays lead with F frames and Q pieces.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,14 +37,10 @@ class View:
 
     start: Array
     end: Array
-    toward: Array
-    """Viewing direction, away from the camera."""
-    across: Array
-    """Unit direction across both the view and the axis."""
-    along: Array
-    """Unit direction of the axis, across the view."""
-    apparent_length: Array
-    """Length of the axis across the view [m]."""
+    toward: Array  # viewing direction, away from the camera
+    across: Array  # unit direction across both the view and the axis
+    along: Array  # unit direction of the axis, across the view
+    apparent_length: Array  # length of the axis across the view [m]
     lateral: Array
     sagittal: Array
 
@@ -56,12 +53,9 @@ class View:
 class Silhouette:
     """Sample points of the pieces' silhouettes."""
 
-    world: Array
-    """(F, Q, S, 3) [m]."""
-    area: Array
-    """(F, Q, S) share of the silhouette [m², across the view]."""
-    area_rate: Array
-    """(F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening."""
+    world: Array  # (F, Q, S, 3) [m]
+    area: Array  # (F, Q, S) share of the silhouette [m², across the view]
+    area_rate: Array  # (F, Q, S, 3) d area / d angular velocity in world axes [m² per rad]: foreshortening
 
 
 def _dot(a: Array, b: Array) -> Array:
@@ -156,37 +150,24 @@ def _cap(half_widths: Array, end: int, view: View) -> tuple[Array, Array, Array]
 
 DEPTH_SOFTNESS_M = 0.02
 EDGE_SOFTNESS_PX = 0.7
-HIDDEN_DEPTH_M = 0.01
-"""Least depth difference of an occluding part: neighbors share their joint's depth."""
-NEGLIGIBLE = 8.0
-"""Softness widths beyond which a part's effect vanishes."""
-BLOCK = 256
-"""Pairs of a piece and a part that are evaluated at a time, so that their samples fit in the cache."""
+HIDDEN_DEPTH_M = 0.01  # least depth difference of an occluding part: neighbors share their joint's depth
+NEGLIGIBLE = 8.0  # softness widths beyond which a part's effect vanishes
+BLOCK = 256  # pairs of a piece and a part at a time, whose samples fit in the cache
 
 
 @dataclass(frozen=True, eq=False)
 class PartOutlines:
     """Image outlines of the O parts that may occlude others, per frame; the last axis runs over both ends."""
 
-    start: Array
-    """(F, O, 2) projection of the axis' first end [px]."""
+    start: Array  # (F, O, 2) projection of the axis' first end [px]
     end: Array
-    depth: Array
-    """(F, O, 2) camera depth of both ends [m]."""
-    half_width: Array
-    """(F, O, 2) half-width of the outline at both ends [px]."""
-    overshoot: Array
-    """(F, O, 2) extent of the outline past both ends, along the axis [px]."""
+    depth: Array  # (F, O, 2) camera depth of both ends [m]
+    half_width: Array  # (F, O, 2) half-width of the outline at both ends [px]
+    overshoot: Array  # (F, O, 2) extent of the outline past both ends, along the axis [px]
 
     def pick(self, frame: IndexArray, part: IndexArray) -> "PartOutlines":
         """Select R pairs of a frame and a part; the arrays become (R, 2)."""
-        return PartOutlines(
-            self.start[frame, part],
-            self.end[frame, part],
-            self.depth[frame, part],
-            self.half_width[frame, part],
-            self.overshoot[frame, part],
-        )
+        return PartOutlines(*(getattr(self, field.name)[frame, part] for field in fields(self)))
 
 
 def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArray) -> PartOutlines:
@@ -206,14 +187,8 @@ def part_outlines(parts: PieceStack, pose: Pose, camera: Camera, frame: IndexArr
 def visible_share(pixels: Array, depth: Array, parts: PartOutlines, own: BoolArray) -> Array:
     """Visible share of each sample, 0 to 1.
 
-    Args:
-        pixels: (F, Q, S, 2) image points of the samples of Q pieces [px].
-        depth: (F, Q, S) camera depths [m].
-        parts: The O parts of the body.
-        own: (Q, O) whether a part belongs to the piece's own marker and cannot occlude it.
-
-    Returns:
-        (F, Q, S).
+    (F, Q, S) of samples `pixels` (F, Q, S, 2) at camera depths `depth` [m]; `own` (Q, O): whether a part
+    belongs to the piece's own marker and cannot occlude it.
     """
     seen = np.ones(depth.shape)
     frame, piece, part = np.nonzero(_may_hide(pixels, depth, parts) & ~own)
@@ -306,7 +281,6 @@ def _affine(columns: Array, rows: Array, right: Array, down: Array, origin: Arra
 
 
 def _between(ends: Array, share: Array) -> Array:
-    """Linear interpolation between both ends' values (R, 2), at shares (R, S)."""
     value = share * (ends[:, 1:] - ends[:, :1])
     value += ends[:, :1]
     return value
@@ -318,3 +292,47 @@ def _logistic_of_half(x: Array) -> Array:
     x += 1.0
     x *= 0.5
     return x
+
+
+# --- The picture's edge
+
+
+SMALLEST_CELL_PX = 1.0
+SMALLEST_SHARE = 1e-6
+
+
+class EdgeCut(NamedTuple):
+    """What the picture's edge leaves of samples (...)."""
+
+    share: Array  # (...) share within the picture, 0 to 1
+    slope: Array  # (..., 2) d log share / d pixel [1/px]; zero where all or nothing is left
+
+
+def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
+    """(F, Q) which pieces the edge of a picture (columns, rows) cuts, or leaves out.
+
+    `pixels` (F, Q, S, 2): the pieces' samples; `area` (F, Q, S) of the cells they stand for [px²].
+    """
+    reach = 0.5 * np.sqrt(np.maximum(area.max(axis=-1), SMALLEST_CELL_PX**2))
+    outside = np.zeros(area.shape[:2], dtype=np.bool_)
+    for axis in (0, 1):
+        along = pixels[..., axis]
+        outside |= (along.min(axis=-1) < reach) | (along.max(axis=-1) > size[axis] - reach)
+    return outside
+
+
+def edge_cut(pixels: Array, area: Array, size: tuple[int, int]) -> EdgeCut:
+    """What the edge of a picture leaves of square cells.
+
+    `pixels` (..., 2): their centers; `area` (...) [px²]; `size`: columns and rows of the picture.
+    """
+    side = np.sqrt(np.maximum(area, SMALLEST_CELL_PX**2))
+    share, slope = np.ones(area.shape), np.zeros(pixels.shape)
+    for axis in (0, 1):
+        along = pixels[..., axis]
+        for away, sign in ((along, 1.0), (size[axis] - along, -1.0)):
+            within = np.clip(0.5 + away / side, 0.0, 1.0)
+            cut = (within > SMALLEST_SHARE) & (within < 1.0)
+            slope[..., axis] += np.where(cut, sign / (side * np.maximum(within, SMALLEST_SHARE)), 0.0)
+            share = share * within
+    return EdgeCut(share, np.where(share[..., None] > 0.0, slope, 0.0))

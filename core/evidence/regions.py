@@ -1,14 +1,9 @@
-"""The picture's edge: the share of each sample of a silhouette that lies within the picture.
-
-A limb that leaves the picture is seen in part, and the centroid of what is seen moves less than the limb. The
-edge cuts the cell that a sample stands for, so that shares and their slopes change smoothly.
-"""
+"""Measurement model of the markers' image regions, with Jacobians, and the rows of observed ones."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,62 +12,19 @@ from ..body.body_volume import Piece, PieceStack, body_pieces, marker_parts, seg
 from ..body.kinematics import Body, Pose
 from ..body.rotations import cross
 from ..footage.camera import Camera
-from .occlusion import TINY, Silhouette, part_outlines, sample_silhouette, view_pieces, visible_share
+from ..footage.region_tracks import RegionTracks
+from .occlusion import (
+    TINY,
+    Silhouette,
+    edge_cut,
+    near_edge,
+    part_outlines,
+    sample_silhouette,
+    view_pieces,
+    visible_share,
+)
 
-SMALLEST_CELL_PX = 1.0
-SMALLEST_SHARE = 1e-6
-
-
-class EdgeCut(NamedTuple):
-    """What the picture's edge leaves of samples (...)."""
-
-    share: Array
-    """(...) share within the picture, 0 to 1."""
-    slope: Array
-    """(..., 2) d log share / d pixel [1/px]; zero where all or nothing is left."""
-
-
-def near_edge(pixels: Array, area: Array, size: tuple[int, int]) -> BoolArray:
-    """(F, Q) which pieces the edge of a picture (columns, rows) cuts, or leaves out.
-
-    Args:
-        pixels: (F, Q, S, 2) the pieces' samples.
-        area: (F, Q, S) of the cells they stand for [px²].
-        size: Columns and rows.
-    """
-    reach = 0.5 * np.sqrt(np.maximum(area.max(axis=-1), SMALLEST_CELL_PX**2))
-    outside = np.zeros(area.shape[:2], dtype=np.bool_)
-    for axis in (0, 1):
-        along = pixels[..., axis]
-        outside |= (along.min(axis=-1) < reach) | (along.max(axis=-1) > size[axis] - reach)
-    return outside
-
-
-def edge_cut(pixels: Array, area: Array, size: tuple[int, int]) -> EdgeCut:
-    """What the edge of a picture leaves of square cells.
-
-    Args:
-        pixels: (..., 2) their centers [px].
-        area: (...) [px²].
-        size: Columns and rows of the picture.
-    """
-    side = np.sqrt(np.maximum(area, SMALLEST_CELL_PX**2))
-    share, slope = np.ones(area.shape), np.zeros(pixels.shape)
-    for axis in (0, 1):
-        along = pixels[..., axis]
-        for away, sign in ((along, 1.0), (size[axis] - along, -1.0)):
-            within = np.clip(0.5 + away / side, 0.0, 1.0)
-            cut = (within > SMALLEST_SHARE) & (within < 1.0)
-            slope[..., axis] += np.where(cut, sign / (side * np.maximum(within, SMALLEST_SHARE)), 0.0)
-            share = share * within
-    return EdgeCut(share, np.where(share[..., None] > 0.0, slope, 0.0))
-
-
-# --- Measurement model of the markers' image regions, with Jacobians
-
-
-MOMENTS = ((0, 0), (0, 1), (1, 1))
-"""Entries of a second-moment matrix in the order of rows: xx, xy, yy."""
+MOMENTS = ((0, 0), (0, 1), (1, 1))  # entries of a second-moment matrix in the order of rows: xx, xy, yy
 USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "trunk": {"first": 0.07, "last": 1.12},
@@ -82,8 +34,7 @@ USUAL: Mapping[str, Mapping[str, float]] = MappingProxyType(
 )
 """A shirt covers the shoulders, which rise above their joints, and ends at the hip bones; trousers and
 stockings are thicker than the leg inside. Medians of calibrations at a dozen performers' keyframes."""
-PIECES_AT_ONCE = 600
-"""Pieces, counted over frames, that are evaluated together, so that their samples fit in the cache."""
+PIECES_AT_ONCE = 600  # counted over frames, so that their samples fit in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,16 +42,11 @@ class MarkerPlacement:
     """Position of a marker on its segment and its thickness: the calibrated parameters."""
 
     segment: str
-    first: float = 0.05
-    """Share of the segment's length at which the color begins."""
-    last: float = 0.95
-    """Share at which it ends."""
-    lateral_m: float = 0.0
-    """Displacement along the segment's lateral direction [m]."""
-    sagittal_m: float = 0.0
-    """Displacement along its sagittal direction [m]."""
-    girth: float = 1.0
-    """Thickness relative to the average body's."""
+    first: float = 0.05  # share of the segment's length at which the color begins
+    last: float = 0.95  # share at which it ends
+    lateral_m: float = 0.0  # displacement along the segment's lateral direction [m]
+    sagittal_m: float = 0.0  # displacement along its sagittal direction [m]
+    girth: float = 1.0  # thickness relative to the average body's
 
     @classmethod
     def usual(cls, segment: str) -> "MarkerPlacement":
@@ -126,18 +72,12 @@ class MarkerPlacement:
 class RegionPrediction:
     """Predicted regions of M markers in F frames."""
 
-    centroid: Array
-    """(F, M, 2) [px]."""
-    second_moment: Array
-    """(F, M, 2, 2) [px²]."""
-    area: Array
-    """(F, M) visible area [px²]."""
-    visible: Array
-    """(F, M) visible share of the silhouette."""
-    centroid_jacobian: Array | None = None
-    """(F, M, 2, D) [px per m or rad]."""
-    moment_jacobian: Array | None = None
-    """(F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]."""
+    centroid: Array  # (F, M, 2) [px]
+    second_moment: Array  # (F, M, 2, 2) [px²]
+    area: Array  # (F, M) visible area [px²]
+    visible: Array  # (F, M) visible share of the silhouette
+    centroid_jacobian: Array | None = None  # (F, M, 2, D) [px per m or rad]
+    moment_jacobian: Array | None = None  # (F, M, 3, D) of the entries xx, xy, yy [px² per m or rad]
 
     @classmethod
     def unmarked(cls, frames: int, dofs: int | None) -> "RegionPrediction":
@@ -185,16 +125,11 @@ class RegionModel:
     @cached_property
     def half_widths_m(self) -> Array:
         """(M,) mean half-width of the limb each marker sits on [m]."""
-        return np.array(
-            [
-                np.mean([piece.half_widths for piece in placement.pieces(self.body)])
-                for placement in self.placements
-            ]
-        )
+        pieces = [placement.pieces(self.body) for placement in self.placements]
+        return np.array([np.mean([piece.half_widths for piece in own]) for own in pieces])
 
     @cached_property
     def _parts(self) -> PieceStack:
-        """The whole body, O parts."""
         return PieceStack.of(body_pieces(self.body))
 
     @cached_property
@@ -206,13 +141,8 @@ class RegionModel:
     def evaluate(self, pose: Pose, frame: IndexArray, jacobian: bool = False) -> RegionPrediction:
         """Predict every marker's region.
 
-        Args:
-            pose: Forward kinematics of F postures.
-            frame: (F,) index of each posture's frame in the clip, for a moving camera.
-            jacobian: Whether to compute Jacobians of centroid and moments by the posture's tangent as well.
-
-        Returns:
-            The prediction; wholly hidden markers keep the moments of their whole silhouette.
+        `jacobian`: with those of centroid and moments by the posture's tangent. Wholly hidden markers keep
+        the moments of their whole silhouette.
         """
         if not self.placements:
             dofs = pose.posture.skeleton.dof_count if jacobian else None
@@ -223,7 +153,6 @@ class RegionModel:
         return RegionPrediction.concatenate([self._stretch(pose[s], frame[s], jacobian) for s in stretches])
 
     def _stretch(self, pose: Pose, frame: IndexArray, jacobian: bool) -> RegionPrediction:
-        """`evaluate` for few frames."""
         view = view_pieces(self._pieces, pose, self.camera, frame)
         samples = sample_silhouette(self._pieces, view)
         pixels, depth = self.camera.project(samples.world, frame[:, None, None])
@@ -253,9 +182,8 @@ class RegionModel:
         if not jacobian:
             return prediction
         cutting = edge, cut.slope
-        return replace(
-            prediction, **self._derive(samples, pose, frame, factor, weighted, centered, moment, cutting)
-        )
+        derived = self._derive(samples, pose, frame, factor, weighted, centered, moment, cutting)
+        return replace(prediction, **derived)
 
     def _per_marker(self, values: Array) -> Array:
         """Sum over the pieces of each marker: (F, Q, ...) to (F, M, ...)."""
@@ -314,3 +242,145 @@ class RegionModel:
         linear, angular = rows[..., :3] @ turned, rows[..., 3:] @ turned
         # Rotation about an origin far from the camera is also a translation.
         return np.concatenate([linear, angular + cross(location[..., None, :], linear)], axis=-1)
+
+
+# --- Observed regions, and their rows against a prediction
+
+
+FEATURES = 5  # rows of one marker: centroid x, y and three of shape
+SMALLEST_DEVIATION_PX = 0.6
+AREA_TOLERANCE = 0.25  # share of an area that may be missing for other reasons than occlusion
+
+
+@dataclass(frozen=True)
+class RegionNoise:
+    """Noise of an observed region against a perfect model of the body.
+
+    Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
+    sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
+    """
+
+    pixel_std_px: float = 0.35
+    surface_centroid_share: float = 0.10  # of the segment's mean half-width, like the three that follow
+    surface_shape_share: float = 0.07
+    bias_centroid_share: float = 0.20
+    bias_shape_share: float = 0.14
+    bias_time_s: float = 0.67
+    least_visible: float = 0.15  # least predicted visibility of a region that is compared
+
+    def surface_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
+        return width[..., None] * _per_feature(self.surface_centroid_share, self.surface_shape_share)
+
+    def bias_std(self, width: Array) -> Array:
+        """(..., 5) standard deviation of each feature's slow bias for limbs of half-width (...)."""
+        return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
+
+
+def _per_feature(centroid: float, shape: float) -> Array:
+    return np.repeat([centroid, shape], (2, FEATURES - 2))
+
+
+@dataclass(frozen=True, eq=False)
+class ObservedRegions:
+    """Tracks with the axes and deviations that residuals need."""
+
+    centroid: Array  # (F, M, 2), NaN where hidden
+    second_moment: Array
+    axes: Array  # (F, M, 2, 2) columns are the observed axes
+    deviation: Array  # (F, M, 2) standard deviation of the region along them [px]
+    area: Array  # (F, M) [px], NaN where hidden
+    quality: Array  # (F, M)
+    variance: Array  # (F, M, 5) of the features beyond that of tracked regions [px²]
+
+    @classmethod
+    def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
+        """Axes and deviations of every visible region."""
+        seen = tracks.visible
+        moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
+        quality = np.where(seen, tracks.quality, 0.0)
+        variance = np.zeros((*seen.shape, FEATURES))
+        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
+
+    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
+        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
+        changed = {}
+        for field in fields(self):
+            values = getattr(self, field.name).copy()
+            values[where] = getattr(found, field.name)
+            changed[field.name] = values
+        return ObservedRegions(**changed)
+
+    @classmethod
+    def found(
+        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
+    ) -> "ObservedRegions":
+        """Regions (...) that were measured otherwise than by tracking."""
+        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
+
+    def __getitem__(
+        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
+    ) -> "ObservedRegions":
+        """Some of the frames, of the frames and markers, or of the pairs of both."""
+        return ObservedRegions(*(getattr(self, field.name)[index] for field in fields(self)))
+
+
+def _axes(second_moment: Array) -> tuple[Array, Array]:
+    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
+    values, axes = np.linalg.eigh(second_moment)
+    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
+
+
+def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
+    """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
+    centroid = predicted.centroid - observed.centroid
+    turned = (
+        np.swapaxes(observed.axes, -1, -2)
+        @ (predicted.second_moment - observed.second_moment)
+        @ observed.axes
+    )
+    divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
+    shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
+    residual = np.concatenate([centroid, shape], axis=-1)
+    if predicted.centroid_jacobian is None or predicted.moment_jacobian is None:
+        return residual, None
+    # Turning is linear in the entries xx, xy, yy: a 3 x 3 matrix a region.
+    u = observed.axes
+    turn = np.stack(
+        [
+            np.stack(
+                [
+                    u[..., 0, a] * u[..., 0, b],
+                    u[..., 0, a] * u[..., 1, b] + u[..., 1, a] * u[..., 0, b],
+                    u[..., 1, a] * u[..., 1, b],
+                ],
+                axis=-1,
+            )
+            / divisor[..., a, b, None]
+            for a, b in MOMENTS
+        ],
+        axis=-2,
+    )
+    rows = [predicted.centroid_jacobian, turn @ predicted.moment_jacobian]
+    return residual, np.concatenate(rows, axis=-2)
+
+
+def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
+    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
+    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
+    return np.asarray(scale[:, None] * model.half_widths_m)
+
+
+def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
+    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
+
+    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
+    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
+
+    `area` (F, M) is seen [px]; `area_ratio` (M,) is that of an unhidden region relative to the predicted one.
+    """
+    expected = np.maximum(predicted.area * area_ratio, 1.0)
+    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
+    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
+    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
+    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)

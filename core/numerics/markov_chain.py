@@ -7,15 +7,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import IndexArray, SingleArray
+from ..arrays import Array, IndexArray, SingleArray
 
 
-def cheapest_path(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> IndexArray:
+def cheapest_path(own: Sequence[Array | SingleArray], steps: Sequence[Array | SingleArray]) -> IndexArray:
     """(T,) the states of the cheapest path (Viterbi 1967).
 
-    Args:
-        own: T arrays (K,) of the states' own costs.
-        steps: T - 1 arrays (J, K) of the costs of steps from each state to each of the next time's.
+    `own`: T arrays (K,) of the states' costs; `steps`: T - 1 arrays (J, K) of the steps' from each state to
+    each next.
     """
     total, sources = own[0], []
     for step, cost in zip(steps, own[1:], strict=True):
@@ -34,10 +33,8 @@ def cheapest_pairs(
 ) -> tuple[IndexArray, IndexArray]:
     """The cheapest path of pairs whose halves step each on their own: rows and columns (T,).
 
-    Args:
-        own: T arrays (J, K) of the pairs' own costs.
-        first: T - 1 arrays (J, J') of the costs of steps of the first half.
-        second: The same (K, K') of the second half.
+    `own`: T arrays (J, K) of the pairs' costs; `first` and `second`: T - 1 arrays (J, J') and (K, K') of the
+    steps' costs.
     """
     total, sources = own[0], []
     for one, other, cost in zip(first, second, own[1:], strict=True):
@@ -58,12 +55,7 @@ def cheapest_pairs(
 
 
 def path_posteriors(own: Sequence[SingleArray], steps: Sequence[SingleArray]) -> list[SingleArray]:
-    """T arrays (K,) of the states' probabilities given all times (forward-backward).
-
-    Args:
-        own: As for `cheapest_path`.
-        steps: The same.
-    """
+    """T arrays (K,) of the states' probabilities given all times (forward-backward)."""
     chance = [np.exp(-step) for step in steps]
     forward = [_normalized(np.exp(own[0].min() - own[0]))]
     for step, cost in zip(chance, own[1:], strict=True):

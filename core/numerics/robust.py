@@ -1,4 +1,4 @@
-"""Student's t, under which errors far off count for less.
+"""Student's t, under which errors far off count for less, and Levenberg-Marquardt for batches of problems.
 
 Lange, Little & Taylor (1989), *Robust statistical modeling using the t distribution*, JASA 84.
 """
@@ -10,16 +10,15 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 
+DEGREES = 4.0  # of Student's t for all that is seen (Lange, Little & Taylor 1989); few forgive more
+
 Floats = TypeVar("Floats", Array, SingleArray)
 
 
 def student_weight(squared: Array, degrees: float, count: IndexArray | int) -> Array:
     """Weight of groups of rows whose t gets `degrees` for each row; 1 at zero.
 
-    Args:
-        squared: Sum of squared whitened residuals of each group.
-        degrees: Degrees of freedom; fewer forgive more.
-        count: Rows in each group.
+    `squared` sums `count` whitened residuals of a group; fewer `degrees` forgive more.
     """
     return np.asarray(degrees / (degrees + squared / np.maximum(count, 1)))
 
@@ -30,27 +29,13 @@ def student_cost(squared: Array, degrees: float, count: int) -> Array:
     return np.asarray(0.5 * size * np.log1p(squared / size))
 
 
-def multivariate_weight(squared: Array, degrees: float, dimensions: float) -> Array:
-    """Weight of rows of a `dimensions`-variate t, (ν + d) / (ν + s), which is beyond 1 near zero."""
-    return np.asarray((degrees + dimensions) / (degrees + squared))
-
-
 def multivariate_cost(squared: Floats, degrees: float, dimensions: float) -> Floats:
     """Negative logarithm of a `dimensions`-variate t of squared distances, up to a constant."""
     return 0.5 * (degrees + dimensions) * np.log1p(squared / degrees)
 
 
-# --- Levenberg-Marquardt for a batch of problems, on vectors or on a manifold
-
-
 State = TypeVar("State")
-Equations = tuple[Array, Array, Array]
-"""Of N problems in D unknowns: cost (N,), normal matrix (N, D, D) and gradient (N, D)."""
-FIRST_DAMPING, LEAST_DAMPING, MOST_DAMPING = 1e-3, 1e-9, 1e6
-REWARD, PENALTY = 0.2, 8.0
-"""Factors on the damping after a step that lowers the cost, and after one that does not."""
-RIDGE = 1e-9
-"""Added to the diagonal, so that what nothing determines stays."""
+Equations = tuple[Array, Array, Array]  # cost (N,), normal matrix (N, D, D), gradient (N, D)
 
 
 def levenberg_marquardt(
@@ -63,22 +48,17 @@ def levenberg_marquardt(
 ) -> State:
     """Lower the cost of N problems together.
 
-    Args:
-        equations: Cost, normal matrix and gradient of each at a state.
-        start: The state to start from.
-        plus: A state changed by steps (N, D).
-        choose: Of each problem the first state where a mask (N,) holds, else the second.
-        iterations: Steps at most.
-        converged: Share of its cost below which a step's gain ends a problem.
+    `plus` changes a state by steps (N, D); `choose` takes of each problem the first state where a mask (N,)
+    holds, else the second; a step that gains less than `converged` of the cost ends a problem.
     """
     state = start
     cost, normal, gradient = equations(state)
-    damping = np.full(len(cost), FIRST_DAMPING)
+    damping = np.full(len(cost), 1e-3)
     diagonal = np.arange(gradient.shape[-1])
     for _ in range(iterations):
         damped = normal.copy()
         damped[:, diagonal, diagonal] *= 1.0 + damping[:, None]
-        damped[:, diagonal, diagonal] += RIDGE
+        damped[:, diagonal, diagonal] += 1e-9
         trial = plus(state, -np.linalg.solve(damped, gradient[..., None])[..., 0])
         trial_cost, trial_normal, trial_gradient = equations(trial)
         better = trial_cost < cost
@@ -87,7 +67,7 @@ def levenberg_marquardt(
         cost = np.where(better, trial_cost, cost)
         normal = np.where(better[:, None, None], trial_normal, normal)
         gradient = np.where(better[:, None], trial_gradient, gradient)
-        damping = np.clip(np.where(better, damping * REWARD, damping * PENALTY), LEAST_DAMPING, 1e9)
-        if np.all(np.where(better, gain < converged, damping > MOST_DAMPING)):
+        damping = np.clip(np.where(better, damping * 0.2, damping * 8.0), 1e-9, 1e9)
+        if np.all(np.where(better, gain < converged, damping > 1e6)):
             break
     return state

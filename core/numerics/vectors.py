@@ -1,26 +1,20 @@
-"""Directions in space."""
+"""Directions in space, and signals over time."""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from ..arrays import Array, IndexArray
 
-SHORTEST = 1e-12
-"""Length below which a vector has no direction."""
-
 
 def unit(vectors: Array) -> Array:
     """Vectors (..., N) made one long; those without a direction stay short."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, SHORTEST))
+    return np.asarray(vectors / np.maximum(length, 1e-12))
 
 
 def across(vector: Array) -> Array:
     """Some unit vector (3,) at right angles to a vector (3,)."""
     return unit(np.cross(vector, np.eye(3)[np.argmin(np.abs(vector))]))
-
-
-# --- Signals over time
 
 
 def usual_step(time_s: Array, otherwise: float = 1.0) -> float:

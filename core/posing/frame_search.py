@@ -10,14 +10,14 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 from ..body.kinematics import Body
 from ..body.posture import Posture
+from ..estimate.clip_problem import KeyframeEvidence
 from ..estimate.clip_state import ClipState
-from ..estimate.keyframe_evidence import KeyframeEvidence
 from ..estimate.performer_placement import place_standing
 from ..estimate.single_frame import descend, exchanged
 from ..estimate.terms.assembly import free_frame_terms
-from ..estimate.terms.keypoints import ObservedKeypoints
-from ..estimate.terms.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from ..estimate.terms.term import total_cost
+from ..evidence.keypoints import ObservedKeypoints
+from ..evidence.regions import FEATURES, ObservedRegions, RegionNoise, limb_widths
 from ..footage.camera import Camera
 from ..footage.keypoints.keypoints import Keypoints
 from ..footage.region_tracks import RegionTracks

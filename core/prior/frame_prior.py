@@ -1,4 +1,4 @@
-"""Process noise of the deviation from the prior between keyframes: its size, and the joints' correlations.
+"""How far a motion departs from the prior between keyframes, and what is believed of a single frame.
 
 Where neighboring keyframes differ much, much happens between them, and it is made of the same movements: the
 hip that swings forward bends the knee. The deviation's acceleration therefore has the size and, within each
@@ -16,26 +16,17 @@ from ..body.skeleton import Skeleton
 from ..evidence.keypoints import DEPTH_STD_M
 from .keyframes import Keyframe, interpolate
 
-REFERENCE_STEP_S = 1.0 / 30.0
-"""Accelerations are stated as second differences at this step."""
-NATURAL_SHARE = 0.2
-"""Factor on every degree of freedom's natural deviation (`Skeleton.deviations`)."""
+REFERENCE_STEP_S = 1.0 / 30.0  # accelerations are stated as second differences at this step
+NATURAL_SHARE = 0.2  # factor on every degree of freedom's natural deviation (`Skeleton.deviations`)
+# Factors on the steps between keyframes over their squared duration, with and without correlations. A swing
+# there and back within a gap, a half sine, accelerates by nearly ten times its size over that square.
 CORRELATED_SHARE, INDEPENDENT_SHARE = 6.0, 2.5
-"""Factors on the steps between keyframes over their squared duration, with and without correlations.
-
-A swing there and back within a gap, a half sine, accelerates by nearly ten times its size over that square.
-"""
 
 
 def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
     """Cholesky factor L (D, D) of the covariance L Lᵀ of the deviation's second differences.
 
-    Args:
-        keyframes: K postures in order of time.
-        time_s: (K,) their times.
-
-    Returns:
-        Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
+    Lower triangular, zero between different limbs [m, rad per squared step of 1/30 s].
     """
     skeleton = keyframes.skeleton
     covariance = np.diag((NATURAL_SHARE * skeleton.deviations) ** 2)
@@ -48,9 +39,6 @@ def process_noise_factor(keyframes: Posture, time_s: Array) -> Array:
             block = np.ix_(limb, limb)
             covariance[block] += CORRELATED_SHARE**2 * shared[block]
     return np.asarray(np.linalg.cholesky(covariance))
-
-
-# --- Gaussian prior of one frame's posture, for assisted posing
 
 
 # Standard deviation between postures of the same person at two unrelated moments [m, rad]: round numbers for
@@ -68,35 +56,24 @@ UNRELATED_STD = {
     "knee": 0.60,
     "shin": 0.05,
 }
-CORRELATION_TIME_S = 0.3
-"""Time after which postures differ by two thirds of that."""
-SPEED_M_PER_S = 0.7
-"""A walking performer's hips also move away steadily, by this speed."""
-VELOCITY_SHARE = 0.5
-"""Share of the velocity between the last two keyframes with which the hips are extrapolated."""
-ROUGH_POSE_SHARE = 0.5
-"""Standard deviation of a pose roughly set by the animator, as a share of `UNRELATED_STD`."""
+SPEED_M_PER_S = 0.7  # a walking performer's hips also move away steadily, by this speed
+ROUGH_POSE_SHARE = 0.5  # deviation of a pose roughly set, as a share of `UNRELATED_STD`
 
 
 @dataclass(frozen=True, eq=False)
 class FramePrior:
     """A Gaussian prior of a posture, with starting points for the search."""
 
-    posture: Posture
-    """A single posture: the mean."""
-    std: Array
-    """(D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]."""
-    starts: Posture
-    """A batch of postures to start the search from, the first of them `posture`."""
-    depth_std_m: float = DEPTH_STD_M
-    """Standard deviation of each point's depth [m]."""
-    grounded: Posture | None = None
-    """Postures of which at least one stands on the ground; None where the ground is unknown."""
+    posture: Posture  # a single posture: the mean
+    std: Array  # (D,) standard deviation of each degree of freedom, in the mean's tangent space [m, rad]
+    starts: Posture  # a batch of postures to start the search from, the first of them `posture`
+    depth_std_m: float = DEPTH_STD_M  # standard deviation of each point's depth [m]
+    grounded: Posture | None = None  # at least one of these stands on the ground; None: unknown
 
 
 def difference_std(skeleton: Skeleton, time_s: float) -> Array:
     """(D,) standard deviation [m, rad] of the difference between postures a time apart."""
-    share = 1.0 - np.exp(-abs(time_s) / CORRELATION_TIME_S)
+    share = 1.0 - np.exp(-abs(time_s) / 0.3)
     std = share * unrelated_std(skeleton)
     std[:3] = np.maximum(std[:3], SPEED_M_PER_S * abs(time_s))
     return np.maximum(std, 1e-3)
@@ -105,10 +82,7 @@ def difference_std(skeleton: Skeleton, time_s: float) -> Array:
 def prior_from_keyframes(keyframes: Sequence[Keyframe], index: int, fps: float) -> FramePrior:
     """Prior of a frame from the nearest keyframes before and after it.
 
-    Args:
-        keyframes: At least one, in order of frame; one at the frame itself counts only if there is no other.
-        index: Index of the frame in the clip.
-        fps: Frames per second.
+    One at the frame itself counts only if there is no other.
     """
     others = [keyframe for keyframe in keyframes if keyframe.index != index] or list(keyframes)
     before = [keyframe for keyframe in others if keyframe.index <= index][-1:]
@@ -135,7 +109,7 @@ def _extrapolated(keyframes: Sequence[Keyframe], index: int) -> Posture:
         return last.posture
     step = np.zeros(last.posture.skeleton.dof_count)
     time = (index - last.index) / (last.index - other[0].index)
-    step[:2] = VELOCITY_SHARE * time * (last.posture.translation - other[0].posture.translation)[:2]
+    step[:2] = 0.5 * time * (last.posture.translation - other[0].posture.translation)[:2]
     return last.posture.plus(step)
 
 

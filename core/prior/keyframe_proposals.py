@@ -1,4 +1,4 @@
-"""V_sum, the summed speed of the markers in the image (paper, eq. 8)."""
+"""V_sum, the summed speed of the markers in the image (paper, eq. 8), and the keyframes proposed by it."""
 
 import math
 from dataclasses import dataclass
@@ -27,12 +27,8 @@ def marker_speed(tracks: RegionTracks, smoothing_frames: float = SMOOTHING_FRAME
     its nearest known speed, so that occlusion alone makes no minimum. A marker detected in fewer than two
     frames adds nothing.
 
-    Args:
-        tracks: F frames of M regions; uneven time stamps are respected.
-        smoothing_frames: Standard deviation of a Gaussian filter over the sum [frames]; 0 for none.
-
-    Returns:
-        (F,) [px per frame of the clip's median duration].
+    (F,) [px per frame of the clip's median duration]; uneven time stamps are respected; `smoothing_frames`:
+    deviation of a Gaussian filter over the sum.
     """
     time = frame_times(tracks.time_s)
     total = np.zeros(tracks.frame_count)
@@ -60,13 +56,7 @@ def point_speed(centroid: Array, time: Array) -> Array:
     return np.asarray(np.interp(np.arange(len(time)), np.arange(seen[0], seen[-1] + 1), speed))
 
 
-# --- V_sum of whatever shows the performer
-
-
-OUTLIER_S = 0.17
-"""Time of which a keypoint's path is the median: less than half of it a detector may be wrong."""
-JITTER_S = 0.067
-"""Standard deviation of the smoothing of keypoints and pictures: a detector's jitter of pixels is faster."""
+JITTER_S = 0.067  # smoothing of keypoints and pictures: a detector's jitter is faster
 FROM_PICTURES = "no marker or keypoint is seen, so the speed is how much the pictures change"
 FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes are spaced evenly"
 
@@ -75,26 +65,14 @@ FROM_NOTHING = "no marker or keypoint is seen and the camera moves, so keyframes
 class EvidenceSpeed:
     """V_sum, and what it was made from."""
 
-    values: Array
-    """(F,) [px per frame]."""
-    note: str = ""
-    """What else than markers and keypoints had to be used, for people; empty where one of them is seen."""
+    values: Array  # (F,) [px per frame]
+    note: str = ""  # what had to be used where neither markers nor keypoints are seen, for people
 
 
 def evidence_speed(
     tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints, album: Album | None = None
 ) -> Part[EvidenceSpeed]:
-    """The summed speed of the performer's parts in the image.
-
-    Args:
-        tracks: The markers' regions, of F frames.
-        segments: The segment each marker is bound to.
-        keypoints: The performer's keypoints.
-        album: Pictures of the clip; None where there are none.
-
-    Yields:
-        The fraction done.
-    """
+    """The summed speed of the performer's parts in the image."""
     if keypoints.seen.any():
         return EvidenceSpeed(_speed_of_parts(tracks, segments, keypoints))
     if tracks.visible.any():
@@ -132,22 +110,11 @@ def _cleaned(pixel: Array, time_s: Array) -> Array:
     within = np.arange(seen[0], seen[-1] + 1)
     frames = np.arange(len(pixel))
     path = columns_at(within, seen, pixel[seen])
-    half = max(1, round(0.5 * OUTLIER_S / usual_step(time_s)))
+    half = max(1, round(0.5 * 0.17 / usual_step(time_s)))
     calm = median_filter(path, size=(2 * half + 1, 1), mode="nearest")
     cleaned = np.full((len(frames), 2), np.nan)
     cleaned[within] = gaussian(calm, JITTER_S / usual_step(time_s))
     return cleaned
-
-
-# --- Frames proposed as keyframes, from the markers' summed speed V_sum
-
-
-KEYFRAMES_PER_100_FRAMES = 10.0
-SNAP_SHARE = 0.35
-"""Largest shift of a keyframe from its evenly spaced frame, in even gaps; below 0.5, so that none overtakes
-another."""
-GAP_SLACK = 1.5
-"""Default of the largest gap, in even gaps."""
 
 
 def propose_keyframes(
@@ -157,13 +124,8 @@ def propose_keyframes(
 
     The first and the last frame are always included.
 
-    Args:
-        speed: (F,) V_sum; a NaN is never chosen as a minimum.
-        count: Number of keyframes; 10 per 100 frames where None. `largest_gap` may require more.
-        largest_gap: Most frames from one keyframe to the next; 1.5 even gaps where None.
-
-    Returns:
-        (K,) increasing frame indices.
+    `count`: by default 10 per 100 frames, and more where `largest_gap` wants it, which is 1.5 even gaps by
+    default.
 
     Raises:
         InputError: Fewer than two frames, a count that is not between 2 and F, or a gap below 1.
@@ -178,12 +140,12 @@ def propose_keyframes(
         )
     if largest_gap is not None and largest_gap < 1:
         raise InputError(f"largest keyframe gap is {largest_gap} frames; a gap of 1 frame or more is valid")
-    wanted = count if count is not None else round(frames * KEYFRAMES_PER_100_FRAMES / 100.0)
+    wanted = count if count is not None else round(frames * 10.0 / 100.0)
     if largest_gap is not None:
         wanted = max(wanted, math.ceil((frames - 1) / largest_gap) + 1)
     even = np.rint(np.linspace(0, frames - 1, min(max(wanted, 2), frames))).astype(np.intp)
     gap = (frames - 1) / (len(even) - 1)
-    return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(GAP_SLACK * gap))
+    return _snap(V, even, largest_gap if largest_gap is not None else math.ceil(1.5 * gap))
 
 
 def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
@@ -193,7 +155,7 @@ def _snap(V: Array, even: IndexArray, largest_gap: int) -> IndexArray:
     minimum = np.isfinite(V) & (V <= padded[:-2]) & (V <= padded[2:])
     spacing = np.diff(even)
     # Within this reach the next keyframe's evenly spaced frame stays allowed for any choice of this one.
-    reach = min(int(SNAP_SHARE * spacing.min()), largest_gap - int(spacing.max()))
+    reach = min(int(0.35 * spacing.min()), largest_gap - int(spacing.max()))
     chosen = even.copy()
     for i in range(1, len(even) - 1):
         last = min(even[i] + reach, chosen[i - 1] + largest_gap)

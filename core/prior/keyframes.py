@@ -13,12 +13,10 @@ from ..files.kinds import Number, Text
 from ..files.records import Record
 from .texts import COMPOSED
 
-DOUBTFUL = 0.5
-"""Confidence below which a found keyframe is doubtful: more likely wrong than about right."""
+DOUBTFUL = 0.5  # confidence below which a found keyframe is doubtful: more likely wrong than about right
 
 
-LONGEST_NAME = 200
-"""Characters of a library's or a posture's name."""
+LONGEST_NAME = 200  # characters of a library's or a posture's name
 Name = Annotated[str, Text(LONGEST_NAME, f"a name of at most {LONGEST_NAME} characters")]
 
 
@@ -50,17 +48,13 @@ class Matched(Record):
 class Keyframe:
     """A frame with a given posture."""
 
-    index: int
-    """Frame index in the clip, 0 for the first decoded frame."""
-    posture: Posture
-    """A single posture."""
-    residual_m: float = 0.0
-    """Mean distance [m] between the points it was read from and the fitted posture's; 0 where posed."""
-    matched: Matched | None = None
-    """What was found; None for a keyframe that a person has posed or corrected."""
+    index: int  # frame index in the clip, 0 for the first decoded frame
+    posture: Posture  # a single posture
+    residual_m: float = 0.0  # mean distance of the points it was read from [m]; 0 where posed
+    matched: Matched | None = None  # what was found; None for a keyframe that a person has posed or corrected
 
 
-# --- Turns between keyframes the other way round
+# --- Turns the other way round
 
 
 FULL_TURN = 2.0 * np.pi
@@ -78,10 +72,7 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     The heading is the monotone cubic (Fritsch & Carlson 1980) through the keyframes' headings unwound with
     these turns instead of without; leans and all else stay those of the interpolation, seen from the body.
 
-    Args:
-        prior: F postures that pass through the keyframes and turn the short way round.
-        keyframes: (K,) their frames, increasing.
-        turns: (K - 1,) turns added in each gap, counterclockwise seen from above; 0 for none.
+    `turns` (K - 1,): counterclockwise seen from above, 0 for none.
     """
     if not turns.any():
         return prior
@@ -105,19 +96,11 @@ def _monotone(knots: IndexArray, values: Array, times: IndexArray) -> Array:
     return np.asarray(PchipInterpolator(knots.astype(np.float64), values)(times.astype(np.float64)))
 
 
-# --- The prior mean between keyframes
+# --- Interpolation
 
 
 def interpolate(keyframes: tuple[Keyframe, ...], frame_count: int) -> Posture:
-    """The a priori posture of every frame.
-
-    Args:
-        keyframes: At least two, in order of frame.
-        frame_count: Frames F of the clip.
-
-    Returns:
-        A batch of F postures that passes through every keyframe.
-    """
+    """The a priori posture of every frame."""
     return cubic_spline(*_posed(keyframes), np.arange(frame_count, dtype=np.float64))
 
 
@@ -127,7 +110,6 @@ def interpolate_linearly(keyframes: tuple[Keyframe, ...], frame_count: int) -> P
 
 
 def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
-    """The keyframes' postures and their frames (K,)."""
     index = np.array([keyframe.index for keyframe in keyframes], dtype=np.float64)
     return Posture.stack([keyframe.posture for keyframe in keyframes]), index
 
@@ -135,28 +117,26 @@ def _posed(keyframes: tuple[Keyframe, ...]) -> tuple[Posture, Array]:
 # --- Performer offset
 
 
-CONSTANT_SHARE = 0.5
-"""Share of the offset's variance that is constant over the clip."""
-CORRELATION_TIME_S = 0.5
-"""Correlation time of the rest."""
-POSED_VARIANCE = 0.1
-"""Variance of a person's own error, relative to the offset's."""
-LEAST_VARIANCE = 0.05
-"""Share of the offset's variance that remains beside any posed keyframe."""
-BEYOND_S = 0.1
-"""Time outside the matched keyframes over which the nearest of them ceases to stand for the library."""
+@dataclass(frozen=True)
+class OffsetOptions:
+    """How a performer differs from a library."""
+
+    constant_share: float = 0.5  # share of the offset's variance that is constant over the clip
+    correlation_time_s: float = 0.5  # correlation time of the rest
+    posed_variance: float = 0.1  # variance of a person's own error, relative to the offset's
+    least_variance: float = 0.05  # share of the offset's variance that remains beside any posed keyframe
+    # Time outside the matched keyframes over which the nearest of them ceases to stand for the library.
+    beyond_s: float = 0.1
+
+
+OFFSET = OffsetOptions()
 
 
 def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyframe, ...], Array]:
     """Move the keyframes matched with a library by the performer's offset, learned at the posed ones.
 
-    Args:
-        keyframes: Posed and matched ones, in order of frame.
-        fps: Frames per second.
-
-    Returns:
-        The keyframes, and (K,) the offset's remaining standard deviation relative to its prior one: 1 where
-        nothing was posed, less near posed keyframes, and 0 at these.
+    With (K,) the offset's remaining standard deviation relative to its prior one: 1 where nothing was posed,
+    less near posed keyframes, and 0 at these.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     found = [keyframe for keyframe in keyframes if keyframe.matched is not None]
@@ -169,7 +149,7 @@ def with_offset(keyframes: tuple[Keyframe, ...], fps: float) -> tuple[tuple[Keyf
     known = _known(at, beyond_s)
     across = _covariance(at, wanted)
     share = np.linalg.solve(known, across).T  # (found, posed)
-    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), LEAST_VARIANCE))
+    doubt[doubt > 0.0] = np.sqrt(np.maximum(1.0 - np.sum(share * across.T, axis=1), OFFSET.least_variance))
     step = np.where([[key in matched] for key in found], share @ difference, 0.0)
     changed = Posture.stack([key.posture for key in found]).plus(step)
     both = [*posed, *(replace(key, posture=changed[row]) for row, key in enumerate(found))]
@@ -181,24 +161,20 @@ def leave_one_out_residuals(keyframes: tuple[Keyframe, ...], fps: float) -> tupl
 
     Rasmussen & Williams (2006), eq. 5.12.
 
-    Args:
-        keyframes: Posed and matched ones, at least one of either.
-        fps: Frames per second.
-
-    Returns:
-        (P, D) the residuals, and (P,) their weights: less, the farther one lies from matched keyframes.
+    (P, D), and (P,) their weights: less, the farther one lies from matched keyframes.
     """
     posed = [keyframe for keyframe in keyframes if keyframe.matched is None]
     matched = [keyframe for keyframe in keyframes if keyframe.matched is not None]
     difference, beyond_s = _differences(posed, matched, fps)
     information = np.linalg.inv(_known(np.array([k.index for k in posed]) / fps, beyond_s))
-    weight = 1.0 / (1.0 + (beyond_s / BEYOND_S) ** 2)
+    weight = 1.0 / (1.0 + (beyond_s / OFFSET.beyond_s) ** 2)
     return (information @ difference) / np.diag(information)[:, None], weight
 
 
 def _known(at: Array, beyond_s: Array) -> Array:
     """(P, P) covariance of the observed offsets at posed keyframes' times [s], observation noise included."""
-    return np.asarray(_covariance(at, at) + np.diag(POSED_VARIANCE + (beyond_s / BEYOND_S) ** 2))
+    noise = OFFSET.posed_variance + (beyond_s / OFFSET.beyond_s) ** 2
+    return np.asarray(_covariance(at, at) + np.diag(noise))
 
 
 def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> tuple[Array, Array]:
@@ -214,5 +190,5 @@ def _differences(posed: list[Keyframe], matched: list[Keyframe], fps: float) -> 
 
 
 def _covariance(one: Array, other: Array) -> Array:
-    apart = np.abs(one[:, None] - other)
-    return np.asarray(CONSTANT_SHARE + (1.0 - CONSTANT_SHARE) * np.exp(-apart / CORRELATION_TIME_S))
+    alike = np.exp(-np.abs(one[:, None] - other) / OFFSET.correlation_time_s)
+    return np.asarray(OFFSET.constant_share + (1.0 - OFFSET.constant_share) * alike)

@@ -12,18 +12,21 @@ from .library import Library, LibraryMotion, LibraryPosture, MotionStep, Travel
 from .motion_playback import ankle_heights, average_cycle, find_period_s, shape_vectors
 from .texts import LONGEST_NAME, identifier_from
 
-FEWEST, MOST = 10, 40
-"""Default bounds of the number of postures."""
-DISTINCT_M = 0.06
-"""Postures are added until every frame is this near to one of them in shape."""
-TIME_SHARE = 0.5
-"""Weight of even coverage in time relative to distance in shape."""
-STILL_M = 0.01
-"""Largest change in shape of a motion that counts as standing still."""
-SLOW_M_S = 0.15
-"""Vertical speed of the lower ankle below which its foot rests on the floor."""
-LIFTED_M = 0.08
-"""Height of a foot above the other from which it counts as lifted."""
+
+@dataclass(frozen=True)
+class LearningOptions:
+    """Which frames become postures, and when a foot rests."""
+
+    fewest: int = 10  # default bounds of the number of postures
+    most: int = 40
+    distinct_m: float = 0.06  # postures are added until every frame is this near to one of them in shape
+    time_share: float = 0.5  # weight of even coverage in time relative to distance in shape
+    still_m: float = 0.01  # largest change in shape of a motion that counts as standing still
+    slow_m_s: float = 0.15  # vertical speed of the lower ankle below which its foot rests on the floor
+    lifted_m: float = 0.08  # height of a foot above the other from which it counts as lifted
+
+
+LEARNING = LearningOptions()
 DECIMALS_S = 3
 
 
@@ -33,10 +36,8 @@ class LibraryMetadata:
 
     title: str
     author: str
-    license: str = "LicenseRef-Proprietary"
-    """SPDX expression; by default all rights are reserved."""
-    identifier: str = ""
-    """By default derived from the title."""
+    license: str = "LicenseRef-Proprietary"  # SPDX expression; by default all rights are reserved
+    identifier: str = ""  # by default derived from the title
 
 
 def learn_library(
@@ -46,12 +47,7 @@ def learn_library(
 
     A periodic motion becomes one cycle, the average of all its cycles; any other stays whole.
 
-    Args:
-        body: The performer; the library keeps the proportions.
-        posture: A batch of F postures.
-        time_s: (F,) rising times [s].
-        about: Title, author and license.
-        count: Number of postures; by default as many as are distinct, from 10 to 40.
+    `count` of postures: by default as many as are distinct, from 10 to 40.
 
     Raises:
         InputError: The motion has fewer frames than the postures asked for, or stands still.
@@ -63,7 +59,7 @@ def learn_library(
     if frames < fewest:
         raise InputError(f"the motion has {frames} frames; a library of it needs at least {fewest} frames")
     shape = shape_vectors(body, posture)
-    if np.linalg.norm(shape - shape[0], axis=1).max() < STILL_M:
+    if np.linalg.norm(shape - shape[0], axis=1).max() < LEARNING.still_m:
         raise InputError("the motion stands still; a library needs postures that differ")
     posture = on_floor(body, posture, time_s)
     period_s = find_period_s(shape, time_s)
@@ -110,7 +106,7 @@ def learn_library(
 def on_floor(body: Body, posture: Posture, time_s: Array) -> Posture:
     """Shift a motion of F frames at times (F,) [s] so that its floor, where the lower foot rests, is at 0."""
     lower = ankle_heights(body, posture).min(axis=-1)
-    slow = np.abs(np.gradient(lower, time_s)) < SLOW_M_S
+    slow = np.abs(np.gradient(lower, time_s)) < LEARNING.slow_m_s
     floor_m = float(np.median(lower[slow]) if slow.any() else np.quantile(lower, 0.1))
     return turned_and_shifted(posture, 0.0, np.array([0.0, 0.0, -floor_m]))
 
@@ -120,17 +116,10 @@ def spread_frames(
 ) -> IndexArray:
     """Frames spread over shape and time by farthest point sampling.
 
-    Args:
-        shape: (F, N) the body's shape in each frame [m].
-        time_s: (F,) times from 0, rising [s].
-        duration_s: Duration of the motion [s].
-        count: Number of frames; by default as many as are distinct, from 10 to 40.
-        cyclic: Whether the first frame follows the last; else both are chosen.
-
-    Returns:
-        (K,) frames, rising.
+    `shape` (F, N) [m] at times (F,) from 0; `count`: by default as many as are distinct, from 10 to 40;
+    `cyclic`: the first frame follows the last; else both are chosen.
     """
-    wanted = min(len(shape), MOST if count is None else count)
+    wanted = min(len(shape), LEARNING.most if count is None else count)
     pace = _typical_change(shape, time_s, duration_s)  # [m] in a tenth of the motion
     chosen: list[int] = []
     nearest = np.full(len(shape), np.inf)
@@ -142,7 +131,7 @@ def spread_frames(
         later = np.abs(time_s - time_s[frame])
         if cyclic:
             later = np.minimum(later, duration_s - later)
-        in_time = TIME_SHARE * pace * later / (0.1 * duration_s)
+        in_time = LEARNING.time_share * pace * later / (0.1 * duration_s)
         np.minimum(nearest, np.hypot(apart, in_time), out=nearest)
         np.minimum(nearest_shape, apart, out=nearest_shape)
 
@@ -150,15 +139,13 @@ def spread_frames(
     if not cyclic:
         choose(len(shape) - 1)
     while len(chosen) < wanted:
-        enough = count is None and len(chosen) >= FEWEST and nearest_shape.max() < DISTINCT_M
-        if enough:
+        if count is None and len(chosen) >= LEARNING.fewest and nearest_shape.max() < LEARNING.distinct_m:
             break
         choose(int(nearest.argmax()))
     return np.array(sorted(chosen), dtype=np.intp)
 
 
 def _typical_change(shape: Array, time_s: Array, duration_s: float) -> float:
-    """Mean change of the shape in a tenth of the motion [m]."""
     step = max(1, round(0.1 * duration_s * (len(time_s) - 1) / max(time_s[-1] - time_s[0], 1e-9)))
     step = min(step, len(shape) - 1)
     return float(np.linalg.norm(shape[step:] - shape[:-step], axis=1).mean())
@@ -191,7 +178,6 @@ def numbered_names(title: str, count: int) -> list[str]:
 def _tags(body: Body, posture: Posture) -> list[tuple[str, ...]]:
     """Tags of each posture: the lifted foot, if any."""
     left, right = np.moveaxis(ankle_heights(body, posture), -1, 0)
-    words = np.select(
-        [left - right > LIFTED_M, right - left > LIFTED_M], ["left foot up", "right foot up"], ""
-    )
+    higher = [left - right > LEARNING.lifted_m, right - left > LEARNING.lifted_m]
+    words = np.select(higher, ["left foot up", "right foot up"], "")
     return [(str(word),) if word else () for word in words]

@@ -20,15 +20,12 @@ from ..files.kinds import Items, Kind, Number, Text, Whole
 from ..files.records import Object, Record
 from .texts import IDENTIFIER, LONGEST_LINE, LONGEST_NAME, LONGEST_TEXT, SPDX, Tags, line, name_key
 
-MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000
-"""Most steps in all motions together."""
+MOST_POSTURES, MOST_MOTIONS, MOST_STEPS = 1000, 100, 10_000  # steps: of all motions together
 MOST_SOURCES = 100
 FARTHEST_M = 100.0
-SHORTEST_S, LONGEST_S = 0.001, 600.0
-"""Bounds of a motion's duration: a shorter cycle would repeat without end between two frames."""
+SHORTEST_S, LONGEST_S = 0.001, 600.0  # of a motion: a shorter cycle would repeat without end
 HIGHEST_VERSION = 10**6
-DECIMALS = 9
-"""Nanometers and nanoradians: Blender's single precision survives."""
+DECIMALS = 9  # nanometers and nanoradians: Blender's single precision survives
 
 Travel = tuple[float, float, float]
 Name = Annotated[str, line(LONGEST_NAME)]

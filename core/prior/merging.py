@@ -41,10 +41,7 @@ def merge_versions(mine: Library, theirs: Library, replaces: bool | None = None)
     The header is that of the higher version. The result's version is one above both, unless it equals one
     of them.
 
-    Args:
-        mine: The present library.
-        theirs: Another one of the same identifier.
-        replaces: Whether theirs replaces what is in both and differs; None where nothing does.
+    `replaces`: whether theirs replaces what is in both and differs; None where nothing does.
 
     Raises:
         InputError: Some differ and nothing says which counts, or the libraries have different identifiers.
@@ -110,14 +107,12 @@ def join_libraries(first: Library, second: Library, identifier: str, title: str)
 
 
 def _both_licenses(first: str, second: str) -> str:
-    """SPDX expression of a work under both licenses."""
     if first == second:
         return first
     return " AND ".join(f"({license_})" if " " in license_ else license_ for license_ in (first, second))
 
 
 def _fitted(library: Library, other: Library) -> Library:
-    """A library transferred to the proportions of another."""
     body = Body(other.actor)
     postures = tuple(
         replace(entry, posture=transferred(entry, library.actor, body)) for entry in library.postures

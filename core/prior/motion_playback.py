@@ -1,4 +1,4 @@
-"""Shape of postures, independent of location and heading, for comparing them; and heights of the ankles."""
+"""Motions over time: shapes of postures for comparing them, periods and average cycles, and playback."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,6 @@ from ..body.skeleton import SIDES
 from ..numerics.vectors import columns_at
 from .library import Library, LibraryMotion, Travel
 from .transfer import transferred
-
-ANKLE_OVER_SOLE = 0.36
-"""Height of an ankle over flat soles, as a share of the foot's length; as in the standing skeleton."""
 
 
 def shape_vectors(body: Body, posture: Posture) -> Array:
@@ -38,43 +35,43 @@ def ankle_heights(body: Body, posture: Posture) -> Array:
     """
     points = body.points(body.pose(posture))
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
-    below = [ANKLE_OVER_SOLE * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
+    below = [0.36 * body.actor.segments_m[f"foot.{side}"] for side in SIDES]
     return np.asarray(points[..., ankles, 2] - below)
 
 
 # --- Periodic motions
 
 
-FEWEST_CYCLES = 1.9
-"""Cycles a motion must contain: two, but for what is cut off at the clip's ends."""
-SHORTEST_S = 0.25
-MOST_UNLIKE = 0.2
-"""Largest normalized difference of shapes one period apart."""
-AS_GOOD = 0.05
-"""Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples."""
-STILL_M = 0.02
-"""Variation of the body's shape below which it counts as motionless."""
+@dataclass(frozen=True)
+class PeriodOptions:
+    """When a motion counts as periodic."""
+
+    # cycles a motion must contain: two, but for what is cut off at the clip's ends
+    fewest_cycles: float = 1.9
+    shortest_s: float = 0.25
+    most_unlike: float = 0.2  # largest normalized difference of shapes one period apart
+    # Tolerance in that difference within which the shortest lag is the period, and longer ones its multiples.
+    as_good: float = 0.05
+    still_m: float = 0.02  # variation of the body's shape below which it counts as motionless
+
+
+PERIOD = PeriodOptions()
 
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
     """One cycle of a motion."""
 
-    posture: Posture
-    """A batch of N postures at equal intervals, the first at the cycle's beginning."""
-    time_s: Array
-    """(N,) from the cycle's beginning [s]."""
+    posture: Posture  # a batch of N postures at equal intervals, the first at the cycle's beginning
+    time_s: Array  # (N,) from the cycle's beginning [s]
     duration_s: float
-    travel: Travel
-    """Displacement of a cycle, and its turn about the world's vertical axis."""
+    travel: Travel  # displacement of a cycle, and its turn about the world's vertical axis
 
 
 def find_period_s(shape: Array, time_s: Array) -> float | None:
     """Period of a motion; None if it is not periodic, or shows fewer than two cycles.
 
-    Args:
-        shape: (F, N) the body's shape in each frame [m].
-        time_s: (F,) rising times [s].
+    `shape` (F, N) is the body's in each frame [m].
     """
     count = len(shape)
     if count < 8:
@@ -83,15 +80,15 @@ def find_period_s(shape: Array, time_s: Array) -> float | None:
     even = time_s[0] + step_s * np.arange(count)
     rows = columns_at(even, time_s, shape)
     rows -= rows.mean(axis=0)
-    if np.sqrt(np.sum(rows**2, axis=1).mean()) < STILL_M:
+    if np.sqrt(np.sum(rows**2, axis=1).mean()) < PERIOD.still_m:
         return None
-    unlike = _unlikeness(rows)[: int((count - 1) / FEWEST_CYCLES) + 1]
+    unlike = _unlikeness(rows)[: int((count - 1) / PERIOD.fewest_cycles) + 1]
     lags = np.arange(1, len(unlike) - 1)
     lowest = lags[(unlike[1:-1] <= unlike[:-2]) & (unlike[1:-1] < unlike[2:])]
-    lowest = lowest[(unlike[lowest] < MOST_UNLIKE) & (lowest * step_s >= SHORTEST_S)]
+    lowest = lowest[(unlike[lowest] < PERIOD.most_unlike) & (lowest * step_s >= PERIOD.shortest_s)]
     if not len(lowest):
         return None
-    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + AS_GOOD][0])
+    lag = int(lowest[unlike[lowest] <= unlike[lowest].min() + PERIOD.as_good][0])
     left, middle, right = unlike[lag - 1 : lag + 2]
     bend = left - 2.0 * middle + right
     return float(step_s * (lag + (0.5 * (left - right) / bend if bend > 0.0 else 0.0)))
@@ -112,14 +109,7 @@ def _unlikeness(rows: Array) -> Array:
 
 
 def average_cycle(body: Body, posture: Posture, time_s: Array, period_s: float) -> Cycle:
-    """The mean of a motion's whole cycles, closed so that its end meets the next cycle's beginning.
-
-    Args:
-        body: The performer.
-        posture: A batch of F postures.
-        time_s: (F,) rising times [s].
-        period_s: The period, from `find_period_s`.
-    """
+    """The mean of a motion's whole cycles, closed so that its end meets the next cycle's beginning."""
     shape = shape_vectors(body, posture)
     begin_s, cycles = _whole_cycles(shape, time_s, period_s)
     count = max(8, round(period_s * (len(time_s) - 1) / (time_s[-1] - time_s[0])))
@@ -160,18 +150,16 @@ def _cycle_step(posture: Posture, time_s: Array, period_s: float) -> tuple[float
 
 
 def _mean(batches: list[Posture]) -> Posture:
-    """The mean of several batches, posture by posture."""
     mean = batches[0]
     for _ in range(2):  # for rotations this close the second step is accurate enough
         mean = mean.plus(np.mean([batch.minus(mean) for batch in batches], axis=0))
     return mean
 
 
-# --- Playback of a library's motion
+# --- Playback
 
 
-NEIGHBORS = 2
-"""Postures before and after a cycle that the spline within it depends on."""
+NEIGHBORS = 2  # postures before and after a cycle that the spline within it depends on
 
 
 def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: Array) -> Posture:
@@ -180,15 +168,6 @@ def sample_motion(library: Library, motion: LibraryMotion, body: Body, time_s: A
     A cyclic motion continues without end, before time 0 too, and travels with every cycle; any other holds
     its first posture before its beginning and its last one after its end. Between two steps the lowest sole
     stays between its heights in both of them: a foot on the floor stays there.
-
-    Args:
-        library: The library.
-        motion: One of its motions.
-        body: The body that the postures are fitted to.
-        time_s: (T,) times from the motion's beginning [s].
-
-    Returns:
-        A batch of T postures.
     """
     posed = Posture.stack([library.by_name[step.posture].posture for step in motion.steps])
     knots = np.array([step.time_s for step in motion.steps])
@@ -212,10 +191,7 @@ def after_cycles(posture: Posture, motion: LibraryMotion, cycles: Array) -> Post
 
     A cycle turns a point about the world's origin by the travel's heading, then shifts it by x and y.
 
-    Args:
-        posture: A batch of N postures.
-        motion: A cyclic motion.
-        cycles: (N,) whole numbers, negative for earlier cycles.
+    `cycles` (N,): whole numbers, negative for earlier ones.
     """
     *way, heading = motion.travel
     angle = np.asarray(cycles) * heading

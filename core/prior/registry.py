@@ -12,8 +12,7 @@ from ..files.json_file import ENDING, is_other_format, is_path, json_files, read
 from .library import LARGEST_BYTES, Library, read_library
 from .texts import EVERY_LIBRARY, checked_identifier
 
-SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"
-"""The libraries that come with Keymark."""
+SHIPPED = Path(__file__).resolve().parents[2] / "presets" / "keyframes"  # they come with Keymark
 
 
 @dataclass(frozen=True)
@@ -21,10 +20,8 @@ class RegisteredLibrary:
     """A library file in a registered folder."""
 
     path: Path
-    library: Library | None
-    """The library; None if the file is invalid."""
-    problem: str = ""
-    """The sentence of the error that makes it invalid."""
+    library: Library | None  # the library; None if the file is invalid
+    problem: str = ""  # the sentence of the error that makes it invalid
 
     @property
     def identifier(self) -> str:

@@ -1,4 +1,4 @@
-"""Words that stand for several libraries where one is named; apart, for the command line's help is quick."""
+"""Identifiers, names and texts of libraries, checked as untrusted input."""
 
 import re
 import unicodedata
@@ -12,18 +12,12 @@ from ..files.control_characters import is_control_character
 from ..files.json_file import shown
 from ..files.kinds import Items, Text
 
-EVERY_LIBRARY = "auto"
-"""Stands for all libraries where one is named; hence no valid identifier."""
-COMPOSED = "composed"
-"""Stands for the library of a posture put together from parts of several; hence no valid identifier."""
-
-
-# --- Identifiers, names and texts of a library
+EVERY_LIBRARY = "auto"  # stands for all libraries where one is named; hence no valid identifier
+COMPOSED = "composed"  # stands for parts of several libraries; hence no valid identifier
 
 
 LONGEST_IDENTIFIER = 64
-LONGEST_NAME = 60
-"""Characters of a name at most; the name of a Blender data-block holds 63 bytes."""
+LONGEST_NAME = 60  # characters of a name at most; the name of a Blender data-block holds 63 bytes
 IDENTIFIER_RULE = (
     f"1 to {LONGEST_IDENTIFIER} lower-case letters a to z, digits, dots, hyphens and underscores, the first "
     "and the last of them a letter or digit, with no ending .json, and be no name that Windows keeps for "
@@ -31,8 +25,7 @@ IDENTIFIER_RULE = (
 )
 _IDENTIFIER = re.compile(r"[a-z0-9]([a-z0-9._-]*[a-z0-9])?", re.ASCII)
 _DEVICES = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?", re.ASCII)
-_FILE = re.compile(r".*\.json", re.ASCII)
-"""A name like this is a path where a library is named."""
+_FILE = re.compile(r".*\.json", re.ASCII)  # a name like this is a path where a library is named
 
 
 def is_identifier(text: object) -> bool:
@@ -100,7 +93,7 @@ def unique_name(name: str, taken: Iterable[str]) -> str:
     return next(candidate for candidate in numbered if name_key(candidate) not in keys)
 
 
-# --- Texts, lists and licenses among the fields of files that people share, checked as untrusted input
+# --- Kinds of fields
 
 
 MOST_TAGS = 30

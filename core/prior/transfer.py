@@ -16,8 +16,7 @@ from ..files.json_file import shown
 from .library import Library, LibraryMotion, LibraryPosture, MotionStep
 from .texts import LONGEST_IDENTIFIER, LONGEST_NAME, unique_name
 
-SAME_M = 1e-6
-"""Lengths that differ by less are equal; files keep fewer digits than memory does."""
+SAME_M = 1e-6  # lengths that differ by less are equal; files keep fewer digits than memory does
 
 
 def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> Posture:
@@ -26,13 +25,7 @@ def transferred(posture: LibraryPosture | Posture, actor: Actor, body: Body) -> 
     Both scale with the length of the legs. Height is that of the lowest sole, so that a foot on the floor
     z = 0 stays on it.
 
-    Args:
-        posture: A posture of a library, or any posture or batch of them.
-        actor: The actor it was posed on: the library's.
-        body: The body to transfer it to.
-
-    Returns:
-        The transferred posture; the very same object where both have the same proportions.
+    `actor`: the one it was posed on. The very same object where both have the same proportions.
     """
     given = posture.posture if isinstance(posture, LibraryPosture) else posture
     if _same(actor, body.actor):
@@ -62,8 +55,7 @@ def _same(first: Actor, second: Actor) -> bool:
 MIRRORED = "mirrored"
 _SIDE = re.compile(r"(?<![^\W_])((?i:left|right)|(?<=[._ -])[LR])(?![^\W_])")
 _OPPOSITE = {"left": "right", "right": "left", "l": "r", "r": "l"}
-ALIKE = 1e-6
-"""Tolerance of equal postures: meters, radians, and elements of rotation matrices."""
+ALIKE = 1e-6  # tolerance of equal postures: meters, radians, and elements of rotation matrices
 
 
 def mirrored_name(name: str) -> str:
@@ -136,7 +128,6 @@ def _as_written(word: str, example: str) -> str:
 
 
 def _distinct(name: str) -> str:
-    """Name of a mirror image, different from the original's."""
     swapped = mirrored_name(name)
     return swapped if swapped != name else _marked(name, f" ({MIRRORED})", LONGEST_NAME)
 
@@ -155,7 +146,6 @@ def _motion(motion: LibraryMotion, name: str, names: dict[str, str]) -> LibraryM
 
 
 def _find(posture: Posture, among: Posture) -> int | None:
-    """Index of an equal posture in a batch, if any."""
     far = [
         np.abs(getattr(among, name) - getattr(posture, name)).reshape(len(among.translation), -1).max(axis=1)
         for name in ("translation", "rotations", "angles")
@@ -165,5 +155,4 @@ def _find(posture: Posture, among: Posture) -> int | None:
 
 
 def _same_steps(first: LibraryMotion, second: LibraryMotion) -> bool:
-    """Whether two motions are equal but for their names."""
     return replace(first, name="") == replace(second, name="")

@@ -15,9 +15,9 @@ from ..estimate.keypoint_evidence import KeypointEvidence
 from ..estimate.keypoint_fit import KeypointFit, keypoint_fit
 from ..estimate.reconstruct import Reconstruction
 from ..estimate.terms.contours import SURFACE_SHARE
-from ..estimate.terms.keypoints import ObservedKeypoints
 from ..estimate.whole_clip import WholeClipResult
 from ..evidence.contours import SHARES, SIDES
+from ..evidence.keypoints import ObservedKeypoints
 from ..take.evidence_kinds import UsedEvidence, UsedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence

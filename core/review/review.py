@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, IndexArray
 from ..body.kinematics import Pose
 from ..estimate.reconstruct import Reconstruction
-from ..estimate.terms.regions import RegionNoise, limb_widths
-from ..evidence.regions import RegionModel
+from ..evidence.regions import RegionModel, RegionNoise, limb_widths
 from ..footage.segmentation.regions import CORNERS, ellipse_outline
 from ..progress import Job, Part, within
 from ..take.take import Take

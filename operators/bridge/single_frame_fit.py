@@ -13,13 +13,12 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.errors import InputError
 from ...core.estimate.actor_measure import MeasuredActor, measure_standing
-from ...core.estimate.keyframe_evidence import uncalibrated
+from ...core.estimate.clip_problem import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
 from ...core.estimate.single_frame import calibrated, expected_in_frame, frame_residuals
-from ...core.estimate.terms.keypoints import ObservedKeypoints
-from ...core.estimate.terms.regions import ObservedRegions
-from ...core.evidence.regions import MarkerPlacement, RegionModel
+from ...core.evidence.keypoints import ObservedKeypoints
+from ...core.evidence.regions import MarkerPlacement, ObservedRegions, RegionModel
 from ...core.footage.keypoints.keypoints import Keypoints
 from ...core.footage.markers import regions_of_frame
 from ...core.footage.reading import Reading, of_same_footage, reading_key

@@ -5,47 +5,29 @@ belongs to: a window of a clip, the same once its contours are measured, a singl
 order, since rounding depends on it.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from ...arrays import Array
 from ...body.kinematics import Body
 from ...evidence import keypoints as depths
+from ...evidence.keypoints import LEAST_CONFIDENCE, ObservedKeypoints
+from ...evidence.regions import ObservedRegions, RegionNoise
 from ...prior.frame_prior import REFERENCE_STEP_S, FramePrior
-from ..clip_problem import ClipProblem
+from ..clip_problem import ClipProblem, KeyframeEvidence
 from ..clip_state import ClipState, Window
-from ..keyframe_evidence import KeyframeEvidence
 from ..keypoint_evidence import KeypointEvidence
 from ..performer_placement import ANKLE_HEIGHT_STD_M, standing_ankle_m
 from .contact import BalanceTerm, GroundTerm, StillnessTerm
-from .contours import ContourTerm
-from .keypoints import (
-    LEAST_CONFIDENCE,
-    DepthHintTerm,
-    FrameDepthTerm,
-    FrameKeypointTerm,
-    KeypointTerm,
-    ObservedKeypoints,
-)
+from .keypoints import DepthHintTerm, KeypointTerm
 from .motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from .regions import ObservedRegions, RegionNoise, RegionTerm
+from .regions import RegionTerm
 from .term import QuadraticBuilder, QuadraticTerm, Term
 
 ANKLES = ("ankle.L", "ankle.R")
-LARGEST_VARIATION = 20.0
-"""Usual size of the deviation itself, in usual accelerations: weak, for unknowns that nothing else
-determines."""
 
 
 def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Term]:
-    """The terms of one window of a clip, but for its contours.
-
-    Args:
-        clip: The whole clip's problem.
-        window: The window.
-        state: Any state of it, by which its prior and frames are known.
-    """
+    """The terms of one window of a clip, but for its contours."""
     frames = window.frames
     step_s = clip.step_s[window.first : window.last - 1]
     pace = float(np.median(step_s)) / REFERENCE_STEP_S if len(step_s) else 1.0
@@ -76,11 +58,6 @@ def window_terms(clip: ClipProblem, window: Window, state: ClipState) -> list[Te
     return terms
 
 
-def with_contours(terms: Sequence[Term], contours: ContourTerm) -> list[Term]:
-    """The terms of a window once edges have been measured near its contours."""
-    return [*terms, contours]
-
-
 def frame_terms(
     evidence: KeyframeEvidence,
     observed: ObservedRegions,
@@ -91,13 +68,7 @@ def frame_terms(
 ) -> list[Term]:
     """The terms of one frame, for as many states of it as the belief has starts, S.
 
-    Args:
-        evidence: The markers' model, as calibrated on keyframes or of average proportions.
-        observed: The regions of this one frame, (1, M) of them; NaN where a marker is hidden.
-        belief: Prior belief in the posture.
-        noise: Noise of the regions' features.
-        width_px: (1, M) half-width of each marker's limb [px].
-        points: The keypoints of this one frame, (1, N); None without any.
+    Regions (1, M), NaN where hidden, and keypoints (1, N) are those of this one frame.
     """
     model, starts = evidence.model, belief.starts.batch[0]
     bias_std = noise.bias_std(width_px).reshape(1, -1)
@@ -128,17 +99,8 @@ def free_frame_terms(
 ) -> tuple[Term, list[Term]]:
     """The terms of one frame of which nothing is believed but that a person stands before the camera.
 
-    Args:
-        evidence: The models of markers and keypoints.
-        observed: The regions of this one frame, (1, M).
-        starts: Number of states of it, S.
-        floor_m: Height of the floor [m]; None where it is not known.
-        noise: Noise of the regions' features.
-        width_px: (1, M) half-width of each marker's limb [px].
-        points: The keypoints of this one frame, (1, N); None without any.
-
-    Returns:
-        The belief of each descent in its own start, and all else.
+    `starts`: number of states of it; `floor_m`: None where it is not known. The belief of each descent in its
+    own start, and all else.
     """
     model, body = evidence.model, evidence.model.body
     bias_std = noise.bias_std(width_px).reshape(1, -1)
@@ -160,18 +122,16 @@ def _frame_point_terms(evidence: KeypointEvidence, points: ObservedKeypoints, st
     """The keypoints of one frame, and the depths guessed with them, in as many states."""
     std_m = np.where(evidence.trust > 0.0, evidence.std_m, np.inf)
     repeated = points[np.zeros(starts, dtype=np.intp)]
-    term = KeypointTerm(evidence.model, repeated, std_m, np.zeros((max(starts - 1, 0), 1)))
-    terms: list[Term] = [FrameKeypointTerm(term)]
+    terms: list[Term] = [KeypointTerm(evidence.model, repeated, std_m, None)]
     if np.isfinite(points.depth_m).any():
         depths = evidence.depths
         std = _depth_std_m(evidence, points, depths.std_m)[0]
         expected = depths.expected(points.depth_m)[0]
-        terms.append(FrameDepthTerm(evidence.model, depths.links, expected, std))
+        terms.append(DepthHintTerm(evidence.model, depths.links, expected, std, None))
     return terms
 
 
 def _ankles(body: Body) -> tuple[int, ...]:
-    """Indices of the ankles among the principal points."""
     return tuple(body.skeleton.point_names.index(name) for name in ANKLES)
 
 
@@ -205,7 +165,7 @@ def _prior_term(clip: ClipProblem, window: Window, step_s: Array) -> QuadraticTe
     size = noise.bias_std(width_px).reshape(frames, -1)
     builder = QuadraticBuilder(frames, dofs + size.shape[1])
     posture, bias = slice(0, dofs), slice(dofs, None)
-    builder.add(posture, (1.0,), LARGEST_VARIATION)
+    builder.add(posture, (1.0,), 20.0)
     factor = clip.accelerations
     information = factor.T @ clip.evidence.information[inside] @ factor
     builder.add_blocks(clip.keyframes[inside] - window.first, information)

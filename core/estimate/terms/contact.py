@@ -29,18 +29,12 @@ class StillnessTerm:
     """Slow named points stand still from frame to frame."""
 
     camera: Camera
-    points: tuple[int, ...]
-    """Indices of the principal points it is about."""
-    step_s: Array
-    """(F - 1,) time between frames [s]."""
-    release_speed_m_s: float = 0.2
-    """Speed across the line of sight, c, at which a point's rows count a quarter."""
-    depth_share: float = 0.3
-    """How much motion along the line of sight counts to that speed."""
-    release_height_m: float = 0.04
-    """Height above the lowest of the points at which a point's rows count a quarter."""
-    std_m: float = 0.003
-    """How far a standing ankle wanders from frame to frame [m]."""
+    points: tuple[int, ...]  # indices of the principal points it is about
+    step_s: Array  # (F - 1,) time between frames [s]
+    release_speed_m_s: float = 0.2  # across the line of sight, c, at which rows count a quarter
+    depth_share: float = 0.3  # how much motion along the line of sight counts to that speed
+    release_height_m: float = 0.04  # above the lowest point, at which rows count a quarter
+    std_m: float = 0.003  # how far a standing ankle wanders from frame to frame [m]
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -95,21 +89,15 @@ def _kernel(x: Array) -> Array:
     return np.asarray((1.0 + x**2) ** -2.0)
 
 
-# --- A person stands on the ground most of the time
-
-
-DEGREES = 3.0
-"""Of Student's t: leaps and stairs are forgiven."""
+DEGREES = 3.0  # of Student's t: leaps and stairs are forgiven
 
 
 @dataclass(frozen=True, eq=False)
 class GroundTerm:
     """The height of the lower of some points."""
 
-    points: tuple[int, ...]
-    """Which of the principal points: the ankles."""
-    height_m: float | Array
-    """How high the lower one is while its foot is on the ground; one height or (F,)."""
+    points: tuple[int, ...]  # which of the principal points: the ankles
+    height_m: float | Array  # how high the lower one is while its foot is on the ground; one height or (F,)
     std_m: float = 0.03
     robust: ClassVar[bool] = True
 
@@ -134,11 +122,7 @@ class GroundTerm:
         return residual, np.array(self.points)[lower]
 
 
-# --- A person who stands, steps or crouches keeps the body's center of mass about over the feet
-
-
-STEP_M = 0.1
-"""A foot that is higher above the other than this bears nothing."""
+STEP_M = 0.1  # a foot that is higher above the other than this bears nothing
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,8 +130,7 @@ class BalanceTerm:
     """The horizontal way from the place between the feet that is nearest to the center of mass, to that."""
 
     body: Body
-    std_m: float = 0.08
-    """Half of what a foot is long, and what a step under way adds."""
+    std_m: float = 0.08  # half of what a foot is long, and what a step under way adds
     robust: ClassVar[bool] = True
 
     @cached_property

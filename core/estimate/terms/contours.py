@@ -7,20 +7,13 @@ import numpy as np
 
 from ...arrays import Array, BoolArray
 from ...evidence.contours import SHARES, SIDES, ContourModel, ContourPrediction, LimbAxes
-from ...numerics.robust import student_cost, student_weight
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
-from .motion import add_drift, drift, drift_cost
-from .term import DEGREES, NormalEquations
+from .term import NormalEquations, add_errors, errors_cost
 
-SURFACE_SHARE = 0.2
-"""Standard deviation of a part's contour as a whole, of its half-width: clothes, muscles."""
-PIXEL_STD = 0.6
-"""The same in pixels of the pictures: blur and light."""
-ALIKE = len(SHARES) * len(SIDES)
-"""The samples of a part err together: all of them weigh as much as one."""
-
-FEWEST_SEEN = 3
-"""Edges of a part that tell where it is: those of one side alone, or of one end, do not."""
+SURFACE_SHARE = 0.2  # standard deviation of a part's contour as a whole, of its half-width: clothes, muscles
+PIXEL_STD = 0.6  # the same in pixels of the pictures: blur and light
+ALIKE = len(SHARES) * len(SIDES)  # the samples of a part err together: all of them weigh as much as one
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,18 +21,15 @@ class ContourTerm:
     """Compares every contour sample with the edge found near it."""
 
     model: ContourModel
-    edge: Array
-    """(F, N, 2) where the edge lies [px]; NaN where none was found."""
-    normal: Array
-    """(F, N, 2) across it."""
-    variance: Array
-    """(F, N) [px²]."""
+    edge: Array  # (F, N, 2) where the edge lies [px]; NaN where none was found
+    normal: Array  # (F, N, 2) across it
+    variance: Array  # (F, N) [px²]
     robust: ClassVar[bool] = True
 
     def parts_seen(self) -> BoolArray:
         """(F, O) whether enough edges of each part were found."""
         found = np.isfinite(self.edge[..., 0])
-        return np.asarray(found.reshape(len(found), -1, ALIKE).sum(axis=-1) >= FEWEST_SEEN)
+        return np.asarray(found.reshape(len(found), -1, ALIKE).sum(axis=-1) >= 3)
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each edge."""
@@ -65,38 +55,31 @@ class ContourTerm:
         return np.where(found, residual, 0.0), variance, found
 
 
-# --- Parts of the body against the shifts along their axes that their colors tell
-
-
 @dataclass(frozen=True, eq=False)
 class AxialTerm:
     """Compares where parts are along their axes with where their colors are seen."""
 
     axes: LimbAxes
-    share: Array
-    """(F, O) the point of each part's length that the colors say most of."""
-    place: Array
-    """(F, O) where it is seen, along the direction [px]; NaN where nothing was found."""
-    direction: Array
-    """(F, O, 2) unit direction of the axis."""
-    variance: Array
-    """(F, O) [px²]."""
-    kept: Array
-    """(F - 1, 1) share of an error that is left in the next frame."""
+    share: Array  # (F, O) the point of each part's length that the colors say most of
+    place: Array  # (F, O) where it is seen, along the direction [px]; NaN where nothing was found
+    direction: Array  # (F, O, 2) unit direction of the axis
+    variance: Array  # (F, O) [px²]
+    kept: Array  # (F - 1, 1) share of an error that is left in the next frame
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add a row for each part, with an error that lasts."""
         world, error, std, found = self._errors(state)
         jacobian = self.axes.jacobian(state.pose, state.frame, world, self.direction)
-        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)
-        rows = drift(error[..., None], found, self.kept, temperature)
-        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)
+        jacobian = np.where(found[..., None], jacobian / std[..., None], 0.0)[:, :, None]
+        add_errors(
+            equations, error[..., None], found, jacobian, self.kept, temperature, state.tangent_jacobian
+        )
 
     def cost(self, state: ClipState) -> Array:
-        """(F,) see `drift_cost`."""
+        """(F,) see `errors_cost`."""
         _, error, _, found = self._errors(state)
-        return drift_cost(error[..., None], found, self.kept)
+        return errors_cost(error[..., None], found, self.kept)
 
     def _errors(self, state: ClipState) -> tuple[Array, Array, Array, BoolArray]:
         """The axes' points (F, O, 3) [m], errors in standard deviations, these [px], and which are known."""

@@ -7,64 +7,9 @@ import numpy as np
 
 from ...arrays import Array, BoolArray, IndexArray
 from ...body.kinematics import Pose
-from ...evidence.keypoints import DepthLinks, KeypointModel
-from ...footage.keypoints.keypoints import Keypoints
-from ...numerics.robust import student_cost, student_weight
+from ...evidence.keypoints import LEAST_CONFIDENCE, PIXEL_STD, DepthLinks, KeypointModel, ObservedKeypoints
 from ..clip_state import ClipState
-from .motion import Drift, add_drift, drift, drift_cost
-from .term import DEGREES, NormalEquations
-
-PIXEL_STD = 0.35
-"""Standard deviation of a perfect detection, as of a region's centroid [px]."""
-LEAST_CONFIDENCE = 0.1
-"""A doubtful detection errs by up to ten times as much as a sure one."""
-SURE_QUANTILE = 0.9
-"""A source's sure detections have at least this quantile of its scores, whose scale is its own."""
-
-
-@dataclass(frozen=True, eq=False)
-class ObservedKeypoints:
-    """N keypoints in F frames, with their confidence relative to the source's sure ones."""
-
-    pixel: Array
-    """(F, N, 2) [px], NaN where not seen."""
-    confidence: Array
-    """(F, N) 0.1 to 1; 0 where not seen."""
-    depth_m: Array
-    """(F, N) guessed distance behind the hips' middle [m]; NaN where there is none."""
-
-    @classmethod
-    def of(cls, keypoints: Keypoints) -> "ObservedKeypoints":
-        """The keypoints of a clip."""
-        seen, confidence = keypoints.seen, np.zeros(keypoints.score.shape)
-        for source in dict.fromkeys(keypoints.sources):
-            own = np.array([name == source for name in keypoints.sources])
-            scores = keypoints.score[:, own]
-            if seen[:, own].any():
-                sure = max(float(np.quantile(scores[seen[:, own]], SURE_QUANTILE)), 1e-6)
-                confidence[:, own] = np.clip(scores / sure, LEAST_CONFIDENCE, 1.0)
-        return cls(
-            np.where(seen[..., None], keypoints.pixel, np.nan),
-            np.where(seen, confidence, 0.0),
-            np.where(seen, keypoints.hint_m[..., 2], np.nan),
-        )
-
-    @property
-    def seen(self) -> BoolArray:
-        """(F, N) whether each is seen."""
-        return np.asarray(self.confidence > 0.0)
-
-    def only(self, kept: BoolArray) -> "ObservedKeypoints":
-        """The same without those points that are not among `kept` (N,)."""
-        return ObservedKeypoints(
-            np.where(kept[:, None], self.pixel, np.nan),
-            np.where(kept, self.confidence, 0.0),
-            np.where(kept, self.depth_m, np.nan),
-        )
-
-    def __getitem__(self, index: slice | IndexArray) -> "ObservedKeypoints":
-        """Those of some frames."""
-        return ObservedKeypoints(self.pixel[index], self.confidence[index], self.depth_m[index])
+from .term import NormalEquations, add_errors, errors_cost
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,24 +18,21 @@ class KeypointTerm:
 
     model: KeypointModel
     observed: ObservedKeypoints
-    std_m: Array
-    """(N,) error of a sure detection along each axis [m]; infinite for what is not believed."""
-    kept: Array
-    """(F - 1, N) share of an error that is left in the next frame."""
+    std_m: Array  # (N,) error of a sure detection along each axis [m]; infinite for what is not believed
+    kept: Array | None  # (F - 1, 1) share of an error that is left in the next frame; None: frames are apart
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add two rows for each keypoint."""
         error, std_px, used = self.errors(state.pose, state.frame)
-        rows = drift(error, used, self.kept, temperature)
         factor = np.where(used, 1.0 / std_px, 0.0)
         jacobian = self.model.pixels_jacobian(state.pose, state.frame, factor)
-        add_drift(equations, jacobian, rows, state.tangent_jacobian)
+        add_errors(equations, error, used, jacobian, self.kept, temperature, state.tangent_jacobian)
 
     def cost(self, state: ClipState) -> Array:
-        """(F,) see `drift_cost`."""
+        """(F,) see `errors_cost`."""
         error, _, used = self.errors(state.pose, state.frame)
-        return drift_cost(error, used, self.kept)
+        return errors_cost(error, used, self.kept)
 
     def errors(self, pose: Pose, frame: IndexArray) -> tuple[Array, Array, BoolArray]:
         """Errors (F, N, 2) in standard deviations, these (F, N) [px], and which are compared (F, N)."""
@@ -101,86 +43,6 @@ class KeypointTerm:
         error = (pixel - self.observed.pixel) / std_px[..., None]
         return error, std_px, np.isfinite(error).all(axis=-1) & np.isfinite(std_px)
 
-    def weigh(self, pose: Pose, frame: IndexArray) -> Drift:
-        """The weights of all keypoints at given poses."""
-        error, _, used = self.errors(pose, frame)
-        return drift(error, used, self.kept)
-
-
-# --- Keypoints and guessed depths of a single frame, for several states of it side by side
-
-
-@dataclass(frozen=True, eq=False)
-class FrameKeypointTerm:
-    """Compares every keypoint of a frame with its prediction in each state."""
-
-    clip_term: KeypointTerm
-    """Of the same keypoints in as many frames as there are states."""
-    robust: ClassVar[bool] = True
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add two rows for each keypoint."""
-        error, std_px, used = self.clip_term.errors(state.pose, state.frame)
-        jacobian = self.clip_term.model.pixels_jacobian(state.pose, state.frame) / std_px[..., None, None]
-        jacobian = jacobian @ state.tangent_jacobian[:, None]
-        _add_rows(equations, error, jacobian, used, temperature)
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) negative logarithm of Student's t over all keypoints, up to a constant."""
-        error, _, used = self.clip_term.errors(state.pose, state.frame)
-        return _cost(error, used)
-
-
-@dataclass(frozen=True, eq=False)
-class FrameDepthTerm:
-    """Compares the depths of the body's links with a network's guess in each state."""
-
-    model: KeypointModel
-    links: DepthLinks
-    expected: Array
-    """(L,) depth of each link by its guess [m]; NaN where there is none."""
-    std_m: Array
-    """(L,) its error."""
-    robust: ClassVar[bool] = True
-
-    def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
-        """Add a row for each link."""
-        error, used = self._errors(state)
-        jacobian = self.links.jacobian(self.model, state.pose, state.frame) @ state.tangent_jacobian
-        jacobian = jacobian / self.std_m[:, None]
-        _add_rows(equations, error, jacobian[:, :, None], used, temperature)
-
-    def cost(self, state: ClipState) -> Array:
-        """(F,) negative logarithm of Student's t over all links, up to a constant."""
-        return _cost(*self._errors(state))
-
-    def _errors(self, state: ClipState) -> tuple[Array, BoolArray]:
-        depths = self.links.depths(self.model, state.pose, state.frame)
-        error = ((depths - self.expected) / self.std_m)[..., None]
-        return error, np.isfinite(error[..., 0]) & np.isfinite(self.std_m)
-
-
-def _add_rows(
-    equations: NormalEquations, error: Array, jacobian: Array, used: BoolArray, temperature: float
-) -> None:
-    """Add groups of rows (F, N, G) with Jacobians (F, N, G, n), each an outlier as a whole."""
-    error = np.where(used[..., None], error, 0.0)
-    squared = (error**2).sum(-1) / temperature
-    weight = np.sqrt(np.where(used, student_weight(squared, DEGREES, error.shape[-1]), 0.0) / temperature)
-    frames, _, _, unknowns = jacobian.shape
-    jacobian = np.where(used[..., None, None], jacobian, 0.0) * weight[..., None, None]
-    equations.add_rows(
-        (error * weight[..., None]).reshape(frames, -1), jacobian.reshape(frames, -1, unknowns)
-    )
-
-
-def _cost(error: Array, used: BoolArray) -> Array:
-    squared = np.where(used[..., None], error, 0.0) ** 2
-    return np.asarray(student_cost(squared.sum(-1), DEGREES, error.shape[-1]).sum(-1))
-
-
-# --- Hints of depth
-
 
 @dataclass(frozen=True, eq=False)
 class DepthHintTerm:
@@ -188,26 +50,24 @@ class DepthHintTerm:
 
     model: KeypointModel
     links: DepthLinks
-    expected: Array
-    """(F, L) depth of each link by its guess [m]; NaN where there is none."""
-    std_m: Array
-    """(F, L) its error; infinite for what is not believed."""
-    kept: Array
-    """(F - 1, 1) share of an error that is left in the next frame."""
+    expected: Array  # (F, L) depth of each link by its guess [m]; NaN where there is none
+    std_m: Array  # (F, L) its error; infinite for what is not believed
+    kept: Array | None  # as of `KeypointTerm`
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
         """Add one row for each link."""
         error, used = self._errors(state)
-        rows = drift(error[..., None], used, self.kept, temperature)
         jacobian = self.links.jacobian(self.model, state.pose, state.frame)
-        jacobian *= np.where(used, 1.0 / self.std_m, 0.0)[..., None]
-        add_drift(equations, jacobian[:, :, None], rows, state.tangent_jacobian)
+        jacobian = (jacobian * np.where(used, 1.0 / self.std_m, 0.0)[..., None])[:, :, None]
+        add_errors(
+            equations, error[..., None], used, jacobian, self.kept, temperature, state.tangent_jacobian
+        )
 
     def cost(self, state: ClipState) -> Array:
-        """(F,) see `drift_cost`."""
+        """(F,) see `errors_cost`."""
         error, used = self._errors(state)
-        return drift_cost(error[..., None], used, self.kept)
+        return errors_cost(error[..., None], used, self.kept)
 
     def _errors(self, state: ClipState) -> tuple[Array, BoolArray]:
         """(F, L) errors in standard deviations, and which are known."""

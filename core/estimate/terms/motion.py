@@ -9,12 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array, BoolArray
+from ...arrays import Array
 from ...evidence import keypoints as depths
 from ...footage.camera import Camera
-from ...numerics.robust import student_cost, student_weight
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
-from .term import DEGREES, NormalEquations, QuadraticBuilder, QuadraticTerm
+from .term import NormalEquations, QuadraticBuilder, QuadraticTerm
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 
@@ -23,8 +23,7 @@ SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 class SmoothnessTerm:
     """Second differences of the unknowns z, whose usual size is one at 30 frames a second."""
 
-    std: float
-    """Usual size at the clip's own pace."""
+    std: float  # usual size at the clip's own pace
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:
@@ -55,16 +54,12 @@ class SmoothnessTerm:
         return cost
 
 
-# --- Prior belief in one frame's posture and in the biases of its features
-
-
 @dataclass(frozen=True, eq=False)
 class BeliefTerm:
     """Independent normal distributions of the unknowns z, of unit size, and of the biases."""
 
     quadratic: QuadraticTerm
-    bias_std: Array
-    """(1, B) [px]."""
+    bias_std: Array  # (1, B) [px]
     robust: ClassVar[bool] = False
 
     @classmethod
@@ -83,90 +78,6 @@ class BeliefTerm:
         """(F,) half the sum of squares."""
         squared = (state.variation**2).sum(-1) + ((state.bias / self.bias_std) ** 2).sum(-1)
         return np.asarray(0.5 * squared)
-
-
-# --- Rows whose errors last
-
-
-@dataclass(frozen=True, eq=False)
-class Drift:
-    """Weights of N groups of G rows each in F frames."""
-
-    level: Array
-    """(F, N) weight as errors too large, 0 to 1; 0 for what is not seen."""
-    own: Array
-    """(F, N) information of the rows of a frame by themselves."""
-    across: Array
-    """(F - 1, N) information that couples the rows of a frame to those of the next."""
-    pull: Array
-    """(F, N, G) derivative of half the sum of squares by the errors."""
-
-
-def drift(error: Array, used: BoolArray, kept: Array, temperature: float = 1.0) -> Drift:
-    """The information that lasting errors have.
-
-    Args:
-        error: (F, N, G) errors over their standard deviations.
-        used: (F, N) which of them are known.
-        kept: (F - 1, 1) or (F - 1, N) share φ of an error that is left in the next frame.
-        temperature: Factor of all variances.
-    """
-    error = np.where(used[..., None], error, 0.0)
-    size = error.shape[-1]
-    level = np.where(used, student_weight((error**2).sum(-1) / temperature, DEGREES, size), 0.0)
-    fresh = np.maximum(1.0 - kept**2, 1e-6) * temperature
-    change = error[1:] - kept[..., None] * error[:-1]
-    both = np.sqrt(level[1:] * level[:-1])
-    steady = student_weight((change**2).sum(-1) / fresh, DEGREES, size)
-    linked = both * steady / fresh
-    # What follows an outlier, or is followed after a gap, begins anew.
-    begun = level / temperature
-    begun[1:] *= 1.0 - both
-    own = begun.copy()
-    own[1:] += linked
-    own[:-1] += kept**2 * linked
-    pull = begun[..., None] * error
-    pull[1:] += linked[..., None] * change
-    pull[:-1] -= (kept * linked)[..., None] * change
-    return Drift(level, own, -kept * linked, pull)
-
-
-def drift_cost(error: Array, used: BoolArray, kept: Array) -> Array:
-    """(F,) negative logarithm of Student's t of errors that last, up to a constant; arguments as of `drift`.
-
-    An error costs by its change, in so far as it and the one before are none too large, else by its size.
-    """
-    error = np.where(used[..., None], error, 0.0)
-    size, squared = error.shape[-1], (error**2).sum(-1)
-    level = np.where(used, student_weight(squared, DEGREES, size), 0.0)
-    change = error[1:] - kept[..., None] * error[:-1]
-    both = np.sqrt(level[1:] * level[:-1])
-    cost = np.where(used, student_cost(squared, DEGREES, size), 0.0)
-    fresh = np.maximum(1.0 - kept**2, 1e-6)
-    cost[1:] += both * (student_cost((change**2).sum(-1) / fresh, DEGREES, size) - cost[1:])
-    return np.asarray(cost.sum(-1))
-
-
-def add_drift(equations: NormalEquations, jacobian: Array, rows: Drift, tangent_jacobian: Array) -> None:
-    """Add rows with lasting errors.
-
-    Args:
-        equations: The equations.
-        jacobian: (F, N, G, D) derivative of the errors, over their standard deviations, by the
-            posture's tangent.
-        rows: Their weights.
-        tangent_jacobian: (F, D, D) derivative of that by the leading unknowns.
-    """
-    frames, points, size, dofs = jacobian.shape
-    flat = jacobian.reshape(frames, points * size, dofs) @ tangent_jacobian
-    own, across = (np.repeat(weight, size, axis=-1)[..., None] for weight in (rows.own, rows.across))
-    turned = np.swapaxes(flat, -1, -2)
-    equations.matrix.diagonal[:, :dofs, :dofs] += turned @ (own * flat)
-    equations.matrix.next[:, :dofs, :dofs] += turned[:-1] @ (across * flat[1:])
-    equations.gradient[:, :dofs] += (turned @ rows.pull.reshape(frames, -1, 1))[..., 0]
-
-
-# --- Hinges stay within their range of motion
 
 
 @dataclass(frozen=True)
@@ -195,18 +106,13 @@ class LimitTerm:
         return np.asarray((angles - np.clip(angles, lower, upper)) / self.std_rad)
 
 
-# --- Depths of the principal points near those of the prior (paper, eq
-
-
 @dataclass(frozen=True, eq=False)
 class DepthTerm:
     """d(θ) against d(θ_p)."""
 
     camera: Camera
-    prior_depth: Array
-    """(F, P) [m]."""
-    std_m: float | Array = depths.DEPTH_STD_M
-    """One for all or (F, 1)."""
+    prior_depth: Array  # (F, P) [m]
+    std_m: float | Array = depths.DEPTH_STD_M  # one for all or (F, 1)
     robust: ClassVar[bool] = False
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

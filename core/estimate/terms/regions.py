@@ -5,180 +5,27 @@ deviation along them, the linearized difference of matrix square roots: three nu
 angle to wrap and nothing singular when the region is round (instead of S_θ and S_λ, paper eqs 5 and 6).
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from ...arrays import Array, IndexArray
-from ...evidence.regions import MOMENTS, RegionModel, RegionPrediction
-from ...footage.region_tracks import RegionTracks
-from ...numerics.robust import student_cost, student_weight
+from ...arrays import Array
+from ...evidence.regions import (
+    FEATURES,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    RegionPrediction,
+    feature_rows,
+    missing_variance,
+)
+from ...numerics.robust import DEGREES, student_cost, student_weight
 from ..clip_state import ClipState
-from .term import DEGREES, NormalEquations
+from .term import NormalEquations
 
-FEATURES = 5
-"""Rows of one marker: centroid x, y and three of shape."""
-GROUPS = (slice(0, 2), slice(2, FEATURES))
-"""Rows that are outliers together: centroid and shape."""
-CONTRADICTED = 20.0
-"""Cost of a marker that is seen where it should be hidden."""
-SMALLEST_DEVIATION_PX = 0.6
-AREA_TOLERANCE = 0.25
-"""Share of an area that may be missing for other reasons than occlusion."""
-
-
-@dataclass(frozen=True)
-class RegionNoise:
-    """Noise of an observed region against a perfect model of the body.
-
-    Two sources: the image (pixels, chroma subsampling, blur) and the surface (limbs are no cylinders,
-    sleeves shift), which scales with the limb. Part of the latter changes slowly: a bias.
-    """
-
-    pixel_std_px: float = 0.35
-    surface_centroid_share: float = 0.10
-    """Of the segment's mean half-width, like the three that follow."""
-    surface_shape_share: float = 0.07
-    bias_centroid_share: float = 0.20
-    bias_shape_share: float = 0.14
-    bias_time_s: float = 0.67
-    least_visible: float = 0.15
-    """Least predicted visibility of a region that is compared."""
-
-    def surface_std(self, width: Array) -> Array:
-        """(..., 5) standard deviation of each feature for limbs of half-width (...) [as the width]."""
-        return width[..., None] * _per_feature(self.surface_centroid_share, self.surface_shape_share)
-
-    def bias_std(self, width: Array) -> Array:
-        """(..., 5) standard deviation of each feature's slow bias for limbs of half-width (...)."""
-        return width[..., None] * _per_feature(self.bias_centroid_share, self.bias_shape_share)
-
-
-def _per_feature(centroid: float, shape: float) -> Array:
-    return np.repeat([centroid, shape], (2, FEATURES - 2))
-
-
-@dataclass(frozen=True, eq=False)
-class ObservedRegions:
-    """Tracks with the axes and deviations that residuals need."""
-
-    centroid: Array
-    """(F, M, 2), NaN where hidden."""
-    second_moment: Array
-    axes: Array
-    """(F, M, 2, 2) columns are the observed axes."""
-    deviation: Array
-    """(F, M, 2) standard deviation of the region along them [px]."""
-    area: Array
-    """(F, M) [px], NaN where hidden."""
-    quality: Array
-    """(F, M)."""
-    variance: Array
-    """(F, M, 5) of the features beyond that of tracked regions [px²]."""
-
-    @classmethod
-    def from_tracks(cls, tracks: RegionTracks) -> "ObservedRegions":
-        """Axes and deviations of every visible region."""
-        seen = tracks.visible
-        moments = np.where(seen[..., None, None], tracks.second_moment, np.eye(2))
-        quality = np.where(seen, tracks.quality, 0.0)
-        variance = np.zeros((*seen.shape, FEATURES))
-        return cls(tracks.centroid, moments, *_axes(moments), tracks.area, quality, variance)
-
-    def replaced(self, where: tuple[IndexArray, IndexArray], found: "ObservedRegions") -> "ObservedRegions":
-        """The same with the regions at R pairs of a frame and a marker replaced by those of `found`, (R,)."""
-        changed = {}
-        for field in fields(self):
-            values = getattr(self, field.name).copy()
-            values[where] = getattr(found, field.name)
-            changed[field.name] = values
-        return ObservedRegions(**changed)
-
-    @classmethod
-    def found(
-        cls, centroid: Array, second_moment: Array, area: Array, quality: Array, variance: Array
-    ) -> "ObservedRegions":
-        """Regions (...) that were measured otherwise than by tracking."""
-        return cls(centroid, second_moment, *_axes(second_moment), area, quality, variance)
-
-    def __getitem__(
-        self, index: slice | IndexArray | tuple[slice | IndexArray, IndexArray]
-    ) -> "ObservedRegions":
-        """Some of the frames, of the frames and markers, or of the pairs of both."""
-        return ObservedRegions(
-            self.centroid[index],
-            self.second_moment[index],
-            self.axes[index],
-            self.deviation[index],
-            self.area[index],
-            self.quality[index],
-            self.variance[index],
-        )
-
-
-def _axes(second_moment: Array) -> tuple[Array, Array]:
-    """Axes of regions and their deviations along these [px], not below what pixels resolve."""
-    values, axes = np.linalg.eigh(second_moment)
-    return axes, np.sqrt(np.maximum(values, SMALLEST_DEVIATION_PX**2))
-
-
-def feature_rows(observed: ObservedRegions, predicted: RegionPrediction) -> tuple[Array, Array | None]:
-    """Residuals (F, M, 5) [px], predicted minus observed, and their Jacobian (F, M, 5, D) if predicted."""
-    centroid = predicted.centroid - observed.centroid
-    turned = (
-        np.swapaxes(observed.axes, -1, -2)
-        @ (predicted.second_moment - observed.second_moment)
-        @ observed.axes
-    )
-    divisor = observed.deviation[..., :, None] + observed.deviation[..., None, :]
-    shape = np.stack([turned[..., a, b] / divisor[..., a, b] for a, b in MOMENTS], axis=-1)
-    residual = np.concatenate([centroid, shape], axis=-1)
-    if predicted.centroid_jacobian is None or predicted.moment_jacobian is None:
-        return residual, None
-    # Turning is linear in the entries xx, xy, yy: a 3 x 3 matrix a region.
-    u = observed.axes
-    turn = np.stack(
-        [
-            np.stack(
-                [
-                    u[..., 0, a] * u[..., 0, b],
-                    u[..., 0, a] * u[..., 1, b] + u[..., 1, a] * u[..., 0, b],
-                    u[..., 1, a] * u[..., 1, b],
-                ],
-                axis=-1,
-            )
-            / divisor[..., a, b, None]
-            for a, b in MOMENTS
-        ],
-        axis=-2,
-    )
-    rows = [predicted.centroid_jacobian, turn @ predicted.moment_jacobian]
-    return residual, np.concatenate(rows, axis=-2)
-
-
-def limb_widths(model: RegionModel, places: Array, frame: IndexArray) -> Array:
-    """(F, M) image half-width [px] of each marker's limb on a body at world places (F, 3)."""
-    scale = model.camera.focal_px / np.maximum(model.camera.depth(places, frame), 0.1)
-    return np.asarray(scale[:, None] * model.half_widths_m)
-
-
-def missing_variance(area: Array, area_ratio: Array, predicted: RegionPrediction) -> Array:
-    """(F, M, 5) variance [px²] of the features for the part of a region that is missing, at an unknown end.
-
-    A table or a door that is not known to stand there may hide a part of a marker. A share f that is cut off
-    a bar's end moves its centroid by √3 f of its standard deviation, and shortens that by f.
-
-    Args:
-        area: (F, M) area of the regions seen [px].
-        area_ratio: (M,) or a number: area of an unhidden region, relative to the predicted one.
-        predicted: The regions' prediction, occlusion by the body itself included.
-    """
-    expected = np.maximum(predicted.area * area_ratio, 1.0)
-    missing = np.clip(np.nan_to_num(1.0 - area / expected) - AREA_TOLERANCE, 0.0, 1.0)
-    variance = np.stack([predicted.second_moment[..., axis, axis] for axis in (0, 1)], axis=-1)
-    shape = np.broadcast_to(variance.sum(-1, keepdims=True), (*variance.shape[:-1], FEATURES - 2))
-    return np.asarray(np.concatenate([3.0 * variance, shape], axis=-1) * missing[..., None] ** 2)
+GROUPS = (slice(0, 2), slice(2, FEATURES))  # rows that are outliers together: centroid and shape
+CONTRADICTED = 20.0  # cost of a marker that is seen where it should be hidden
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,12 +35,9 @@ class RegionTerm:
     model: RegionModel
     observed: ObservedRegions
     noise: RegionNoise
-    width_px: Array
-    """(F, M) mean half-width of each marker's limb in the image [px]."""
-    distrust: Array
-    """(M,) factor of the noise of each marker's regions."""
-    area_ratio: Array
-    """(M,) area of each marker's region where nothing hides it, relative to the predicted one."""
+    width_px: Array  # (F, M) mean half-width of each marker's limb in the image [px]
+    distrust: Array  # (M,) factor of the noise of each marker's regions
+    area_ratio: Array  # (M,) area of each marker's unhidden region, relative to the predicted one
     robust: ClassVar[bool] = True
 
     def add_to(self, equations: NormalEquations, state: ClipState, temperature: float) -> None:

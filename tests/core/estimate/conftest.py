@@ -47,7 +47,6 @@ def tracks_from(characteristics: np.ndarray, visible: np.ndarray | None = None) 
 
 @pytest.fixture(scope="session")
 def make_tracks() -> Callable[..., RegionTracks]:
-    """The function `tracks_from`."""
     return tracks_from
 
 

@@ -59,7 +59,6 @@ def test_height_is_kept_and_lengths_are_no_worse_than_average_proportions() -> N
 
 
 def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
-    """Hanging arms may point anywhere; legs are told better."""
     found, _ = measured(someone(np.random.default_rng(3)), np.zeros(34))
     assert found.stands
     assert found.spread["shin"] < found.spread["shoulder_width"] <= 0.0451
@@ -67,7 +66,6 @@ def test_what_cannot_be_told_is_said_to_be_uncertain() -> None:
 
 
 def test_someone_who_kneels_does_not_stand() -> None:
-    """The knees bent by a right angle, the trunk half a meter lower."""
     body = Body(Actor.from_stature(1.75))
     names = body.skeleton.dof_names
     step = np.zeros(34)
@@ -114,7 +112,6 @@ def test_keypoints_measure_lengths_without_any_marker() -> None:
 
 
 def test_keypoints_tell_who_does_not_stand() -> None:
-    """Someone who kneels: the knees are far from where they would be."""
     body = Body(Actor.from_stature(1.75))
     posture = standing_posture(body, PLACE, 0.0, 0.0)
     angles = np.array(posture.angles)

@@ -33,7 +33,6 @@ def random_system(frames: int, seed: int) -> tuple[BlockBanded, np.ndarray]:
 
 @pytest.mark.parametrize("frames", [1, 2, 3, 6, 7])
 def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) -> None:
-    """For even and odd numbers of frames, down to one."""
     banded, dense = random_system(frames, seed=frames)
     vector = np.random.default_rng(9).normal(size=(frames, SIZE))
     np.testing.assert_allclose(banded.multiply(vector).ravel(), dense @ vector.ravel(), atol=1e-10)
@@ -48,7 +47,6 @@ def test_products_solutions_and_covariances_equal_the_dense_ones(frames: int) ->
 
 
 def test_rows_about_the_leading_unknowns_leave_the_others_alone() -> None:
-    """Narrow Jacobians touch the leading columns only."""
     banded = BlockBanded(2, SIZE)
     banded.add_rows((np.ones((2, 1, 2)),))
     assert banded.diagonal[:, :2, :2].sum() == 8.0
@@ -56,6 +54,5 @@ def test_rows_about_the_leading_unknowns_leave_the_others_alone() -> None:
 
 
 def test_a_singular_system_is_refused() -> None:
-    """Nothing is solved from a matrix that determines nothing."""
     with pytest.raises(np.linalg.LinAlgError):
         BlockBanded(3, SIZE).factorize()

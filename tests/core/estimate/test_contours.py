@@ -69,13 +69,11 @@ def test_contours_bring_the_estimate_nearer_to_the_truth() -> None:
 
 
 def test_a_shaken_camera_changes_nothing() -> None:
-    """Where the background does not stand still, the estimate is the markers' own, bit for bit."""
     shaken = photograph(TRUTH, shake_px=4)
     np.testing.assert_array_equal(solve(shaken).to_vector(), solve(None).to_vector())
 
 
 def test_a_moving_camera_and_missing_pictures_measure_nothing() -> None:
-    """No contours are read where a picture's background cannot be the others'."""
     moving = replace(CAMERA, matrix_world=np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0))
     assert run(learn_contours(BODY, moving, album(), TRUTH, POSED)) is None
     assert run(learn_contours(BODY, CAMERA, Album(), TRUTH, POSED)) is None

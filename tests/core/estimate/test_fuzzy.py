@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 
 def output(center: float, width: float, degree: float) -> OutputSet:
-    """An output set of one degree of freedom."""
     return OutputSet(np.array([center]), np.array([width]), degree)
 
 
@@ -48,12 +47,10 @@ def test_distance_counts_in_half_gaps() -> None:
 
 
 def test_a_single_keyframe_measures_by_the_clip() -> None:
-    """Half the clip's length away from the only keyframe is wholly far."""
     np.testing.assert_allclose(keyframe_distance(5, [0]), [0.0, 0.4, 0.8, 1.0, 1.0], rtol=1e-12)
 
 
 def test_input_sets_by_hand() -> None:
-    """Straight lines between the stated ends."""
     sets = Memberships(near_ends=0.8, far_starts=0.2, far_full=0.6)
     np.testing.assert_allclose(sets.near([0.0, 0.2, 0.8, 1.0]), [1.0, 0.75, 0.0, 0.0], atol=1e-15)
     np.testing.assert_allclose(sets.far([0.0, 0.2, 0.4, 0.6, 1.0]), [0.0, 0.0, 0.5, 1.0, 1.0], atol=1e-15)
@@ -61,7 +58,6 @@ def test_input_sets_by_hand() -> None:
 
 @pytest.mark.parametrize("ends", [(0.3, 0.3, 1.0), (0.5, 0.6, 1.0), (1.0, 0.5, 0.5), (1.0, -0.1, 1.0)])
 def test_input_sets_that_leave_a_distance_out_are_refused(ends: tuple[float, float, float]) -> None:
-    """Every distance must be near or far, or no rule would apply."""
     with pytest.raises(ValueError, match="far_starts"):
         Memberships(*ends)
 
@@ -89,14 +85,12 @@ def test_two_sets_apart_mix_by_their_areas() -> None:
 
 
 def test_joining_counts_what_two_sets_share_once() -> None:
-    """A set joined with a lower one about the same center is that set."""
     mean, variance = aggregate(output(1.0, 2.0, 1.0), output(1.0, 2.0, 0.7))
     assert mean[0] == pytest.approx(1.0, abs=1e-14)
     assert variance[0] == pytest.approx(4.0 / 6.0, rel=1e-12)
 
 
 def test_no_rule_at_all_is_an_error() -> None:
-    """Nothing can be concluded from two empty sets."""
     with pytest.raises(ValueError, match="neither rule"):
         aggregate(output(0.0, 1.0, 0.0), output(0.0, 1.0, 0.0))
 

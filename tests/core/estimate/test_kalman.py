@@ -1,4 +1,4 @@
-"""The paper's filter: against linear closed forms, from noise-free tracks, and with bad observations."""
+"""The paper's filter, and its update by measurements."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,7 +12,15 @@ from keymark.core.body.posture import Posture
 from keymark.core.body.skeleton import Joint, JointKind, PrincipalPoint, Segment, Skeleton
 from keymark.core.errors import InputError
 from keymark.core.estimate.fuzzy import Memberships
-from keymark.core.estimate.kalman import FilterOptions, FilterResult, FuzzyKalmanFilter, State, filter_clip
+from keymark.core.estimate.kalman import (
+    FilterOptions,
+    FilterResult,
+    FuzzyKalmanFilter,
+    State,
+    filter_clip,
+    normalized_innovation_squared,
+    update,
+)
 from keymark.core.evidence import keypoints as depths
 from keymark.core.evidence.line_ends import (
     ANGLE,
@@ -36,7 +44,6 @@ STIFF = 1e-9
 def run_filter(
     line_ends: LineEnds, tracks: RegionTracks, prior: Posture, keyframes: list[int], options: FilterOptions
 ) -> FilterResult:
-    """The filter's result for a clip."""
     return run(
         filter_clip(line_ends.body, line_ends.camera, tracks, line_ends.segments, prior, keyframes, options)
     )
@@ -162,7 +169,6 @@ def test_a_posture_that_the_picture_shows_is_recovered(line_ends: LineEnds, see:
 
 
 def test_the_filter_comes_closer_than_the_prior(line_ends: LineEnds, see: See) -> None:
-    """With its default noise it more than halves the prior's error in the image."""
     prior, truth = drifting(line_ends, 25)
     result = run_filter(line_ends, see(truth), prior, [0, 24], FilterOptions())
     body = line_ends.body
@@ -185,7 +191,6 @@ def test_a_keyframe_is_predicted_from_itself(line_ends: LineEnds, see: See) -> N
 
 
 def test_prediction_adds_the_process_noise_and_turns_the_axes(line_ends: LineEnds) -> None:
-    """M = P + Q as printed; seen from the world the old uncertainty stays where it was."""
     prior, truth = drifting(line_ends, 9)
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 8])
     root = np.random.default_rng(1).normal(size=(34, 34))
@@ -281,14 +286,12 @@ def test_every_covariance_is_symmetric_and_positive(line_ends: LineEnds, see: Se
 
 
 def test_progress_is_told_once_a_frame(line_ends: LineEnds, see: See) -> None:
-    """A caller can show and cancel it."""
     prior, truth = drifting(line_ends, 4)
     job = filter_clip(line_ends.body, line_ends.camera, see(truth), line_ends.segments, prior, [0, 3])
     assert list(job) == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> None:
-    """Frames, markers and keyframes must fit; a segment must exist."""
     prior, truth = drifting(line_ends, 4)
     tracks, body, camera = see(truth), line_ends.body, line_ends.camera
     for segments, frames, keyframes in (
@@ -312,7 +315,6 @@ def test_arguments_that_disagree_are_refused(line_ends: LineEnds, see: See) -> N
     ],
 )
 def test_impossible_options_are_refused_by_name(wrong: dict[str, float]) -> None:
-    """A zero or endless noise is no noise."""
     with pytest.raises(ValueError, match=next(iter(wrong))):
         FilterOptions(**wrong)
 
@@ -323,3 +325,69 @@ def test_the_a_priori_depths_are_those_of_the_prior(line_ends: LineEnds) -> None
     estimator = FuzzyKalmanFilter(line_ends, prior, [0, 4])
     expected = depths.evaluate(line_ends.body, line_ends.camera, line_ends.body.pose(prior[2]))
     np.testing.assert_allclose(estimator.prior_depths[2], expected, rtol=1e-12)
+
+
+ILL_CONDITIONED = (
+    np.diag([1e8, 1e-10, 1.0]),
+    np.array([[1e6, 1e6 - 1e-4, 0.0], [1e6 - 1e-4, 1e6, 0.0], [0.0, 0.0, 1e-9]]),
+    1e4 * np.ones((3, 3)) + np.diag([1e-9, 2e-9, 3e-9]),
+)
+"""Condition numbers of 1e18, 1e15 and 1e13: a plain (I - K H) M leaves them indefinite or lopsided."""
+
+
+def test_the_gain_agrees_with_the_information_form() -> None:
+    """Paper, eqs. 15 and 16, in their other form: P⁻¹ = M⁻¹ + Hᵀ H and K = P Hᵀ."""
+    rng = np.random.default_rng(0)
+    root, H, innovation = rng.normal(size=(6, 6)), rng.normal(size=(9, 6)), rng.normal(size=9)
+    M = root @ root.T + np.eye(6)
+    result = update(M, H, innovation)
+    information = np.linalg.solve(M, np.eye(6)) + H.T @ H
+    np.testing.assert_allclose(result.covariance @ information, np.eye(6), atol=1e-9)
+    np.testing.assert_allclose(result.step, np.linalg.solve(information, H.T @ innovation), rtol=1e-9)
+    S = H @ M @ H.T + np.eye(9)
+    assert result.normalized_innovation_squared == pytest.approx(innovation @ np.linalg.solve(S, innovation))
+    assert normalized_innovation_squared(M, H, innovation) == pytest.approx(
+        result.normalized_innovation_squared
+    )
+
+
+def test_a_scalar_measurement_by_hand() -> None:
+    """Variance 3 seen with variance 1: gain 3/4, variance 3/4, an innovation of 2 scores 4/4."""
+    result = update(np.array([[3.0]]), np.array([[1.0]]), np.array([2.0]))
+    np.testing.assert_allclose([*result.step, *result.covariance[0]], [1.5, 0.75])
+    assert result.normalized_innovation_squared == pytest.approx(1.0)
+
+
+def test_nothing_seen_changes_nothing() -> None:
+    M = np.diag([1.0, 2.0])
+    result = update(M, np.zeros((0, 2)), np.zeros(0))
+    np.testing.assert_array_equal(result.step, 0.0)
+    np.testing.assert_array_equal(result.covariance, M)
+    assert result.normalized_innovation_squared == 0.0
+
+
+@pytest.mark.parametrize("M", ILL_CONDITIONED)
+def test_ill_conditioned_covariances_stay_symmetric_and_positive(M: np.ndarray) -> None:
+    """Two hundred updates with rows of very unlike size leave no negative variance in any direction."""
+    rng = np.random.default_rng(1)
+    P = M
+    for _ in range(200):
+        H = rng.normal(size=(4, 3)) * np.array([[1e4], [1.0], [1e-3], [1e2]])
+        before = P
+        P = update(P, H, rng.normal(size=4)).covariance + 1e-12 * np.eye(3)
+        np.testing.assert_array_equal(P, P.T)
+        np.linalg.cholesky(P)
+        assert np.trace(P) <= np.trace(before) * (1.0 + 1e-9) + 1e-11
+
+
+def test_the_order_of_measurements_does_not_matter() -> None:
+    """One update with all rows equals one update a row."""
+    rng = np.random.default_rng(2)
+    M, H, seen = np.diag([1.0, 4.0, 9.0]), rng.normal(size=(5, 3)), rng.normal(size=5)
+    together = update(M, H, seen)
+    state, P = np.zeros(3), M
+    for row in (3, 0, 4, 1, 2):
+        one = update(P, H[row : row + 1], seen[row : row + 1] - H[row : row + 1] @ state)
+        state, P = state + one.step, one.covariance
+    np.testing.assert_allclose(state, together.step, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(P, together.covariance, rtol=1e-9, atol=1e-12)

@@ -1,14 +1,80 @@
-"""Whether the filter's covariances are honest: simulated with its own model, its errors must fit them."""
+"""Whether the filter's covariances tell the truth."""
 
+import json
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from _consistency import chi_square_average, normalized_squared
+from _consistency import chi_square_average, coverage, mean_interval, normalized_squared
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.kalman import FilterOptions, FuzzyKalmanFilter
+from keymark.core.estimate.reconstruct import reconstruct
 from keymark.core.evidence import keypoints as depths
 from keymark.core.evidence.line_ends import LineEnds
+from keymark.core.progress import run
+from keymark.core.take.take_file import read_take
+
+
+def test_normalized_squares_by_hand() -> None:
+    """Two standard deviations along one axis and one along the other: 4 + 1; correlation is taken out."""
+    assert normalized_squared([4.0, 3.0], np.diag([4.0, 9.0])) == pytest.approx(5.0)
+    assert normalized_squared([1.0, 1.0], [[2.0, 1.0], [1.0, 2.0]]) == pytest.approx(2.0 / 3.0)
+
+
+def test_normalized_squares_of_a_batch() -> None:
+    errors = np.arange(12.0).reshape(2, 3, 2)
+    batch = normalized_squared(errors, np.broadcast_to(np.diag([1.0, 4.0]), (2, 3, 2, 2)))
+    np.testing.assert_allclose(batch, errors[..., 0] ** 2 + errors[..., 1] ** 2 / 4.0)
+
+
+def test_a_covariance_that_is_none_is_an_error() -> None:
+    with pytest.raises(np.linalg.LinAlgError):
+        normalized_squared([1.0, 1.0], [[1.0, 2.0], [2.0, 1.0]])
+
+
+def test_chi_square_bounds_are_the_tables() -> None:
+    """10 degrees of freedom in one sample: 3.247 and 20.483 enclose 95 %."""
+    interval = chi_square_average([10.0], 10)
+    assert interval.average == 10.0
+    assert interval.low == pytest.approx(3.247, abs=5e-4)
+    assert interval.high == pytest.approx(20.483, abs=5e-4)
+
+
+def test_the_average_tells_honest_from_overconfident_and_timid() -> None:
+    """Errors drawn with their covariance lie within; with covariances half and twice as large they do not."""
+    errors = np.random.default_rng(3).normal(size=(50, 6))
+    for scale, verdict in ((1.0, "honest"), (0.5, "overconfident"), (2.0, "timid")):
+        values = normalized_squared(errors, np.eye(6) * scale)
+        average, low, high = chi_square_average(values, 6)
+        found = "overconfident" if average > high else "timid" if average < low else "honest"
+        assert found == verdict
+
+
+def test_degrees_of_freedom_may_differ_between_frames() -> None:
+    """Hidden markers bring fewer rows: 2 + 4 + 6 degrees in three frames are 4 on the average."""
+    interval = chi_square_average([2.0, 4.0, 6.0], [2, 4, 6])
+    assert interval.low < 4.0 < interval.high
+    assert interval == chi_square_average([4.0, 4.0, 4.0], 4)
+
+
+def test_coverage_by_hand() -> None:
+    """Three of four within 1.96; what has no error or no sigma is left out."""
+    error, sigma = [1.0, -1.9, 2.0, 1.0, 9.0, np.nan], [1.0, 1.0, 1.0, 1.0, np.nan, 1.0]
+    assert coverage(error, sigma) == 0.75
+    assert np.isnan(coverage([np.nan], [1.0]))
+
+
+def test_the_interval_of_a_mean_is_students() -> None:
+    """1, 2, 3: mean 2, standard error 1/√3, t of 2 degrees of freedom 4.303."""
+    interval = mean_interval([1.0, 2.0, 3.0])
+    assert interval.average == pytest.approx(2.0)
+    assert interval.high - 2.0 == pytest.approx(4.303 / np.sqrt(3.0), abs=1e-3)
+    assert 2.0 - interval.low == pytest.approx(interval.high - 2.0)
+    with pytest.raises(ValueError, match="2 runs"):
+        mean_interval([1.0])
+
 
 RUNS, FRAMES = 12, 14
 KEYFRAMES = (0, 5, 9, 13)
@@ -78,7 +144,6 @@ def test_errors_and_innovations_fit_their_covariances(line_ends: LineEnds) -> No
 
 @pytest.mark.parametrize(("scale", "verdict"), [(0.5, "overconfident"), (2.0, "timid")])
 def test_wrong_noise_is_told_by_the_same_measure(line_ends: LineEnds, scale: float, verdict: str) -> None:
-    """The check can fail: a filter that assumes half or twice the noise is found out."""
     wrong = replace(
         OPTIONS,
         centroid_std_px=OPTIONS.centroid_std_px * scale,
@@ -90,3 +155,26 @@ def test_wrong_noise_is_told_by_the_same_measure(line_ends: LineEnds, scale: flo
     nees, nis = averages(line_ends, wrong)
     assert nees[1:] == [verdict] * 3
     assert nis == verdict
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "keyframes"), [("walk", "keyframes_noisy.json"), ("aerobic", "keyframes.json")]
+)
+def test_the_filter_beats_interpolation_and_knows_its_errors(
+    take_folder: Callable[[str], Path], name: str, keyframes: str
+) -> None:
+    """On frames between keyframes it is at least a tenth closer, with an honest covariance in every frame."""
+    folder = take_folder(name)
+    take = read_take(folder, folder / keyframes)
+    truth = json.loads((folder / "truth.json").read_text())["points"]
+    true = np.stack([np.array(truth[point]) for point in take.body.skeleton.point_names], axis=1)
+    done = run(reconstruct(take, "ekf"))
+    assert done.motion.method == "ekf"
+    assert set(done.motion.diagnostics) >= {"normalized_innovation_squared", "gated"}
+    between = np.setdiff1d(np.arange(len(true)), done.motion.keyframe_indices)
+    error, plain = (
+        np.linalg.norm(motion.points - true, axis=-1) for motion in (done.motion, done.interpolation)
+    )
+    assert error[between].mean() < 0.9 * plain[between].mean()
+    assert 0.9 < coverage(error, done.motion.sigma_m) < 0.995

@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, exercise, film
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import KeyframeEvidence, SeenAtKeyframes, read_keyframes
-from keymark.core.estimate.keyframe_rows import posing_covariance, velocities
-from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
-from keymark.core.evidence.regions import MarkerPlacement, RegionModel
+from keymark.core.estimate.clip_problem import KeyframeEvidence
+from keymark.core.estimate.keyframe_error import posing_covariance, velocities
+from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, read_keyframes
+from keymark.core.evidence.regions import (
+    MarkerPlacement,
+    ObservedRegions,
+    RegionModel,
+    RegionNoise,
+    limb_widths,
+)
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.progress import run
 
@@ -29,7 +35,6 @@ TRUE = tuple(
 
 
 def read(posed: Posture, tracks: RegionTracks, model: RegionModel = MODEL) -> KeyframeEvidence:
-    """The evidence of keyframes posed at `POSED`."""
     observed = ObservedRegions.from_tracks(tracks)[POSED]
     width = limb_widths(model, posed.translation, POSED)
     return run(read_keyframes(model, RegionNoise(), SeenAtKeyframes(POSED, posed, observed, width)))
@@ -64,7 +69,6 @@ def test_known_postures_tell_where_the_color_begins_and_how_thick_the_limb_is(wo
 
 
 def test_exact_keyframes_are_told_from_careless_ones(worn: RegionTracks) -> None:
-    """Whatever the placements are, the size of the posing error is found."""
     exact = read(MOTION[POSED], worn)
     careless = read(posed_by_hand(3), worn)
     assert exact.posing_scale < 0.3
@@ -75,20 +79,17 @@ def test_exact_keyframes_are_told_from_careless_ones(worn: RegionTracks) -> None
 
 @pytest.mark.parametrize("factor", [0.92, 1.08])
 def test_a_misstated_lens_is_found(factor: float) -> None:
-    """Keyframes that lie rightly in the world tell that the lens is another than stated."""
     stated = replace(CAMERA, lens_mm=CAMERA.lens_mm * factor)
     found = read(MOTION[POSED], film(MOTION, 0.2), RegionModel(BODY, stated, MODEL.placements)).model.camera
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.015)
 
 
 def test_a_right_lens_is_left_alone_by_careless_keyframes() -> None:
-    """A person's errors do not look like a lens."""
     found = read(posed_by_hand(5), film(MOTION, 0.2)).model.camera
     assert found.lens_mm == pytest.approx(CAMERA.lens_mm, rel=0.02)
 
 
 def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
-    """Postures of up to three frames before or after are taken as mistimed; right ones are not."""
     rng = np.random.default_rng(4)
     shifted = np.clip(POSED + rng.choice([-3, -2, 2, 3], len(POSED)), 0, FRAMES - 1)
     tracks = film(MOTION, 0.2)
@@ -97,7 +98,6 @@ def test_keyframes_set_at_the_wrong_frame_are_recognized() -> None:
 
 
 def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
-    """Clutter in a marker's place all along costs that marker its weight, not the keyframes theirs."""
     tracks = film(MOTION, 0.2)
     rng = np.random.default_rng(6)
     centroid = tracks.centroid.copy()
@@ -109,7 +109,6 @@ def test_a_marker_that_is_never_where_it_should_be_is_distrusted() -> None:
 
 
 def test_velocities_are_those_of_the_parabola() -> None:
-    """On a motion of constant acceleration the middle keyframes' velocities are exact."""
     frame = np.array([0, 4, 10, 13])
     vector = np.zeros((4, BODY.skeleton.dof_count))
     vector[:, 0] = 0.01 * frame + 0.002 * frame**2

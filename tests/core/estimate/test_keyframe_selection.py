@@ -40,7 +40,6 @@ def unlike() -> Posture:
 
 
 def test_a_library_of_the_motion_is_used_between_posed_keyframes_that_are_far_apart() -> None:
-    """Two posed keyframes know little of three seconds."""
     assert used([0, 90], alike()) == ([0, 90], list(range(5, FRAMES, 10)))
 
 
@@ -52,21 +51,18 @@ def test_posed_keyframes_near_each_other_need_no_library() -> None:
 
 
 def test_a_library_of_another_motion_is_used_outside_posed_keyframes_only() -> None:
-    """Between them it does harm; outside there is nothing else."""
     posed, matched = used([20, 45, 70], unlike())
     assert posed == [20, 45, 70]
     assert matched == [5, 15, 75, 85]
 
 
 def test_with_one_posed_keyframe_or_none_all_are_used() -> None:
-    """Nothing lies between posed keyframes."""
     every = list(range(5, FRAMES, 10))
     assert used([], unlike()) == ([], every)
     assert used([40], unlike()) == ([40], every)
 
 
 def test_a_clip_in_which_nothing_is_seen_keeps_a_library_that_agrees() -> None:
-    """The posed keyframes' interpolation cannot be held against anything."""
     hidden = replace(TRACKS, quality=np.zeros_like(TRACKS.quality))
     keyframes = (
         Keyframe(0, TRUTH[0]),
@@ -103,7 +99,6 @@ def test_keypoints_alone_judge_as_markers_do() -> None:
 
 
 def test_postures_composed_for_the_footage_are_not_judged_by_those_that_were_corrected() -> None:
-    """Where a person posed another, it was wrong; that tells nothing of the rest."""
     said = Matched(COMPOSED, "step", False, 0.9)
     found = [Keyframe(i, unlike()[i], matched=said) for i in (5, 30, 60, 85)]
     posed = [Keyframe(i, TRUTH[i]) for i in (20, 45, 70)]

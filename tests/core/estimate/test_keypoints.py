@@ -12,8 +12,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.block_banded import BlockBanded
 from keymark.core.estimate.keypoint_fit import keypoint_notes, observed_joints
 from keymark.core.estimate.keypoint_trust import doubted_at_changes, exchanged_back, find_swaps
-from keymark.core.estimate.terms.motion import add_drift, drift, drift_cost
-from keymark.core.estimate.terms.term import NormalEquations
+from keymark.core.estimate.terms.term import NormalEquations, add_drift, drift, drift_cost
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.footage.camera import Camera
@@ -40,7 +39,6 @@ def estimate(
     match_scale: np.ndarray | None = None,
     earlier: WholeClipResult | None = None,
 ) -> WholeClipResult:
-    """The estimate of the exercise."""
     worn = SEGMENTS if tracks.names else ()
     seen = Seen(tracks, worn, keypoints)
     believed = Believed(prior, POSED, match_scale)
@@ -56,24 +54,20 @@ def error_mm(result: WholeClipResult | Posture) -> float:
 
 @cache
 def with_good() -> WholeClipResult:
-    """By keypoints alone."""
     return estimate(GOOD)
 
 
 @cache
 def marked() -> WholeClipResult:
-    """By markers alone."""
     return estimate(None, MARKED)
 
 
 @cache
 def bare() -> WholeClipResult:
-    """By keyframes alone."""
     return estimate(None)
 
 
 def test_keypoints_alone_beat_interpolation_by_far() -> None:
-    """And the fit tells of a detector that is believed throughout."""
     assert error_mm(with_good()) < 0.4 * error_mm(PRIOR)
     fit = with_good().keypoints
     assert fit.trust.min() == 1.0
@@ -96,7 +90,6 @@ def test_places_and_errors_are_found_at_keyframes() -> None:
 
 
 def test_keyframes_are_judged_without_any_marker() -> None:
-    """Exact keyframes are told from careless ones, and mistimed ones from right ones."""
     rng = np.random.default_rng(4)
     off = [Keyframe(i, TRUTH[i].plus(rng.normal(0.0, 0.12, HUMAN.dof_count))) for i in POSED]
     precise = detect(TRUTH, error_m=0.008)
@@ -106,7 +99,6 @@ def test_keyframes_are_judged_without_any_marker() -> None:
 
 
 def test_markers_gain_and_do_not_change_without_keypoints() -> None:
-    """Keypoints beside markers are better than markers; none at all is the same as not asking."""
     assert error_mm(estimate(GOOD, MARKED)) < error_mm(marked())
     none = estimate(Keypoints.none(FRAMES), MARKED)
     np.testing.assert_array_equal(none.posture.translation, marked().posture.translation)
@@ -123,7 +115,6 @@ WRONG = {
 
 @pytest.mark.parametrize("kind", WRONG)
 def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
-    """It costs nothing, with markers and without, and a note says so."""
     result = estimate(WRONG[kind], MARKED)
     assert error_mm(result) < 1.15 * error_mm(marked())
     assert result.keypoints.source_trust[SOURCE] == 0.0
@@ -132,7 +123,6 @@ def test_a_detector_that_is_wrong_is_left_out(kind: str) -> None:
 
 
 def test_a_third_of_the_points_at_random_is_thrown_out() -> None:
-    """And the others go on telling what they tell."""
     rng = np.random.default_rng(7)
     wild = rng.random(GOOD.pixel.shape[:2]) < 0.3
     elsewhere = rng.uniform(0.0, 240.0, GOOD.pixel.shape)
@@ -145,7 +135,6 @@ def test_a_third_of_the_points_at_random_is_thrown_out() -> None:
 
 
 def test_a_jump_to_another_thing_is_not_averaged() -> None:
-    """A hand that sticks to something for ten frames between keyframes."""
     pixel = GOOD.pixel.copy()
     wrist = LAYOUT.index("wrist.L")
     pixel[33:43, wrist] = pixel[33, wrist] + [70.0, 40.0]
@@ -155,7 +144,6 @@ def test_a_jump_to_another_thing_is_not_averaged() -> None:
 
 
 def test_a_late_detector_is_recognized_as_such() -> None:
-    """The lag is told, in the frames it is."""
     late = in_order(GOOD, np.maximum(np.arange(FRAMES) - 6, 0))
     moving = estimate(late)
     assert moving.keypoints.source_trust[SOURCE] == 0.0
@@ -164,7 +152,6 @@ def test_a_late_detector_is_recognized_as_such() -> None:
 
 
 def test_sides_that_are_exchanged_are_exchanged_back() -> None:
-    """Throughout, and in some frames only; the estimate is that without the mistake."""
     everywhere = estimate(sides_exchanged(GOOD, np.ones(FRAMES, dtype=bool)))
     assert error_mm(everywhere) == pytest.approx(error_mm(with_good()), rel=0.02)
     assert "throughout" in keypoint_notes(everywhere.keypoints)[0]
@@ -177,7 +164,6 @@ def test_sides_that_are_exchanged_are_exchanged_back() -> None:
 
 
 def test_legs_alone_may_be_exchanged() -> None:
-    """The arms are left as they are."""
     legs = np.array([name.startswith(("hip", "knee", "ankle")) for name in LAYOUT])
     some = np.zeros(FRAMES, dtype=bool)
     some[47:56] = True
@@ -218,7 +204,6 @@ def test_hints_of_depth_help_and_wrong_ones_do_no_harm() -> None:
 
 
 def test_six_tracks_with_long_gaps_are_used() -> None:
-    """What an animator tracks: few points, missing for long."""
     names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R", "head", "knee.L")
     tracks = detect(TRUTH, names=names, error_m=0.004)
     pixel = tracks.pixel.copy()
@@ -230,7 +215,6 @@ def test_six_tracks_with_long_gaps_are_used() -> None:
 
 
 def test_several_sources_are_calibrated_apart() -> None:
-    """A wrong one beside a right one is left out alone."""
     both = Keypoints.side_by_side(
         [GOOD, replace(WRONG["another person"], sources=("tracks",) * len(LAYOUT))], FRAMES
     )
@@ -239,7 +223,6 @@ def test_several_sources_are_calibrated_apart() -> None:
 
 
 def test_before_a_moving_camera() -> None:
-    """The same points, seen by a camera that travels."""
     matrices = np.repeat(CAMERA.matrix_world[None], FRAMES, axis=0)
     matrices[:, 0, 3] += np.linspace(-0.5, 0.5, FRAMES)
     moving = replace(CAMERA, matrix_world=matrices)
@@ -248,7 +231,6 @@ def test_before_a_moving_camera() -> None:
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
-    """Points stay at their usual places; they are believed all the same."""
     result = estimate(GOOD, match_scale=np.ones(len(POSED)))
     usual = KeypointModel.usual(BODY, CAMERA, LAYOUT)
     np.testing.assert_array_equal(result.evidence.keypoints.model.place, usual.place)
@@ -269,7 +251,6 @@ def test_errors_are_within_their_interval() -> None:
 
 
 def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() -> None:
-    """The same keypoints leave every frame as it is; others do not."""
     again = estimate(GOOD, earlier=with_good())
     np.testing.assert_array_equal(again.posture.translation, with_good().posture.translation)
     other = estimate(detect(TRUTH, seed=9), earlier=with_good())
@@ -278,7 +259,6 @@ def test_a_later_estimate_starts_from_an_earlier_one_unless_keypoints_changed() 
 
 
 def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
-    """What limbs count as seen by."""
     joints, seen = observed_joints(with_good().keypoints)
     named = dict(zip(LAYOUT, joints, strict=True))
     assert named["hip.L"] == named["shoulder.R"] == "trunk"
@@ -287,7 +267,6 @@ def test_a_hip_shows_the_trunk_and_an_ankle_its_leg() -> None:
 
 
 def test_drift_is_the_likelihood_of_a_first_order_process() -> None:
-    """Its information and gradient are those of the dense covariance, as long as nothing is an outlier."""
     frames, kept = 7, 0.8
     rng = np.random.default_rng(1)
     error = 1e-4 * rng.normal(size=(frames, 1, 1))
@@ -315,7 +294,6 @@ def test_the_cost_of_errors_that_last_is_that_of_their_changes() -> None:
 
 
 def test_drift_begins_anew_after_a_gap_or_an_outlier() -> None:
-    """Frames apart tell of each other no more, and an outlier has next to no pull."""
     error = np.zeros((5, 1, 2))
     used = np.ones((5, 1), dtype=bool)
     used[2] = False

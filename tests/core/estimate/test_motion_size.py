@@ -10,13 +10,7 @@ from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_problem import ClipProblem
 from keymark.core.estimate.clip_state import ClipState, Window, windows
-from keymark.core.estimate.refinement import (
-    LARGEST_OF_ALL,
-    LARGEST_PER_GAP_S,
-    USUAL_SIZE,
-    adapted,
-    limb_sizes,
-)
+from keymark.core.estimate.refinement import SIZES, adapted, limb_sizes
 from keymark.core.estimate.whole_clip import Believed, Seen, estimate_whole_clip
 from keymark.core.estimate.window_problem import WindowProblem
 from keymark.core.prior.keyframes import Keyframe, interpolate
@@ -61,10 +55,7 @@ def about(clip: ClipProblem, posture: Posture, spans: list[Window]) -> list[Clip
     """States with these F postures."""
     starts = [clip.start(window) for window in spans]
     return [
-        replace(
-            start,
-            variation=np.linalg.solve(start.factor, posture[window.frames].minus(start.prior).T).T,
-        )
+        replace(start, variation=np.linalg.solve(start.factor, posture[window.frames].minus(start.prior).T).T)
         for start, window in zip(starts, spans, strict=True)
     ]
 
@@ -100,7 +91,6 @@ def learn(
 def finished(
     job: Generator[None, None, tuple[ClipProblem, list[ClipState]]],
 ) -> tuple[ClipProblem, list[ClipState]]:
-    """What a job returns."""
     while True:
         try:
             next(job)
@@ -115,8 +105,7 @@ def unsettled(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None:
-    """It alone, and all of it alike."""
-    size = np.full(len(COLUMN), USUAL_SIZE)
+    size = np.full(len(COLUMN), SIZES.usual_size)
     np.testing.assert_allclose(limb_sizes(problem(), WHOLE, trembling(size)), 1.0)
     size[LIMB] *= 2.0
     found = limb_sizes(problem(), WHOLE, trembling(size))
@@ -125,20 +114,18 @@ def test_a_limb_that_moves_more_than_keyframes_tell_gets_a_larger_size() -> None
 
 
 def test_sizes_have_bounds() -> None:
-    """Never below what keyframes tell, and looser the less they can tell."""
-    usual = np.full(len(COLUMN), USUAL_SIZE)
+    usual = np.full(len(COLUMN), SIZES.usual_size)
     np.testing.assert_array_equal(limb_sizes(problem(), WHOLE, trembling(0.01 * usual)), 1.0)
     wild = trembling(100.0 * usual)
-    np.testing.assert_allclose(limb_sizes(problem(), WHOLE, wild), LARGEST_PER_GAP_S * EVERY / 30.0)
+    np.testing.assert_allclose(limb_sizes(problem(), WHOLE, wild), SIZES.largest_per_gap_s * EVERY / 30.0)
     sparse = replace(problem(), keyframes=np.array([0, FRAMES - 1]))
-    np.testing.assert_array_equal(limb_sizes(sparse, WHOLE, wild), LARGEST_OF_ALL)
+    np.testing.assert_array_equal(limb_sizes(sparse, WHOLE, wild), SIZES.largest_of_all)
     alone = replace(problem(), keyframes=np.array([0]))
     np.testing.assert_array_equal(limb_sizes(alone, WHOLE, wild), 1.0)
 
 
 def test_windows_tell_the_same_as_the_whole_clip() -> None:
-    """Their margins count once."""
-    size = np.full(len(COLUMN), 2.0 * USUAL_SIZE)
+    size = np.full(len(COLUMN), 2.0 * SIZES.usual_size)
     whole = trembling(size)
     spans = list(windows(FRAMES, 20, 6))
     assert len(spans) == 3
@@ -147,7 +134,6 @@ def test_windows_tell_the_same_as_the_whole_clip() -> None:
 
 
 def test_where_the_prior_misses_across_the_line_of_sight_its_depth_is_trusted_less(unsettled: None) -> None:
-    """In that gap, by how much it misses; to and fro along the line of sight tells nothing."""
     still, _ = learn(problem(), problem().prior)
     near, _ = learn(problem(), bulging(0.1))
     far, _ = learn(problem(), bulging(0.3))
@@ -161,7 +147,6 @@ def test_where_the_prior_misses_across_the_line_of_sight_its_depth_is_trusted_le
 
 
 def test_gaps_that_are_not_asked_for_are_as_known(unsettled: None) -> None:
-    """And limbs have the size of the earlier estimate."""
     clip = problem()
     earlier = replace(
         clip, limb_size=np.full_like(clip.limb_size, 1.2), depth_factor=np.full_like(clip.depth_factor, 2.5)
@@ -176,7 +161,6 @@ def test_gaps_that_are_not_asked_for_are_as_known(unsettled: None) -> None:
 
 
 def test_postures_stay_as_they_are_when_sizes_change(unsettled: None) -> None:
-    """Their deviation is told in the unit of the new sizes."""
     swings = np.zeros((FRAMES, len(COLUMN)))
     swings[:, LIMB] = np.sin(2.0 * np.pi * np.arange(FRAMES) / 8.0)[:, None]
     posture = replace(problem().start(WHOLE[0]), variation=swings).posture
@@ -187,7 +171,6 @@ def test_postures_stay_as_they_are_when_sizes_change(unsettled: None) -> None:
 
 
 def test_nothing_is_learned_where_markers_do_not_show_the_whole_body() -> None:
-    """Limbs that are not seen follow the prior, which would say that it is right."""
     clip = problem(("trunk", "forearm.L"))
     posture = exercise(FRAMES, 0.5)
     states = about(clip, posture, WHOLE)

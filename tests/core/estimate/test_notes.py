@@ -24,7 +24,6 @@ from keymark.core.take.take_file import read_take
 def test_doubtful_keyframes_send_people_to_what_the_take_has(
     kinds: tuple[str, ...], checked: str, tmp_path: Path
 ) -> None:
-    """Nobody in plain clothes is told to check markers."""
     take = read_take(write_synthetic_take(tmp_path / "take", 8, 4))
     people = People(("nose",), "a detector", take.camera.resolution, ())
     take = with_evidence(replace(take, keypoints=(people,)), kinds)

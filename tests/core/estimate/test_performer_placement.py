@@ -25,25 +25,21 @@ def looking_down(angle_rad: float, place: tuple[float, float, float]) -> Camera:
 
 
 def seen(posture: Posture) -> RegionTracks:
-    """One frame of regions."""
     return film(Posture.stack([posture]))
 
 
 def soles_m(posture: Posture) -> float:
-    """Height of the soles of someone upright."""
     return float(posture.translation[2]) - hip_height_m(BODY)
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (0.8, 0.6, 0.0), (-0.9, -0.5, 0.0)])
 def test_a_body_stands_where_its_regions_are(place: tuple[float, float, float]) -> None:
-    """The regions come from that very place."""
     true = standing_posture(BODY, np.array(place))
     found = place_standing(BODY, CAMERA, 0, seen(true), SEGMENTS)
     assert np.linalg.norm(found.translation - true.translation) < 0.05
 
 
 def test_the_floor_helps_where_the_camera_looks_down_on_it() -> None:
-    """A body that looks a tenth too large still stands on the floor, at about its place."""
     camera = looking_down(0.5, (0.0, -3.5, 2.9))
     true = standing_posture(BODY)
     near = standing_posture(BODY, np.array([0.0, -0.35, 0.2]))  # what the same body too near looks like
@@ -67,7 +63,6 @@ def test_one_who_bends_down_is_not_taken_to_be_far_away() -> None:
 
 
 def test_a_ground_elsewhere_is_left_alone() -> None:
-    """A performer on a stage of two meters is not pulled to the floor."""
     camera = looking_down(0.3, (0.0, -4.0, 4.3))
     true = standing_posture(BODY, np.array([0.0, 0.0, 2.0]))
     from keymark.core.evidence.regions import MarkerPlacement, RegionModel
@@ -78,7 +73,6 @@ def test_a_ground_elsewhere_is_left_alone() -> None:
 
 
 def test_without_regions_the_body_fills_seven_tenths_of_the_picture() -> None:
-    """Soles and crown, projected."""
     found = place_standing(BODY, CAMERA)
     soles = found.translation - np.array([0.0, 0.0, hip_height_m(BODY)])
     crown = soles + np.array([0.0, 0.0, standing_height_m(BODY)])
@@ -91,7 +85,6 @@ def test_without_regions_the_body_fills_seven_tenths_of_the_picture() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 1.0, 2.5, -2.0])
 def test_it_faces_the_camera_wherever_that_is(heading: float) -> None:
-    """The chest's front points towards it."""
     toward = np.array([np.sin(heading), -np.cos(heading), 0.0])
     back = -toward
     matrix = np.eye(4)
@@ -103,7 +96,6 @@ def test_it_faces_the_camera_wherever_that_is(heading: float) -> None:
 
 
 def test_a_turn_keeps_the_hips_in_place() -> None:
-    """Only about the vertical."""
     batch = yawed_in_place(standing_posture(BODY, np.array([1.0, 2.0, 0.0])), np.array([0.0, 1.0]))
     np.testing.assert_allclose(batch.translation[0], batch.translation[1])
     assert np.allclose(batch.rotations[1, 0][2], [0.0, 0.0, 1.0])
@@ -112,14 +104,12 @@ def test_a_turn_keeps_the_hips_in_place() -> None:
 
 @pytest.mark.parametrize("camera", [CAMERA, looking_down(0.4, (0.3, -4.0, 3.0))])
 def test_head_and_ground_tell_the_place(camera: Camera) -> None:
-    """From a level camera and from one that looks down."""
     place = np.array([0.4, 0.7, 0.1])
     pixels, _ = camera.project(np.stack([place + [0.0, 0.0, 1.8], place]))
     np.testing.assert_allclose(ground_place(camera, 0, 1.8, *pixels), place, atol=1e-6)
 
 
 def test_pixels_that_cannot_be_a_person_are_refused() -> None:
-    """Upside down, and too small to measure by."""
     with pytest.raises(InputError, match="below the ground"):
         ground_place(CAMERA, 0, 1.8, (160.0, 220.0), (160.0, 30.0))
     with pytest.raises(InputError, match="pixels apart"):

@@ -70,7 +70,6 @@ def test_looks_narrow_down_to_the_markers_own() -> None:
 
 
 def test_keypoints_of_all_limbs_spare_the_widest_looks() -> None:
-    """Not so where an ankle is missing."""
     names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R", "hip.L")
 
     def seen(count: int) -> Keypoints:
@@ -115,14 +114,12 @@ def test_contours_alone_bring_the_estimate_nearer_to_the_truth() -> None:
 
 
 def test_a_shaken_camera_leaves_the_interpolation() -> None:
-    """Where no background stands still nothing is followed, and no edge is made up."""
     shaken = solve(photograph(TRUTH, shake_px=12))
     assert shaken.contours is None and shaken.outlined is None
     np.testing.assert_allclose(shaken.posture.to_vector(), interpolated().posture.to_vector(), atol=1e-9)
 
 
 def test_a_thing_that_moves_behind_costs_its_own_pixels_only() -> None:
-    """A flickering screen over a quarter of the picture does not switch contours off."""
     contours = flickering()
     assert contours is not None
     assert not contours.appearance.known[20:60, 20:300].any()
@@ -165,12 +162,10 @@ def test_the_rows_at_keyframes_follow_posture_and_lens() -> None:
 
 @pytest.mark.parametrize(("size_m", "low", "high"), [(0.0, 0.0, 0.4), (0.03, 0.5, 2.5)])
 def test_contours_tell_careless_keyframes_from_careful_ones(size_m: float, low: float, high: float) -> None:
-    """The posing error's size is found without any marker."""
     assert low < solve(album(), sloppy(size_m)).evidence.posing_scale < high
 
 
 def test_where_markers_locate_every_limb_nothing_but_they_judge() -> None:
-    """With five markers no shift along limbs is measured."""
     keyframes = tuple(Keyframe(int(index), TRUTH[index : index + 1][0]) for index in POSED)
     prior = interpolate(keyframes, FRAMES)
     job = estimate_whole_clip(

@@ -22,7 +22,6 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A small synthetic take."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("take"), frames=24, keyframe_every=8))
 
 
@@ -50,7 +49,6 @@ def test_every_method_gives_every_frame_a_finite_posture(take: Take, method: str
 def test_a_clip_read_before_gives_the_same_motion_without_the_clip(
     take: Take, mapped: Reconstruction, tmp_path: Path
 ) -> None:
-    """What was read for one method serves the others; what was read for other markers is refused."""
     found = run(reconstruct(take, "interpolation")).reading
     seen: list[Progress] = []
     again = run(reconstruct(replace(take, clip=tmp_path / "gone"), "map", found), seen.append)
@@ -64,7 +62,6 @@ def test_a_clip_read_before_gives_the_same_motion_without_the_clip(
 
 
 def test_a_misstated_lens_is_told_and_made_good(take: Take, mapped: Reconstruction) -> None:
-    """The sentence names both lenses; with the right one nothing is said."""
     stated = replace(take.camera, lens_mm=1.09 * take.camera.lens_mm)
     right, wrong = mapped, run(reconstruct(replace(take, camera=stated)))
     assert not any("lens" in note for note in right.notes)
@@ -90,7 +87,6 @@ def test_linear_algebra_keeps_to_one_thread_while_the_job_runs_and_only_then(tak
 
 
 def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
-    """A canceled job writes no file and can be started anew."""
     before = sorted(take.folder.rglob("*"))
     job = reconstruct(take)
     for _ in range(5):
@@ -101,7 +97,6 @@ def test_closing_the_job_midway_leaves_nothing_behind(take: Take) -> None:
 
 
 def test_an_unknown_method_and_too_few_keyframes_are_refused_in_a_sentence(take: Take) -> None:
-    """The message says what is valid."""
     with pytest.raises(InputError, match="map, ekf, interpolation"):
         run(reconstruct(take, "magic"))
     with pytest.raises(InputError, match="at least 2"):
@@ -136,7 +131,6 @@ def test_a_clip_that_is_cut_off_is_converted_as_far_as_it_goes_and_said_so(
 def test_footage_beats_every_interpolation_of_hand_posed_keyframes(
     take_folder: Callable[[str], Path], name: str
 ) -> None:
-    """On each take with truth, against linear and smooth interpolation of the same keyframes."""
     folder = take_folder(name)
     take = read_take(folder, folder / "keyframes_noisy.json")
     result: Reconstruction = run(reconstruct(take))

@@ -126,7 +126,6 @@ def finds(result: WholeClipResult) -> np.ndarray:
 
 
 def test_a_blurred_marker_is_found_where_it_is() -> None:
-    """In most of the frames, within two pixels, and nothing else is; the posture follows."""
     new = finds(found())
     assert new[LOST, MARKER].sum() >= 3
     true = MODEL.evaluate(BODY.pose(MOTION), np.arange(FRAMES)).centroid
@@ -140,7 +139,6 @@ def test_a_blurred_marker_is_found_where_it_is() -> None:
 
 
 def test_nothing_is_found_of_a_marker_that_is_not_there() -> None:
-    """The sleeve pushed up, for those frames."""
     bare, album = photograph(MOTION[LOST], painted=PUSHED_UP), Album()
     for frame in range(FRAMES):
         lost = frame in LOST
@@ -149,12 +147,10 @@ def test_nothing_is_found_of_a_marker_that_is_not_there() -> None:
 
 
 def test_ignored_pixels_are_no_marker() -> None:
-    """With the whole picture ignored in those frames nothing is found."""
     assert not finds(without())[LOST, MARKER].any()
 
 
 def test_finds_are_kept_where_nothing_changed() -> None:
-    """A keyframe changed at the end: what was found far from it is the same to the last digit."""
     again = estimate(pictures(), posed(0.004), found())
     before, after = found().problem, again.problem
     assert again.evidence is not found().evidence and finds(again)[LOST, MARKER].any()
@@ -164,14 +160,12 @@ def test_finds_are_kept_where_nothing_changed() -> None:
 
 
 def test_nothing_changed_looks_at_nothing() -> None:
-    """The same estimate again is the earlier one, finds included."""
     again = estimate(pictures(), earlier=found())
     np.testing.assert_array_equal(again.problem.observed.area, found().problem.observed.area)
     np.testing.assert_array_equal(again.posture.translation, found().posture.translation)
 
 
 def test_a_result_shows_what_was_found() -> None:
-    """The tracks of a result hold the finds, with their quality; what was tracked stays."""
     tracks, observed = tracked(), found().problem.observed
     shown, new = seen_tracks(tracks, observed), finds(found())
     np.testing.assert_array_equal(shown.centroid[new], observed.centroid[new])

@@ -10,16 +10,16 @@ from keymark.core.body.posture import Posture
 from keymark.core.estimate.clip_state import ClipState
 from keymark.core.estimate.terms.contact import GroundTerm, StillnessTerm
 from keymark.core.estimate.terms.motion import BeliefTerm, DepthTerm, LimitTerm, SmoothnessTerm
-from keymark.core.estimate.terms.regions import (
+from keymark.core.estimate.terms.regions import RegionTerm
+from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
+from keymark.core.evidence import keypoints as depths
+from keymark.core.evidence.regions import (
     FEATURES,
     ObservedRegions,
     RegionNoise,
-    RegionTerm,
     feature_rows,
     missing_variance,
 )
-from keymark.core.estimate.terms.term import NormalEquations, QuadraticBuilder, Term, total_cost
-from keymark.core.evidence import keypoints as depths
 from keymark.core.numerics.robust import student_weight
 from keymark.core.prior.frame_prior import process_noise_factor
 
@@ -46,7 +46,6 @@ def moved(at: ClipState, step: np.ndarray) -> ClipState:
 
 
 def gradient(term: Term, at: ClipState) -> np.ndarray:
-    """The gradient a term adds."""
     equations = NormalEquations(FRAMES, DOFS)
     term.add_to(equations, at, 1.0)
     return equations.gradient
@@ -64,7 +63,6 @@ def assert_gradient(term: Term, cost, at: ClipState) -> None:  # noqa: ANN001
 
 
 def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
-    """Its gradient is that of its cost, and leaps cost little more the higher they are."""
     term = GroundTerm((11, 12), 0.12)
     assert_gradient(term, lambda at: term.cost(at).sum(), state(size=0.02))
     lifted = [float(GroundTerm((11, 12), height).cost(state(size=0.0)).sum()) for height in (0.1, -0.5, -1.0)]
@@ -72,7 +70,6 @@ def test_the_ground_term_pulls_the_lower_ankle_to_its_height() -> None:
 
 
 def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
-    """½ Σ ((d - d_p) / σ)²."""
     at = state()
     frame = np.arange(FRAMES)
     prior = depths.evaluate(BODY, CAMERA, BODY.pose(at.prior), frame)
@@ -87,7 +84,6 @@ def test_the_depth_term_pulls_towards_the_priors_depths() -> None:
 
 
 def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> None:
-    """A knee bent backwards is pushed forwards, one bent as knees bend is not touched."""
     at = state(size=0.0)
     assert np.abs(gradient(LimitTerm(), at)).max() == 0.0
     knee = HUMAN.dof_names.index("knee.R.flexion")
@@ -99,7 +95,6 @@ def test_the_limit_term_is_silent_within_the_range_and_pushes_back_past_it() -> 
 
 
 def test_terms_with_a_cost_descend_it_alone_and_together() -> None:
-    """Belief and limits have the gradients of their costs, and the total is the sum in any order."""
     at = state(seed=5, size=0.2)
     belief = BeliefTerm.of(FRAMES, DOFS, np.ones((1, 0)))
     ground = GroundTerm((11, 12), 0.12)
@@ -172,7 +167,6 @@ def test_motion_along_the_line_of_sight_alone_does_not_free_a_foot() -> None:
 
 
 def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
-    """Of two still ankles the one far above the other may move."""
     posture = exercise(1)
     thigh = HUMAN.dof_names.index("hip.L.rotation_x")
     raised = np.zeros((FRAMES, DOFS))
@@ -191,7 +185,6 @@ def test_a_raised_foot_is_not_held_while_the_other_stands_lower() -> None:
 
 
 def test_bursts_of_acceleration_pull_less_than_their_size() -> None:
-    """The smoothness term is quadratic for usual accelerations and grows with their logarithm for bursts."""
     at = state(size=0.0)
     limb = HUMAN.limbs[1]
 
@@ -205,7 +198,6 @@ def test_bursts_of_acceleration_pull_less_than_their_size() -> None:
 
 
 def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
-    """Weights are a limb's own."""
     at = state(size=0.0)
     calm = np.zeros((FRAMES, DOFS))
     calm[2, HUMAN.limbs[2][0]] = 1.0
@@ -220,7 +212,6 @@ def test_a_burst_in_one_limb_does_not_loosen_another() -> None:
 
 
 def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
-    """Second differences over a standard deviation, and its gradient."""
     builder = QuadraticBuilder(FRAMES, DOFS)
     std = np.linspace(0.1, 1.0, DOFS)
     builder.add(slice(0, DOFS), (1.0, -2.0, 1.0), std)
@@ -233,7 +224,6 @@ def test_the_quadratic_term_is_the_sum_of_its_rows() -> None:
 
 
 def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() -> None:
-    """Residuals are in pixels: a region three pixels off differs by three pixels and by no shape."""
     posture = exercise(FRAMES)
     tracks = film(posture)
     predicted = MODEL.evaluate(BODY.pose(posture), np.arange(FRAMES))
@@ -249,7 +239,6 @@ def test_features_of_a_region_against_itself_are_zero_and_grow_with_its_shift() 
 
 
 def test_a_shape_residual_is_the_difference_of_deviations_in_pixels() -> None:
-    """A region stretched by a tenth along its axis differs by about a tenth of its deviation there."""
     posture = exercise(1)
     predicted = MODEL.evaluate(BODY.pose(posture), np.arange(1))
     tracks = film(posture)
@@ -271,7 +260,6 @@ def test_student_weights_fall_with_the_residual() -> None:
 
 
 def test_what_is_missing_of_a_region_widens_its_features() -> None:
-    """Nothing for a whole region, about the region's own deviation for half of it, and more for less."""
     predicted = MODEL.evaluate(BODY.pose(exercise(1)), np.arange(1))
     variance = [missing_variance(share * predicted.area, 1.0, predicted) for share in (1.0, 0.5, 0.25)]
     assert variance[0].max() == 0.0
@@ -281,7 +269,6 @@ def test_what_is_missing_of_a_region_widens_its_features() -> None:
 
 
 def test_a_body_behind_the_camera_is_not_compared_with_regions() -> None:
-    """Its prediction is no number; what is added, and what it costs, is one."""
     tracks = film(exercise(FRAMES))
     behind = Posture.stack([exercise(FRAMES)[index] for index in range(FRAMES)])
     location = CAMERA.pose()[1]

@@ -19,17 +19,13 @@ GAP = 1
 
 
 def turning(degrees: float) -> Posture:
-    """The exercise, turned by so much in the gap."""
     still = exercise(FRAMES)
     share = np.clip((np.arange(FRAMES) - EVERY) / EVERY, 0.0, 1.0)
     return yawed_at(still, np.radians(degrees) * share**2 * (3.0 - 2.0 * share), still.translation)
 
 
 def estimate(
-    truth: Posture,
-    tracks: RegionTracks,
-    earlier: WholeClipResult | None = None,
-    off_rad: float = 0.0,
+    truth: Posture, tracks: RegionTracks, earlier: WholeClipResult | None = None, off_rad: float = 0.0
 ) -> tuple[WholeClipResult, int]:
     """The estimate from a keyframe every half second, and how many frames were estimated.
 
@@ -75,7 +71,6 @@ def test_the_footage_says_which_way_round(degrees: float, added: int) -> None:
 
 
 def test_nothing_seen_decides_nothing() -> None:
-    """Keyframes alone are interpolated the short way."""
     truth, tracks, _ = long_turn()
     blind = replace(
         tracks,
@@ -89,7 +84,6 @@ def test_nothing_seen_decides_nothing() -> None:
 
 
 def test_nobody_turns_faster_than_a_dancer() -> None:
-    """Within a tenth of a second there is no time for the other way round."""
     problem = long_turn()[2].problem
     problem = problem.with_turns(np.zeros_like(problem.turns))
     every, cost = np.ones(len(problem.turns), dtype=bool), np.zeros(FRAMES)
@@ -101,7 +95,6 @@ def test_nobody_turns_faster_than_a_dancer() -> None:
 
 
 def test_a_turn_stays_where_nothing_changed_and_is_decided_anew_elsewhere() -> None:
-    """After another keyframe is moved, the turn is as before and as from the beginning."""
     truth, tracks, first = long_turn()
     same, frames = estimate(truth, tracks, first)
     assert frames == 0

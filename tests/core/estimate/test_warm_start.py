@@ -30,7 +30,6 @@ OPTIONS = WholeClipOptions(window_s=10.0)
 
 
 def posed(seed: int = 5) -> tuple[Keyframe, ...]:
-    """Keyframes posed by hand, a few degrees off."""
     rng = np.random.default_rng(seed)
     index = [*range(0, FRAMES, EVERY), FRAMES - 1]
     error = rng.normal(0.0, 0.03, (len(index), BODY.skeleton.dof_count))
@@ -53,7 +52,6 @@ def estimate(
     tracks: RegionTracks = TRACKS,
     camera: Camera = CAMERA,
 ) -> tuple[WholeClipResult, list[Preview]]:
-    """The estimate and what was shown on the way."""
     prior = interpolate(keyframes, FRAMES)
     index = tuple(keyframe.index for keyframe in keyframes)
     seen, believed = Seen(tracks, SEGMENTS), Believed(prior, index)
@@ -70,12 +68,10 @@ def estimate(
 
 @cache
 def first() -> WholeClipResult:
-    """The first estimate."""
     return estimate(posed())[0]
 
 
 def estimated_frames(shown: list[Preview]) -> int:
-    """How many frames were estimated at all."""
     frames = {preview.first + k for preview in shown for k in range(preview.posture.batch[0])}
     return len(frames)
 
@@ -86,7 +82,6 @@ def largest_mm(one: Posture, other: Posture) -> float:
 
 
 def test_nothing_changed_costs_nothing_and_changes_nothing() -> None:
-    """No frame is estimated again."""
     again, shown = estimate(posed(), first())
     assert estimated_frames(shown) == 0
     assert largest_mm(again.posture, first().posture) < 1e-9
@@ -94,7 +89,6 @@ def test_nothing_changed_costs_nothing_and_changes_nothing() -> None:
 
 
 def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> None:
-    """To invisible differences, uncertainty included; and back again."""
     fresh, all_shown = estimate(moved())
     again, shown = estimate(moved(), first())
     assert estimated_frames(all_shown) == FRAMES
@@ -112,7 +106,6 @@ def test_a_moved_keyframe_is_as_from_the_beginning_at_a_part_of_the_cost() -> No
 
 
 def test_keyframes_may_come_and_go() -> None:
-    """As from the beginning."""
     keyframes = posed()
     index = MOVED * EVERY + EVERY // 2
     keyframes = (*keyframes[:MOVED], Keyframe(index, first().posture[index]), *keyframes[MOVED + 1 :])
@@ -121,7 +114,6 @@ def test_keyframes_may_come_and_go() -> None:
 
 
 def test_frames_seen_differently_are_estimated_again() -> None:
-    """A marker that is found elsewhere has its say."""
     centroid = TRACKS.centroid.copy()
     centroid[241:246, 1] += 3.0  # between two keyframes
     other = replace(TRACKS, centroid=centroid)
@@ -131,7 +123,6 @@ def test_frames_seen_differently_are_estimated_again() -> None:
 
 
 def test_an_estimate_before_another_camera_is_not_used() -> None:
-    """Nothing of it holds."""
     stand = CAMERA.matrix_world.copy()
     stand[0, 3] += 0.05
     other = replace(CAMERA, matrix_world=stand)
@@ -139,7 +130,6 @@ def test_an_estimate_before_another_camera_is_not_used() -> None:
 
 
 def test_windows_around_changes_reach_beyond_them_and_never_keep_a_frame_twice() -> None:
-    """Changes that are near each other share a window; a long stretch has several."""
     changed = np.zeros(1000, dtype=bool)
     changed[[3, 300, 330]] = True
     changed[600:900] = True

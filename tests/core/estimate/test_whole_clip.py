@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_rows import posing_covariance
+from keymark.core.estimate.keyframe_error import posing_covariance
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.prior.keyframes import Keyframe, interpolate
@@ -18,7 +18,6 @@ TRUTH = exercise(FRAMES)
 
 
 def solve(prior: Posture, tracks: RegionTracks) -> WholeClipResult:
-    """Run the estimate to its end."""
     job = estimate_whole_clip(BODY, CAMERA, Seen(tracks, SEGMENTS), Believed(prior, POSED))
     fractions = []
     while True:
@@ -52,7 +51,6 @@ def exact() -> WholeClipResult:
 
 
 def test_footage_corrects_the_interpolation_between_exact_keyframes(exact: WholeClipResult) -> None:
-    """The mean error falls well below the interpolation's and below a centimeter."""
     before = point_error_m(prior_from(TRUTH[np.array(POSED)]), TRUTH).mean()
     after = point_error_m(exact.posture, TRUTH).mean()
     assert after < 0.6 * before
@@ -67,7 +65,6 @@ def test_exact_keyframes_are_recognized_and_kept(exact: WholeClipResult) -> None
 
 
 def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact: WholeClipResult) -> None:
-    """Every frame has a proper covariance; between keyframes it is larger than at them."""
     covariance = exact.covariance
     np.testing.assert_allclose(covariance, np.swapaxes(covariance, -1, -2), atol=1e-12)
     assert np.linalg.eigvalsh(covariance).min() > 0.0
@@ -78,7 +75,6 @@ def test_uncertainty_is_symmetric_positive_and_largest_far_from_keyframes(exact:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_carelessly_posed_keyframes_are_recognized_and_corrected(seed: int) -> None:
-    """The size of the posing error is found, and the estimate is better than the keyframes themselves."""
     posed = posed_by_hand(seed)
     prior = prior_from(posed)
     result = solve(prior, film(TRUTH, 0.3, seed))
@@ -89,7 +85,6 @@ def test_carelessly_posed_keyframes_are_recognized_and_corrected(seed: int) -> N
 
 
 def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
-    """A forearm unseen for a gap between keyframes leaves the rest of the body as good as it was."""
     tracks = film(TRUTH, 0.3)
     centroid = tracks.centroid.copy()
     centroid[20:26, 1] = np.nan
@@ -100,7 +95,6 @@ def test_a_hidden_marker_costs_little(exact: WholeClipResult) -> None:
 
 
 def test_one_frame_of_a_region_far_off_is_not_believed(exact: WholeClipResult) -> None:
-    """An extraction that jumps to clutter for a frame moves the estimate by millimeters, not centimeters."""
     tracks = film(TRUTH, 0.3)
     centroid = tracks.centroid.copy()
     centroid[22, 3] += 60.0
@@ -128,7 +122,6 @@ def test_footage_without_any_marker_gives_the_prior_back() -> None:
 
 
 def test_the_same_input_gives_the_same_postures_bit_for_bit(exact: WholeClipResult) -> None:
-    """Nothing is random."""
     again = solve(prior_from(TRUTH[np.array(POSED)]), film(TRUTH, 0.3))
     np.testing.assert_array_equal(again.posture.rotations, exact.posture.rotations)
     np.testing.assert_array_equal(again.covariance, exact.covariance)

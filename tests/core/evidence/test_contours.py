@@ -1,13 +1,14 @@
-"""Where limbs' contours appear, and which part of the body a pixel shows."""
+"""Contours and axes of limbs in the image."""
 
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, exercise
 from keymark.core.body.human import HUMAN
-from keymark.core.evidence.contours import SHAPE, SIDES, ContourModel, part_map
+from keymark.core.evidence.contours import FREE, SHAPE, SIDES, UNKNOWN, ContourModel, LimbAxes, part_map
 from keymark.core.evidence.occlusion import outline_depth
 
 MODEL = ContourModel.average(BODY, CAMERA)
+AXES = LimbAxes(MODEL.parts, CAMERA)
 NAMES = MODEL.parts.segments
 FRAME = np.arange(1)
 STEP = 1e-5
@@ -34,7 +35,6 @@ def test_the_jacobian_agrees_with_central_differences(seed: int) -> None:
 
 
 def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
-    """Thickness and place of each part, each by a millimeter."""
     pose = BODY.pose(exercise(1))
     before = MODEL.evaluate(pose, FRAME)
     for column in range(SHAPE):
@@ -46,7 +46,6 @@ def test_correcting_a_shape_moves_its_contours_as_predicted() -> None:
 
 
 def test_contours_lie_on_either_side_of_the_limb_and_point_outwards() -> None:
-    """Pairs of samples have opposite normals and lie as far apart as the part is wide."""
     predicted = MODEL.evaluate(BODY.pose(exercise(1)), FRAME)
     pairs = predicted.pixel[0].reshape(-1, len(SIDES), 2)
     normals = predicted.normal[0].reshape(-1, len(SIDES), 2)
@@ -75,3 +74,29 @@ def test_the_map_shows_the_nearest_part() -> None:
         assert depth.argmin() == NAMES.index(name)
     assert labels[5, 5] == -1
     assert 0.02 < np.mean(labels >= 0) < 0.2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_axes_jacobian_agrees_with_central_differences(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    posture = exercise(1).plus(0.1 * rng.normal(size=(1, HUMAN.dof_count)))
+    share = rng.uniform(size=(1, len(NAMES)))
+    direction = rng.normal(size=(1, len(NAMES), 2))
+    pose = BODY.pose(posture)
+    world, _ = AXES.points(pose, FRAME, share)
+    ours = AXES.jacobian(pose, FRAME, world, direction)[0]
+
+    def along(step: np.ndarray) -> np.ndarray:
+        moved = BODY.pose(posture.plus(step[None]))
+        return np.sum(direction * AXES.points(moved, FRAME, share)[1], axis=-1)[0]
+
+    theirs = np.stack([(along(s) - along(-s)) / (2 * STEP) for s in STEP * np.eye(HUMAN.dof_count)], axis=-1)
+    np.testing.assert_allclose(ours, theirs, atol=1e-3 * np.abs(theirs).max())
+
+
+def test_what_lies_beyond_a_part_is_its_own_side_s() -> None:
+    beyond = dict(zip(NAMES, AXES.beyond.tolist(), strict=True))
+    assert beyond["forearm.R"] == [NAMES.index("upper_arm.R"), NAMES.index("hand.R")]
+    assert beyond["head"] == [NAMES.index("chest"), FREE]
+    assert beyond["hand.L"][1] == beyond["foot.R"][1] == FREE
+    assert beyond["upper_arm.L"][0] == UNKNOWN

@@ -1,10 +1,15 @@
-"""Places of the body's points, their projection and its derivatives."""
+"""Keypoints and depths against differences."""
 
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, exercise
+from keymark.core.body.actor import Actor
 from keymark.core.body.human import HUMAN
+from keymark.core.body.kinematics import Body
+from keymark.core.body.posture import Posture
+from keymark.core.evidence import keypoints as depths
 from keymark.core.evidence.keypoints import USUAL_PLACES, DepthLinks, KeypointModel
+from keymark.core.footage.camera import Camera
 from keymark.core.footage.keypoints.keypoints import BODY_POINTS, mirrored_point
 
 FRAMES = 4
@@ -15,7 +20,6 @@ LINKS = DepthLinks.between(BODY_POINTS, ("one",) * len(BODY_POINTS))
 
 
 def test_every_body_point_has_a_place_and_principal_points_have_the_skeletons() -> None:
-    """Whatever a layout names can be predicted."""
     assert set(USUAL_PLACES) == set(BODY_POINTS)
     pose = BODY.pose(POSTURE)
     own = [BODY_POINTS.index(name) for name in HUMAN.point_names]
@@ -43,7 +47,6 @@ def numeric(values, step: float = 1e-6) -> np.ndarray:  # noqa: ANN001
 
 @pytest.mark.parametrize("dof", [0, 2, 4, 7, 11, 14, 18, 25, 31])
 def test_jacobians_by_the_posture_are_differences(dof: int) -> None:
-    """Of pixels and of links' depths."""
     unit = np.zeros((FRAMES, HUMAN.dof_count))
     unit[:, dof] = 1.0
     pixels = numeric(lambda x: MODEL.pixels(BODY.pose(POSTURE.plus(x * unit)), FRAME))
@@ -54,7 +57,6 @@ def test_jacobians_by_the_posture_are_differences(dof: int) -> None:
 
 
 def test_jacobians_by_place_and_lens_are_differences() -> None:
-    """The parameters that keyframes calibrate."""
     pose = BODY.pose(POSTURE)
     for axis in range(3):
         unit = np.zeros_like(MODEL.place)
@@ -70,7 +72,6 @@ def test_jacobians_by_place_and_lens_are_differences() -> None:
 
 
 def test_a_factor_scales_rows_and_leaves_points_out() -> None:
-    """Zero for a point that does not count, even where it cannot be projected."""
     pose = BODY.pose(POSTURE)
     factor = np.full((FRAMES, len(BODY_POINTS)), 2.0)
     factor[:, 3] = 0.0
@@ -93,5 +94,48 @@ def test_links_take_what_a_layout_has() -> None:
 
 
 def test_links_join_points_of_one_source_only() -> None:
-    """A detector's hip and an animator's knee are no link."""
     assert not len(DepthLinks.between(("hip.L", "knee.L"), ("detector", "tracks")).names)
+
+
+BODY = Body(Actor.from_stature(1.75))
+
+
+def camera_in_front(poses: int | None = None) -> Camera:
+    """A camera 4 m before the performer, looking along +Y; one that backs away by 1 m a frame if asked."""
+    matrix = np.array([[1.0, 0, 0, 0], [0, 0, -1, -4], [0, 1, 0, 0], [0, 0, 0, 1]])
+    if poses is not None:
+        matrix = np.tile(matrix, (poses, 1, 1))
+        matrix[:, 1, 3] -= np.arange(poses)
+    return Camera(40.0, 36.0, (320, 240), matrix)
+
+
+def test_the_rest_posture_stands_at_the_cameras_distance() -> None:
+    """At rest every principal point lies in the plane of the hips, 4 m away."""
+    pose = BODY.pose(Posture.rest(HUMAN))
+    np.testing.assert_allclose(depths.evaluate(BODY, camera_in_front(), pose), 4.0, atol=1e-12)
+
+
+def test_a_moving_camera_is_taken_at_its_frame() -> None:
+    pose = BODY.pose(Posture.rest(HUMAN, (3,)))
+    depth = depths.evaluate(BODY, camera_in_front(3), pose, np.arange(3))
+    np.testing.assert_allclose(depth, np.broadcast_to(np.array([[4.0], [5.0], [6.0]]), (3, 13)), atol=1e-12)
+
+
+def test_the_papers_variance_is_kept_in_meters() -> None:
+    """10⁵ mm² are 0.1 m²."""
+    assert depths.DEPTH_VARIANCE_M2 == pytest.approx(1e5 * 1e-6)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_jacobian_agrees_with_central_differences_on_the_manifold(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    posture = Posture.rest(HUMAN).plus(rng.normal(0.0, 0.6, HUMAN.dof_count))
+    camera, frame, step = camera_in_front(2), 1, 1e-6
+    shifted = [
+        depths.evaluate(
+            BODY, camera, BODY.pose(posture.plus(sign * step * np.eye(HUMAN.dof_count))), np.full(34, 1)
+        )
+        for sign in (1.0, -1.0)
+    ]
+    numeric = (shifted[0] - shifted[1]).T / (2.0 * step)
+    np.testing.assert_allclose(depths.jacobian(BODY, camera, BODY.pose(posture), frame), numeric, atol=1e-8)

@@ -60,7 +60,6 @@ def test_a_segment_seen_end_on_is_round_and_without_direction() -> None:
 def test_the_jacobian_agrees_with_central_differences_on_the_manifold(
     seed: int, distortion: tuple[float, float, float]
 ) -> None:
-    """Random postures, seen by a moving camera with and without distortion of the lens."""
     rng = np.random.default_rng(seed)
     posture = Posture.rest(HUMAN).plus(rng.normal(0.0, 0.5, HUMAN.dof_count))
     poses = np.stack([FORWARD, FORWARD])
@@ -78,7 +77,6 @@ def test_the_jacobian_agrees_with_central_differences_on_the_manifold(
 
 
 def test_a_batch_agrees_with_its_postures_one_by_one() -> None:
-    """Leading axes are only that."""
     rng = np.random.default_rng(5)
     batch = Posture.rest(HUMAN, (2, 3)).plus(rng.normal(0.0, 0.4, (2, 3, 34)))
     observation = LineEnds(BODY, CAMERA, MARKED)
@@ -90,20 +88,17 @@ def test_a_batch_agrees_with_its_postures_one_by_one() -> None:
 
 @pytest.mark.parametrize("segment", marker_segments(BODY))
 def test_every_segment_with_a_volume_can_carry_a_marker(segment: str) -> None:
-    """Markers may sit anywhere: each segment has its own width and a finite prediction."""
     observation = LineEnds(BODY, CAMERA, (segment,))
     assert 0.03 < observation.width_m[0] < 0.5
     assert np.isfinite(observation.evaluate(BODY.pose(Posture.rest(HUMAN)))).all()
 
 
 def test_an_unknown_segment_is_refused_by_name() -> None:
-    """The sentence names the segment and those that are known."""
     with pytest.raises(InputError, match=r"'tail'.*trunk.*shin\.L"):
         LineEnds(BODY, CAMERA, ("tail",))
 
 
 def test_a_segment_behind_the_camera_predicts_nothing() -> None:
-    """NaN, so that it brings no row, and never a mirrored place."""
     seen = LineEnds(BODY, CAMERA, MARKED).evaluate(BODY.pose(Posture.rest(HUMAN).plus(np.eye(34)[1] * -9.0)))
     assert np.isnan(seen).all()
 

@@ -1,14 +1,17 @@
-"""What the body predicts of the markers' regions."""
+"""Predicted regions and their silhouettes."""
 
 from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise
+from keymark.core.body.body_volume import Piece, PieceStack
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
 from keymark.core.evidence import regions
+from keymark.core.evidence.occlusion import sample_silhouette, view_pieces
 from keymark.core.evidence.regions import MOMENTS, MarkerPlacement, RegionModel
+from keymark.core.footage.camera import Camera
 
 STEP = 1e-5
 
@@ -23,12 +26,10 @@ def standing(**angles: float) -> Posture:
 
 
 def predict(posture: Posture, jacobian: bool = False):  # noqa: ANN201
-    """The prediction for a batch of postures."""
     return MODEL.evaluate(BODY.pose(posture), np.arange(posture.batch[0]), jacobian)
 
 
 def test_a_stretched_forearm_lies_where_it_projects() -> None:
-    """Centroid in the middle of the sleeve, length and thickness of its second moments as projected."""
     posture = standing()
     seen = predict(posture)
     elbow, wrist = (CAMERA.project(end)[0][0] for end in BODY.segment_ends(BODY.pose(posture), "forearm.L"))
@@ -42,7 +43,6 @@ def test_a_stretched_forearm_lies_where_it_projects() -> None:
 
 
 def test_moving_away_shrinks_a_region_with_the_square_of_distance() -> None:
-    """Twice as far, a quarter of the area."""
     near, far = standing(), standing(pelvis__location_y=4.2)
     ratio = predict(near).area[0] / predict(far).area[0]
     np.testing.assert_allclose(ratio, 4.0, rtol=0.12)
@@ -72,7 +72,6 @@ def test_jacobians_agree_with_central_differences_where_nothing_hides(
 
 
 def test_an_arm_before_the_trunk_hides_part_of_it_and_is_not_hidden_itself() -> None:
-    """The left forearm across the belly: the trunk loses area, the forearm hardly any."""
     across = standing(**{"shoulder.L.rotation_y": 1.1, "shoulder.L.rotation_z": -0.9, "elbow.L.flexion": 1.2})
     open_arm, crossed = predict(standing()), predict(across)
     assert crossed.visible[0, 0] < open_arm.visible[0, 0] - 0.05
@@ -80,7 +79,6 @@ def test_an_arm_before_the_trunk_hides_part_of_it_and_is_not_hidden_itself() -> 
 
 
 def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
-    """What is wholly hidden still has moments, so that nothing downstream meets NaN."""
     behind = standing(**{"shoulder.L.rotation_y": 1.3, "shoulder.L.rotation_z": 1.0, "elbow.L.flexion": -1.6})
     seen = predict(behind, jacobian=True)
     assert seen.visible[0, 1] < 0.1
@@ -89,14 +87,12 @@ def test_a_forearm_behind_the_back_is_hidden_and_keeps_finite_moments() -> None:
 
 
 def test_every_second_moment_is_positive_definite_over_a_whole_exercise() -> None:
-    """Also where limbs point at the lens or are partly hidden."""
     seen = predict(exercise(45))
     assert np.linalg.eigvalsh(seen.second_moment).min() > 0.05
     assert ((seen.visible >= 0.0) & (seen.visible <= 1.0 + 1e-12)).all()
 
 
 def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Frames are worked on in stretches, which nothing must show."""
     posture = exercise(9)
     whole = predict(posture, jacobian=True)
     monkeypatch.setattr(regions, "PIECES_AT_ONCE", 2 * len(SEGMENTS))
@@ -106,7 +102,6 @@ def test_a_long_clip_is_predicted_as_its_frames_are(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
-    """A sock reaches less far up than a stocking."""
     stocking = MarkerPlacement("shin.L", 0.05, 0.95)
     sock = MarkerPlacement("shin.L", 0.5, 0.95)
     pose = BODY.pose(standing())
@@ -119,7 +114,6 @@ def test_a_placement_further_down_moves_the_region_down_the_limb() -> None:
 
 
 def test_markers_are_predicted_in_the_order_given() -> None:
-    """Each marker's centroid lies nearest its own segment's middle among all segments'."""
     posture = standing()
     pose = BODY.pose(posture)
     seen = predict(posture).centroid[0, 1:]
@@ -139,7 +133,6 @@ def shifted(shift: float) -> RegionModel:
 
 
 def test_the_edge_of_the_picture_cuts_a_region() -> None:
-    """Half of a stretched forearm outside: half the area, and the centroid of the rest."""
     posture = standing()
     pose, frame = BODY.pose(posture), np.zeros(1, dtype=np.intp)
     whole = predict(posture)
@@ -170,8 +163,91 @@ def test_slopes_at_the_edge_are_those_of_what_is_left() -> None:
 
 
 def test_what_has_left_the_picture_is_not_seen() -> None:
-    """No share of it, and finite moments."""
     model = shifted(-0.9)
     seen = model.evaluate(BODY.pose(standing()), np.zeros(1, dtype=np.intp), jacobian=True)
     assert seen.visible.max() == 0.0
     assert np.isfinite(seen.centroid).all() and np.isfinite(seen.moment_jacobian).all()
+
+
+LENGTH, WIDE, DEEP = 0.4, 0.12, 0.05
+FRAME = np.zeros(1, dtype=np.intp)
+
+
+def upright(first: float = 1.0, last: float = 1.0) -> PieceStack:
+    """An upright cylinder at the hips, with given half-widths at either end."""
+    widths = np.array([[WIDE, DEEP]]) * np.array([[first], [last]])
+    return PieceStack.of(
+        [
+            Piece(
+                "trunk",
+                0,
+                np.array([0.0, 0.0, -LENGTH / 2]),
+                np.array([0.0, 0.0, LENGTH / 2]),
+                np.array([1.0, 0.0, 0.0]),
+                np.array([0.0, 1.0, 0.0]),
+                widths,
+            )
+        ]
+    )
+
+
+def at_camera_height(turn: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Posture:
+    """The hips at the camera's height, turned by a rotation vector."""
+    vector = np.zeros((1, HUMAN.dof_count))
+    vector[0, 2] = 1.0
+    vector[0, 3:6] = turn
+    return Posture.from_vector(HUMAN, vector)
+
+
+def seen(pieces: PieceStack, posture: Posture, camera: Camera = CAMERA):  # noqa: ANN201
+    pose = BODY.pose(posture)
+    return sample_silhouette(pieces, view_pieces(pieces, pose, camera, FRAME))
+
+
+def test_a_cylinder_from_the_front_fills_a_rectangle() -> None:
+    """Area 2wL, and the second moments of a rectangle across and along."""
+    samples = seen(upright(), at_camera_height())
+    area = samples.area[0, 0]
+    assert area.sum() == pytest.approx(2 * WIDE * LENGTH, rel=1e-3)
+    place = samples.world[0, 0]
+    weight = area / area.sum()
+    assert weight @ place[:, 2] == pytest.approx(1.0, abs=1e-6)
+    assert weight @ place[:, 0] ** 2 == pytest.approx(WIDE**2 / 3, rel=0.08)
+    assert weight @ (place[:, 2] - 1.0) ** 2 == pytest.approx(LENGTH**2 / 12, rel=0.03)
+
+
+def test_a_cylinder_from_above_shows_its_elliptical_end() -> None:
+    samples = seen(upright(), at_camera_height((np.pi / 2, 0.0, 0.0)))
+    assert samples.area[0, 0].sum() == pytest.approx(np.pi * WIDE * DEEP, rel=1e-2)
+
+
+@pytest.mark.parametrize("yaw", [0.3, 0.8, np.pi / 2])
+def test_a_turned_trunk_shows_the_width_of_its_ellipse(yaw: float) -> None:
+    samples = seen(upright(), at_camera_height((0.0, 0.0, yaw)))
+    half = np.hypot(WIDE * np.cos(yaw), DEEP * np.sin(yaw))
+    assert samples.area[0, 0].sum() == pytest.approx(2 * half * LENGTH, rel=1e-3)
+
+
+def test_a_taper_moves_the_centroid_towards_the_thick_end() -> None:
+    """A trapezoid's centroid lies at L/3 · (a + 2b) / (a + b) from the side of length a."""
+    samples = seen(upright(0.5, 1.0), at_camera_height())
+    weight = samples.area[0, 0] / samples.area[0, 0].sum()
+    expected = LENGTH / 3 * (0.5 + 2.0) / 1.5 - LENGTH / 2
+    assert weight @ samples.world[0, 0, :, 2] - 1.0 == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_area_rates_agree_with_central_differences(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    far = Camera(4000.0, 36.0, (320, 240), CAMERA.matrix_world - 400 * np.outer([0, 1, 0, 0], [0, 0, 0, 1]))
+    base = at_camera_height(tuple(rng.normal(size=3) * 0.8))
+    rate = seen(upright(0.6, 1.0), base, far).area_rate[0, 0].sum(0)
+    step = 1e-6
+    for axis in range(3):
+        # A world rotation w acts on the body's own tangent as Rᵀ w.
+        tangent = np.zeros((1, HUMAN.dof_count))
+        tangent[0, 3:6] = base.rotations[0, 0].T[:, axis] * step
+        ahead, behind = (
+            seen(upright(0.6, 1.0), base.plus(sign * tangent), far).area[0, 0].sum() for sign in (1, -1)
+        )
+        assert rate[axis] == pytest.approx((ahead - behind) / (2 * step), abs=2e-4)

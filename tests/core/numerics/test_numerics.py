@@ -1,13 +1,15 @@
-"""Numerical methods against SciPy, closed forms and brute force."""
+"""Numerical methods."""
+
+from itertools import product
 
 import numpy as np
 import pytest
 from keymark.core.arrays import Array
+from keymark.core.numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from keymark.core.numerics.robust import (
     Equations,
     levenberg_marquardt,
     multivariate_cost,
-    multivariate_weight,
     student_cost,
     student_weight,
 )
@@ -18,7 +20,6 @@ from scipy.stats import multivariate_t, t
 
 @pytest.mark.parametrize(("degrees", "dimensions"), [(3.0, 1), (4.0, 2), (4.0, 3)])
 def test_costs_are_those_of_students_t(degrees: float, dimensions: int) -> None:
-    """Up to a constant, for one row and several."""
     rows = np.random.default_rng(1).normal(0.0, 4.0, (20, dimensions))
     density = multivariate_t(np.zeros(dimensions), np.eye(dimensions), degrees)
     expected = density.logpdf(np.zeros(dimensions)) - density.logpdf(rows)
@@ -33,7 +34,7 @@ def test_weights_are_slopes_of_costs(count: int) -> None:
     squared, step = np.linspace(0.1, 30.0, 12), 1e-5
     for cost, weight in (
         (lambda s: student_cost(s, 4.0, count), student_weight(squared, 4.0, count)),
-        (lambda s: multivariate_cost(s, 4.0, count), multivariate_weight(squared, 4.0, count)),
+        (lambda s: multivariate_cost(s, 4.0, count), (4.0 + count) / (4.0 + squared)),
     ):
         slope = (cost(squared + step) - cost(squared - step)) / (2.0 * step)
         np.testing.assert_allclose(2.0 * slope, weight, rtol=1e-6)
@@ -41,12 +42,10 @@ def test_weights_are_slopes_of_costs(count: int) -> None:
 
 
 def test_costs_keep_single_precision() -> None:
-    """A search over a million states must not become twice as large."""
     assert multivariate_cost(np.ones(3, dtype=np.float32), 4.0, 2).dtype == np.float32
 
 
 def test_directions_are_one_long_and_across() -> None:
-    """Random vectors, axes and one without a direction."""
     vectors = np.vstack([np.random.default_rng(2).normal(size=(20, 3)), np.eye(3), -np.eye(3)])
     np.testing.assert_allclose(np.linalg.norm(unit(vectors), axis=-1), 1.0)
     np.testing.assert_allclose(np.cross(unit(vectors), vectors), 0.0, atol=1e-12)
@@ -58,14 +57,12 @@ def test_directions_are_one_long_and_across() -> None:
 
 
 def test_columns_are_interpolated_one_by_one() -> None:
-    """Between two known rows, and flat beyond them."""
     values = np.array([[0.0, 10.0], [2.0, 30.0]])
     found = columns_at(np.array([-1.0, 1.0, 2.0, 9.0]), np.array([1.0, 3.0]), values)
     np.testing.assert_allclose(found, [[0.0, 10.0], [0.0, 10.0], [1.0, 20.0], [2.0, 30.0]])
 
 
 def test_a_gaussian_is_the_sum_by_brute_force() -> None:
-    """Ends are repeated; a deviation of zero and a single row change nothing."""
     values = np.random.default_rng(3).normal(size=(30, 2))
     offsets = np.arange(-8, 9)
     kernel = np.exp(-0.5 * (offsets / 2.0) ** 2)
@@ -76,13 +73,11 @@ def test_a_gaussian_is_the_sum_by_brute_force() -> None:
 
 
 def test_the_usual_step_leaves_out_what_does_not_advance() -> None:
-    """Repeated, unknown and returning stamps have no say."""
     assert usual_step(np.array([0.0, 0.1, 0.1, 0.2, np.nan, 0.3, 0.2, 0.3])) == pytest.approx(0.1)
     assert usual_step(np.array([4.0])) == 1.0 and usual_step(np.array([4.0, 4.0]), 0.5) == 0.5
 
 
 def test_a_weighted_median_counts_each_value_as_often_as_it_weighs() -> None:
-    """Whole weights: the median of the repeated values, the lower of two in the middle."""
     rng = np.random.default_rng(4)
     for _ in range(30):
         values, weights = rng.normal(size=7), rng.integers(0, 5, 7)
@@ -134,3 +129,60 @@ def test_levenberg_marquardt_finds_what_scipy_finds() -> None:
 
     few, many, scaled = evaluations(1.0, 0.5), evaluations(1.0, 1e-6), evaluations(1e3, 1e-6)
     assert few < many < 60 and abs(scaled - many) <= 5
+
+
+FRAMES, ROWS = 4, 3
+
+
+def made(seed: int) -> tuple[list[np.ndarray], list[np.ndarray], list[np.ndarray]]:
+    """Costs of rows, and of steps of two chains."""
+    rng = np.random.default_rng(seed)
+    own = [rng.exponential(2.0, (ROWS, ROWS)).astype(np.float32) for _ in range(FRAMES)]
+    steps = [
+        [rng.exponential(2.0, (ROWS, ROWS)).astype(np.float32) for _ in range(FRAMES - 1)] for _ in range(2)
+    ]
+    return own, steps[0], steps[1]
+
+
+def test_the_cheapest_path_is_the_cheapest_of_all() -> None:
+    for seed in range(5):
+        own, steps, _ = made(seed)
+        rows = [each[0] for each in own]
+
+        def cost(path: tuple[int, ...], rows=rows, steps=steps) -> float:
+            moved = sum(step[a, b] for step, a, b in zip(steps, path[:-1], path[1:], strict=True))
+            return float(sum(row[i] for row, i in zip(rows, path, strict=True)) + moved)
+
+        best = min(product(range(ROWS), repeat=FRAMES), key=cost)
+        assert tuple(cheapest_path(rows, steps)) == best
+
+
+def test_the_cheapest_pairs_are_the_cheapest_of_all() -> None:
+    for seed in range(3):
+        own, first, second = made(seed)
+
+        def cost(paths, own=own, first=first, second=second) -> float:
+            one, two = paths
+            total = sum(each[i, j] for each, i, j in zip(own, one, two, strict=True))
+            total += sum(step[a, b] for step, a, b in zip(first, one[:-1], one[1:], strict=True))
+            return float(
+                total + sum(step[a, b] for step, a, b in zip(second, two[:-1], two[1:], strict=True))
+            )
+
+        every = list(product(range(ROWS), repeat=FRAMES))
+        best = min(product(every, every), key=cost)
+        found = cheapest_pairs(own, first, second)
+        assert (tuple(found[0]), tuple(found[1])) == best
+
+
+def test_probabilities_are_those_of_all_paths() -> None:
+    own, steps, _ = made(7)
+    rows = [each[0] for each in own]
+    total = [np.zeros(ROWS) for _ in range(FRAMES)]
+    for path in product(range(ROWS), repeat=FRAMES):
+        cost = sum(row[i] for row, i in zip(rows, path, strict=True))
+        cost += sum(step[a, b] for step, a, b in zip(steps, path[:-1], path[1:], strict=True))
+        for frame, row in enumerate(path):
+            total[frame][row] += np.exp(-cost)
+    for found, wanted in zip(path_posteriors(rows, steps), total, strict=True):
+        assert np.allclose(found, wanted / wanted.sum(), atol=1e-4)

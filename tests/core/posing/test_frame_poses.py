@@ -11,10 +11,9 @@ from keymark.core.body.body_volume import lower_sole_m
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
 from keymark.core.errors import InputError
-from keymark.core.estimate.keyframe_evidence import uncalibrated
+from keymark.core.estimate.clip_problem import uncalibrated
 from keymark.core.estimate.keypoint_evidence import KeypointEvidence
-from keymark.core.estimate.terms.keypoints import ObservedKeypoints
-from keymark.core.evidence.keypoints import KeypointModel
+from keymark.core.evidence.keypoints import KeypointModel, ObservedKeypoints
 from keymark.core.footage.keypoints.keypoints import Keypoints
 from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.frame_poses import FramePoses, find_frame_poses

@@ -50,7 +50,6 @@ def reaching(frames: int = 90) -> tuple[Posture, Array]:
 
 
 def test_a_walk_becomes_one_cycle_that_travels_straight_ahead() -> None:
-    """Its length, its stride along -Y, and feet on the floor, wherever and whither it was walked."""
     posture, time_s = stepping(118)
     elsewhere = turned_and_shifted(posture, 2.0, np.array([3.0, -1.0, 0.7]))
     library = learn_library(BODY, elsewhere, time_s, ABOUT)
@@ -65,7 +64,6 @@ def test_a_walk_becomes_one_cycle_that_travels_straight_ahead() -> None:
 
 
 def test_place_and_direction_do_not_matter() -> None:
-    """The same motion elsewhere, in another direction and height gives the same library."""
     posture, time_s = reaching()
     one = learn_library(BODY, posture, time_s, ABOUT)
     other = learn_library(BODY, turned_and_shifted(posture, -1.3, np.array([5.0, 2.0, -0.4])), time_s, ABOUT)
@@ -75,7 +73,6 @@ def test_place_and_direction_do_not_matter() -> None:
 
 
 def test_a_walk_along_an_arc_turns_in_every_cycle() -> None:
-    """The cycle, followed by itself after its travel, goes on where the motion went on."""
     posture, time_s = stepping(150, arc_rad=0.5)
     motion = learn_library(BODY, posture, time_s, ABOUT).motions[0]
     assert motion.cyclic and motion.travel[2] == pytest.approx(0.5, abs=0.02)
@@ -91,7 +88,6 @@ def test_a_walk_along_an_arc_turns_in_every_cycle() -> None:
 
 
 def test_the_average_of_cycles_is_nearer_to_the_truth_than_one() -> None:
-    """What shakes in one cycle and not in the next is no part of the motion."""
     exact, time_s = stepping(140)
     shaken, _ = stepping(140, noise_rad=0.08)
     cycle = average_cycle(BODY, shaken, time_s, PERIOD_S)
@@ -117,7 +113,6 @@ def test_what_does_not_repeat_itself_stays_whole() -> None:
 
 
 def test_no_cycle_is_found_in_what_is_seen_once() -> None:
-    """A walk shorter than two strides, and standing still between two gestures."""
     posture, time_s = stepping(45)
     assert find_period_s(shape_vectors(BODY, posture), time_s) is None
     still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (60, 1)))
@@ -129,14 +124,12 @@ def test_no_cycle_is_found_in_what_is_seen_once() -> None:
     [(5, 10, "5 frames"), (60, 1, "count of postures is 1"), (60, None, "still")],
 )
 def test_what_cannot_be_learned_from_is_refused(frames: int, count: int | None, sentence: str) -> None:
-    """In one sentence that says what is wrong."""
     still = Posture.from_vector(BODY.skeleton, np.tile(standing_posture(BODY).to_vector(), (frames, 1)))
     with pytest.raises(InputError, match=sentence):
         learn_library(BODY, still, np.arange(frames) / FPS, ABOUT, count)
 
 
 def test_what_is_learned_can_be_written_and_read(tmp_path: Path) -> None:
-    """With a title as long as titles may be; identifier and names follow from it."""
     posture, time_s = reaching()
     identifier = "anna_reaches_for_the_cup_on_the_shelf_then_drinks_from_it"
     about = LibraryMetadata("Anna reaches for the cup on the shelf, then drinks from it.", "Anna")

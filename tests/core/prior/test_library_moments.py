@@ -47,7 +47,6 @@ def test_balance_puts_the_mass_over_the_place_and_leaves_the_feet(x: float, y: f
 
 
 def test_a_moment_moved_is_the_same_elsewhere() -> None:
-    """Every point goes along, of limbs with places and of limbs with angles."""
     posed = balanced_over(bowing(left_arm=Hand(0.2, -0.5, 0.7), right_arm=Arm(40.0, 60.0)), 0.0, -0.06)
     here, there = points(posed), points(moved(posed, 0.3, -1.2))
     for name in here:
@@ -55,7 +54,6 @@ def test_a_moment_moved_is_the_same_elsewhere() -> None:
 
 
 def test_a_foot_pivots_on_its_ball() -> None:
-    """Turned and with the heel lifted, the ball stays on its place on the floor."""
     foot = Foot(-0.1, 0.2, -50.0, 10.0)
     turned = pivoted(foot, -5.0, 40.0)
     ahead = -BALL[1] * BODY.actor.segments_m["foot.L"]
@@ -70,7 +68,6 @@ def test_a_foot_pivots_on_its_ball() -> None:
 
 
 def test_a_hand_stays_short_of_a_place_only_where_it_may() -> None:
-    """The arm then points to the place, nearly straight; without leave, or too far away, it is an error."""
     far = Hand(-0.2, -0.8, 1.4, short=0.4)
     legs = Foot(0.1, 0.0)
     arm = points(moment(legs=legs, bend=8.0, right_arm=far))
@@ -84,7 +81,6 @@ def test_a_hand_stays_short_of_a_place_only_where_it_may() -> None:
 
 
 def test_a_mirrored_moment_is_the_mirror_image() -> None:
-    """Point by point, left and right exchanged."""
     posed = bowing(left_arm=Hand(0.2, -0.5, 0.7))
     here, there = points(posed), points(mirrored(posed))
     for name, place in here.items():
@@ -93,7 +89,6 @@ def test_a_mirrored_moment_is_the_mirror_image() -> None:
 
 
 def shipped(name: str) -> Library:
-    """A shipped library."""
     return read_library(FOLDER / f"{name}.json")
 
 
@@ -142,7 +137,6 @@ def test_fists_meet_their_targets_and_come_back() -> None:
 
 
 def test_the_hand_reaches_the_floor_and_the_shelf() -> None:
-    """Fingertips, a hand's length beyond the wrist, come to the floor and well over the head."""
     library = shipped("reaching")
     hand = BODY.actor.segments_m["hand.R"]
     for name in ("floor", "floor, to the right", "floor, to the left", "both hands: floor"):

@@ -16,7 +16,6 @@ OTHER_LANDING = LibraryPosture("LEFT foot lands", random_posture(8))
 
 
 def newer(**changes: object) -> Library:
-    """The next version of the library."""
     return replace(MINE, version=4, **changes)
 
 
@@ -28,12 +27,10 @@ THEIRS = newer(
 
 
 def names(library: Library) -> list[str]:
-    """Names of the postures."""
     return [posture.name for posture in library.postures]
 
 
 def test_what_differs_is_named() -> None:
-    """Names that only look different are the same; what is in one only is no conflict."""
     assert differing_names(MINE, THEIRS) == ("Left foot lands",)
     assert differing_names(MINE, newer(title="Other")) == ()
 
@@ -48,7 +45,6 @@ def test_different_libraries_never_touch() -> None:
 
 @pytest.mark.parametrize("replaces", [False, True])
 def test_merging_adds_what_is_new_and_asks_for_the_rest(replaces: bool) -> None:
-    """Steps name the posture as it is called in the end; the version grows."""
     with pytest.raises(InputError, match="'Left foot lands' differ"):
         merge_versions(MINE, THEIRS)
     result = merge_versions(MINE, THEIRS, replaces)
@@ -70,7 +66,6 @@ def test_merging_with_a_part_of_itself_changes_nothing() -> None:
 
 
 def test_postures_of_another_actor_are_fitted() -> None:
-    """A taller person's new posture arrives on my proportions."""
     taller = Actor({name: 1.2 * length for name, length in ACTOR.segments_m.items()})
     result = merge_versions(MINE, newer(actor=taller, postures=(NEW,), motions=()), False)
     assert result.actor is MINE.actor
@@ -80,7 +75,6 @@ def test_postures_of_another_actor_are_fitted() -> None:
 
 
 def test_two_libraries_become_a_third() -> None:
-    """Everything is in it, the same once, and names that clash are told apart."""
     other = replace(
         THEIRS, identifier="other", license="CC-BY-4.0 OR MIT", author="B. Person", sources=("Another.",)
     )

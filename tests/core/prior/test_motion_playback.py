@@ -32,7 +32,6 @@ STEPS, ONCE = LIBRARY.motions
 
 
 def test_the_course_passes_through_its_steps() -> None:
-    """At a step's time it is the step's posture; in the next cycle the same, farther on and turned."""
     times = np.array([step.time_s for step in STEPS.steps])
     here, later = (sample_motion(LIBRARY, STEPS, BODY, times + n * STEPS.duration_s) for n in (0, 1))
     posed = Posture.stack([LIBRARY.by_name[step.posture].posture for step in STEPS.steps])
@@ -48,7 +47,6 @@ def test_the_course_passes_through_its_steps() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 1e-12, 0.3, np.pi, 2.0 * np.pi, -3.5 * np.pi])
 def test_cycles_add_up(heading: float) -> None:
-    """Five cycles at once are five cycles one by one, and as many back lead home."""
     motion = replace(STEPS, travel=(0.2, -1.1, heading))
     start = Posture.stack([LIBRARY.postures[0].posture])
     one = np.array([1.0])
@@ -60,7 +58,6 @@ def test_cycles_add_up(heading: float) -> None:
 
 
 def test_nothing_jumps_where_cycles_meet() -> None:
-    """Place and speed just before a cycle's end go on just after it."""
     step = 1e-4
     times = 3.0 * STEPS.duration_s + step * np.arange(-2, 3)
     speed = np.diff(BODY.points(BODY.pose(sample_motion(LIBRARY, STEPS, BODY, times))), axis=0) / step
@@ -69,7 +66,6 @@ def test_nothing_jumps_where_cycles_meet() -> None:
 
 
 def test_what_stands_on_the_floor_stays_there() -> None:
-    """Between postures too, and on other proportions."""
     times = np.linspace(-1.0, 2.5, 200)
     for body in (BODY, Body(Actor.from_stature(1.3))):
         heights = sole_heights_m(body, body.pose(sample_motion(LIBRARY, STEPS, body, times))).min(axis=-1)
@@ -77,7 +73,6 @@ def test_what_stands_on_the_floor_stays_there() -> None:
 
 
 def test_a_motion_that_ends_is_held() -> None:
-    """Before its beginning and after its end nothing moves; a single step is a posture."""
     held = sample_motion(LIBRARY, ONCE, BODY, np.array([-1.0, 0.0, 0.31, 0.5, 9.0]))
     np.testing.assert_allclose(held[0].minus(held[1]), 0.0, atol=1e-12)
     np.testing.assert_allclose(held[2].minus(held[4]), 0.0, atol=1e-12)

@@ -23,7 +23,6 @@ def folders(tmp_path: Path) -> list[Path]:
 
 
 def test_the_earliest_folder_counts(folders: list[Path]) -> None:
-    """One entry a library, the user's own before a shipped one of the same name, by title."""
     registered = registered_libraries(folders)
     assert [(entry.identifier, entry.title, entry.version) for entry in registered] == [
         ("walk", "A walk", 3),
@@ -39,7 +38,6 @@ def test_within_a_folder_the_newest_counts(folders: list[Path]) -> None:
 
 
 def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path]) -> None:
-    """It is registered with its sentence, and so are other JSON files; files of other kinds are not."""
     (folders[0] / "broken.json").write_text('{"schema": "keymark-library", ')
     (folders[0] / "notes.txt").write_text("no library")
     (folders[0] / "folder.json").mkdir()
@@ -51,7 +49,6 @@ def test_a_broken_file_says_what_is_wrong_and_hides_nothing(folders: list[Path])
 
 
 def test_libraries_are_found_by_name_and_by_file(folders: list[Path]) -> None:
-    """By identifier or title, in any case of letters; a file need not be in a registered folder."""
     assert find_library("WALK", folders).identifier == "walk"
     assert find_library("a walk", folders).identifier == "walk"
     assert find_library(folders[2] / "small_steps.json", folders).title == LIBRARY.title
@@ -60,7 +57,6 @@ def test_libraries_are_found_by_name_and_by_file(folders: list[Path]) -> None:
 
 @pytest.mark.parametrize("name", ["walking", "../walk", "", "walk/../../secret", "x" * 10**5, "no\nsuch"])
 def test_an_unknown_name_is_one_sentence(folders: list[Path], name: str) -> None:
-    """It says what there is; a way out of the folders leads nowhere."""
     with pytest.raises(InputError) as caught:
         find_library(name, folders)
     assert len(str(caught.value).splitlines()) == 1
@@ -72,14 +68,12 @@ def test_an_unknown_name_is_one_sentence(folders: list[Path], name: str) -> None
     "identifier", ["../x", "a/b", "C:x", "con", "nul.x", "Walk", ".walk", "walk.", "", "a b", "auto"]
 )
 def test_a_librarys_file_stays_in_its_folder(tmp_path: Path, identifier: str) -> None:
-    """Names that mean another folder, a device, the same file as another or all libraries are none."""
     assert library_path(tmp_path, "walk.2_b-c") == tmp_path / "walk.2_b-c.json"
     with pytest.raises(InputError, match="identifier"):
         library_path(tmp_path, identifier)
 
 
 def test_a_name_counts_before_a_title(folders: list[Path]) -> None:
-    """A stranger's library may be titled as another is named, and a damaged file may have any name."""
     write_library(folders[0] / "a.json", replace(LIBRARY, identifier="zebra", title="walk"))
     (folders[0] / "walk.json").write_text("{")
     assert find_library("walk", folders).identifier == "walk"

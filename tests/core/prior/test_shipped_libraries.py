@@ -29,7 +29,6 @@ FASTEST_MPS = {"ankle": 14.0, "wrist": 13.0}
 
 @cache
 def shipped(name: str) -> Library:
-    """A library as its file has it."""
     return read_library(SHIPPED / f"{name}.json")
 
 
@@ -42,14 +41,12 @@ def test_every_kind_is_shipped() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_is_what_the_tool_writes(name: str, tmp_path: Path) -> None:
-    """Nobody has edited a file, or its source without writing the file anew."""
     write_library(tmp_path / "again.json", composed(name))
     assert (tmp_path / "again.json").read_bytes() == (SHIPPED / f"{name}.json").read_bytes()
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_library_says_what_it_is(name: str) -> None:
-    """Ten to forty postures, all of them in a motion, sources with a year, free to use."""
     library = shipped(name)
     used = {step.posture for motion in library.motions for step in motion.steps}
     assert 10 <= len(library.postures) <= 40
@@ -61,7 +58,6 @@ def test_a_library_says_what_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_joints_stay_in_their_range(name: str) -> None:
-    """No posture asks more of a joint than people have."""
     assert ranges_left(shipped(name)) == []
 
 
@@ -97,7 +93,6 @@ def test_nobody_moves_faster_than_people(name: str) -> None:
     [("walking", "walk"), ("walking", "brisk walk"), ("running", "jog"), ("running", "run")],
 )
 def test_the_second_step_mirrors_the_first(name: str, motion: str) -> None:
-    """Half a cycle later left and right are exchanged, half the way on."""
     library = shipped(name)
     body = Body(library.actor)
     cycle = next(candidate for candidate in library.motions if candidate.name == motion)

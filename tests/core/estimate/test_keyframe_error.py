@@ -1,4 +1,4 @@
-"""The whole-clip estimate on matched keyframes."""
+"""Errors of keyframes: posed, matched; and of postures that nothing observes."""
 
 from dataclasses import replace
 from functools import cache
@@ -7,24 +7,26 @@ import numpy as np
 import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, exercise, film, point_error_m
 from keymark.core.body.body_volume import sole_heights_m
+from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
-from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes
-from keymark.core.estimate.keyframe_rows import placement_values
-from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
-from keymark.core.estimate.match_error import (
+from keymark.core.estimate.keyframe_error import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
     SURE_STD_M,
+    UNOBSERVED,
     UNSURE_STD_M,
     depth_std_m,
     joint_std_rad,
     match_covariance,
     undetermined_covariance,
+    unobserved_variance,
 )
+from keymark.core.estimate.keyframe_evidence import SeenAtKeyframes, placement_values
+from keymark.core.estimate.keyframe_trust import read_mixed_keyframes
 from keymark.core.estimate.performer_placement import SHOE_M, lower_ankle_m
-from keymark.core.estimate.terms.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.estimate.whole_clip import Believed, Seen, WholeClipResult, estimate_whole_clip
 from keymark.core.evidence.keypoints import DEPTH_STD_M
+from keymark.core.evidence.regions import ObservedRegions, RegionNoise, limb_widths
 from keymark.core.prior.keyframes import Keyframe, interpolate
 from keymark.core.progress import run
 
@@ -44,15 +46,11 @@ def off(seed: int = 2) -> Posture:
 
 
 def estimate(postures: Posture, match_scale: np.ndarray | None) -> WholeClipResult:
-    """The estimate through keyframes at `INDEX`."""
     keyframes = tuple(Keyframe(int(i), postures[row]) for row, i in enumerate(INDEX))
     prior = interpolate(keyframes, FRAMES)
     return run(
         estimate_whole_clip(
-            BODY,
-            CAMERA,
-            Seen(TRACKS, SEGMENTS),
-            Believed(prior, tuple(int(i) for i in INDEX), match_scale),
+            BODY, CAMERA, Seen(TRACKS, SEGMENTS), Believed(prior, tuple(int(i) for i in INDEX), match_scale)
         )
     )
 
@@ -64,7 +62,6 @@ def as_matched() -> WholeClipResult:
 
 
 def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to() -> None:
-    """Believed as another performer's they end nearer to the truth, and the covariance is larger."""
     both = estimate(off(), None), as_matched()
     errors = [point_error_m(found.posture, TRUTH).mean() for found in both]
     assert errors[1] < 0.9 * errors[0]
@@ -73,7 +70,6 @@ def test_matched_keyframes_are_left_behind_where_posed_ones_would_be_held_on_to(
 
 
 def test_matched_keyframes_calibrate_nothing() -> None:
-    """Markers sit as on an average performer, and the lens is as stated."""
     evidence = as_matched().evidence
     np.testing.assert_array_equal(
         placement_values(evidence.model.placements), placement_values(MODEL.placements)
@@ -82,7 +78,6 @@ def test_matched_keyframes_calibrate_nothing() -> None:
 
 
 def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None:
-    """The model found from posed keyframes does not depend on matched ones."""
     match_scale = np.where(np.arange(len(INDEX)) % 2, 0.7, 0.0)
     postures, observed = off(), ObservedRegions.from_tracks(TRACKS)[INDEX]
     width = limb_widths(MODEL, postures.translation, INDEX)
@@ -99,21 +94,18 @@ def test_posed_keyframes_calibrate_and_matched_ones_beside_them_do_not() -> None
 
 
 def test_the_place_is_less_known_along_the_line_of_sight() -> None:
-    """Across it markers tell, along it they do not."""
     place = match_covariance(TRUTH[INDEX], CAMERA, INDEX)[0, :3, :3]
     values = np.sqrt(np.linalg.eigvalsh(place))
     np.testing.assert_allclose(values, [PLACE_STD_M, PLACE_STD_M, PLACE_DEPTH_STD_M])
 
 
 def test_depths_count_near_posed_keyframes_only() -> None:
-    """Between both kinds there is a transition."""
     noise = depth_std_m(np.array([0, 10]), np.array([False, True]), 12)
     assert noise[0] == pytest.approx(DEPTH_STD_M)
     assert (np.diff(noise[:11]) > 0.0).all() and noise[11] == noise[10] > 4.0 * noise[0]
 
 
 def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_keyframes() -> None:
-    """A posed keyframe decides, a found one leaves depth open, the more the less sure it is."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
     sight = points[10, 4] - CAMERA.pose()[1]
     sight /= np.linalg.norm(sight)
@@ -132,7 +124,6 @@ def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_ke
 
 
 def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() -> None:
-    """All points share that error."""
     points = BODY.points(BODY.pose(TRUTH[:11]))
     index, scale, sure = np.array([0, 10]), np.ones(2), np.ones(2)
     near, far = (undetermined_covariance(points, CAMERA, index, scale, sure, each) for each in (0.0, 0.3))
@@ -141,7 +132,6 @@ def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() ->
 
 
 def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() -> None:
-    """A library's lowest soles are the floor; what is higher in between is a leap."""
     standing = TRUTH[np.zeros(6, dtype=np.intp)]
     lift = np.zeros((6, BODY.skeleton.dof_count))
     lift[:, 2] = -float(sole_heights_m(BODY, BODY.pose(standing))[0].min())
@@ -155,7 +145,6 @@ def test_the_lower_ankle_follows_a_library_into_flight_and_rests_on_its_floor() 
 
 
 def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_result() -> None:
-    """To begin with an earlier estimate of matched keyframes changes nothing."""
     first = as_matched()
     again = run(
         estimate_whole_clip(
@@ -167,3 +156,36 @@ def test_a_keyframe_set_right_is_worked_on_alone_or_everywhere_with_the_same_res
         )
     )
     assert point_error_m(first.posture, again.posture).max() == 0.0
+
+
+WORN = ("trunk", "forearm.L", "shin.L")
+TIME_S = np.arange(90) / 30.0
+
+
+def open_of(visible: np.ndarray, keyframes: list[int]) -> np.ndarray:
+    """(F, D) variances."""
+    index = np.array(keyframes, dtype=np.intp)
+    return unobserved_variance(HUMAN, WORN, visible, index, TIME_S)
+
+
+@pytest.mark.parametrize("keyframes", [[0], [0, 45, 89]])
+def test_nothing_is_open_where_markers_are_seen(keyframes: list[int]) -> None:
+    visible = np.ones((90, 3), dtype=bool)
+    visible[30 : 29 + int(2 * 30 * UNOBSERVED.grace_s), 1] = False
+    seen = [HUMAN.dof_names.index(name) for name in ("elbow.L.flexion", "knee.L.flexion", "waist.rotation_x")]
+    assert open_of(visible, keyframes)[:, seen].max() == 0.0
+
+
+def test_a_limb_is_open_long_after_it_was_seen_last_and_no_other() -> None:
+    visible = np.ones((90, 3), dtype=bool)
+    visible[20:, 1] = False
+    variance = open_of(visible, [0, 80])
+    elbow, knee = (variance[:, HUMAN.dof_names.index(f"{name}.L.flexion")] for name in ("elbow", "knee"))
+    assert knee.max() == 0.0 and elbow[:20].max() == elbow[80] == 0.0
+    assert (np.diff(elbow[28:50]) > 0.0).all() and 0.3 < np.sqrt(elbow.max()) < 1.0
+
+
+def test_all_is_open_where_nothing_is_seen() -> None:
+    visible = np.zeros((90, 3), dtype=bool)
+    variance = open_of(visible, [0])
+    assert variance[0].max() == 0.0 and (variance[89] > 0.01).all()

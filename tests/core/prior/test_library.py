@@ -1,17 +1,124 @@
-"""Library files from strangers: whatever is in them, one sentence or a library."""
+"""Library files: nothing lost, nothing trusted, and as their page describes them."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from _fuzz import changed
 from _libraries import small_library
+from _library_strategies import libraries
 from hypothesis import HealthCheck, given, settings
 from keymark.core.errors import InputError
+from keymark.core.prior import library as fields
+from keymark.core.prior import library as library_file
+from keymark.core.prior import texts
+from keymark.core.prior import texts as text_fields
 from keymark.core.prior.library import LARGEST_BYTES, Library, read_library, write_library
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "small_steps.json"
+    write_library(path, small_library())
+    return path
+
+
+def assert_same(first: Library, second: Library, tolerance: float) -> None:
+    """Both hold the same, numbers within a tolerance."""
+    for name in ("identifier", "title", "version", "author", "license", "description", "sources", "tags"):
+        assert getattr(first, name) == getattr(second, name)
+    assert first.actor.segments_m == pytest.approx(dict(second.actor.segments_m), abs=tolerance)
+    for one, other in zip(first.postures, second.postures, strict=True):
+        assert (one.name, one.tags) == (other.name, other.tags)
+        np.testing.assert_allclose(one.posture.translation, other.posture.translation, atol=tolerance)
+        np.testing.assert_allclose(one.posture.rotations, other.posture.rotations, atol=4.0 * tolerance)
+        np.testing.assert_allclose(one.posture.angles, other.posture.angles, atol=tolerance)
+    for mine, theirs in zip(first.motions, second.motions, strict=True):
+        assert (mine.name, mine.cyclic) == (theirs.name, theirs.cyclic)
+        assert [step.posture for step in mine.steps] == [step.posture for step in theirs.steps]
+        times = [step.time_s for step in theirs.steps]
+        assert [step.time_s for step in mine.steps] == pytest.approx(times, abs=tolerance)
+        assert (*mine.travel, mine.duration_s) == pytest.approx(
+            (*theirs.travel, theirs.duration_s), abs=tolerance
+        )
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@given(libraries())
+def test_nothing_is_lost_and_the_second_time_nothing_changes(library: Library) -> None:
+    """What is written is read back to nine decimals, and from then on to the last bit."""
+    value = library.to_json()
+    back = Library.from_json(value, "here")
+    assert_same(back, library, 3e-9)  # half a turn is kept two nanoradians short
+    assert back.to_json() == value
+    assert_same(Library.from_json(back.to_json(), "here"), back, 0.0)
+
+
+def test_a_way_too_short_for_the_file_leaves_none() -> None:
+    """Else it would stand there as zeros once, and be gone the next time."""
+    library = small_library()
+    cycle = next(motion for motion in library.motions if motion.cyclic)
+    value = replace(library, motions=(replace(cycle, travel=(1e-12, 0.0, -1e-12)),)).to_json()
+    assert "travel" not in value["motions"][0]
+
+
+def test_a_file_that_is_read_and_written_has_the_same_bytes(file: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again.json"
+    write_library(again, read_library(file))
+    assert again.read_bytes() == file.read_bytes()
+    assert file.read_bytes().endswith(b"}\n")
+
+
+def test_a_small_change_is_a_small_difference(file: Path, tmp_path: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert '\n        "knee.L.flexion": ' in text
+    assert '{"time_s": 0.31, "posture": "Stand on one leg"}' in text
+    assert max(len(line) for line in text.splitlines()) < 140
+
+
+@pytest.fixture(scope="module")
+def page(repository: Path) -> str:
+    return (repository / "docs" / "library_format.md").read_text(encoding="utf-8")
+
+
+def test_the_example_is_a_library_and_laid_out_as_one(page: str, tmp_path: Path) -> None:
+    (example,) = re.findall(r"```json\n(.*?)```", page, flags=re.DOTALL)
+    (tmp_path / "given.json").write_text(example, encoding="utf-8")
+    write_library(tmp_path / "nodding.json", read_library(tmp_path / "given.json"))
+    assert (tmp_path / "nodding.json").read_text(encoding="utf-8") == example
+    assert Library.from_json(json.loads(example), "here").motions[0].cyclic
+
+
+def test_every_field_has_its_row(page: str) -> None:
+    for name in Library.ORDER:
+        assert f"`{name}`" in page.split("## A posture")[0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        f"1 to {texts.LONGEST_IDENTIFIER} of a-z",
+        f"| {texts.LONGEST_NAME} characters |",
+        f"1 to {fields.HIGHEST_VERSION} |",
+        f"{text_fields.LONGEST_LINE} characters",
+        f"{text_fields.LONGEST_LICENSE} characters",
+        f"{text_fields.LONGEST_TEXT} characters",
+        f"{text_fields.MOST_TAGS} tags of {text_fields.LONGEST_TAG} characters",
+        f"{fields.MOST_SOURCES} sources of {text_fields.LONGEST_TEXT}",
+        f"{fields.MOST_MOTIONS}, together {fields.MOST_STEPS} steps",
+        f"1 to {fields.MOST_POSTURES} |",
+        f"({fields.SHORTEST_S:g} to {fields.LONGEST_S:g} s)",
+        f"above {library_file.LARGEST_BYTES // 2**20} MiB",
+    ],
+)
+def test_limits_are_those_of_the_reader(page: str, words: str) -> None:
+    assert words in page
+
 
 VALID = small_library().to_json()
 TEXT = json.dumps(VALID, ensure_ascii=False).encode()
@@ -69,7 +176,6 @@ BOMBS: dict[str, Callable[[], bytes]] = {
 
 @pytest.mark.parametrize("kind", BOMBS)
 def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
-    """Deep, long and many: one short sentence."""
     path = tmp_path / "bomb.json"
     path.write_bytes(BOMBS[kind]())
     with pytest.raises(InputError) as caught:
@@ -119,7 +225,6 @@ def test_what_is_meant_to_hurt_is_refused(tmp_path: Path, kind: str) -> None:
     ],
 )
 def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> None:
-    """The sentence says which value is wrong, and what would be right."""
     library = json.loads(TEXT)
     holder = library
     for key in way[:-1]:
@@ -131,7 +236,6 @@ def test_every_mistake_is_named(way: tuple[Any, ...], value: Any, said: str) -> 
 
 
 def test_what_could_not_be_read_is_not_written(tmp_path: Path) -> None:
-    """A library built with a mistake in it leaves no file."""
     with pytest.raises(InputError, match="identifier"):
         write_library(tmp_path / "x.json", replace(small_library(), identifier="../x"))
     assert list(tmp_path.iterdir()) == []

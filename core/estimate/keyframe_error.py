@@ -1,17 +1,57 @@
-"""Error of matched keyframes: another performer's way of moving, in another place.
+"""Errors of keyframes: posed by a person, or matched; and of postures that nothing observes.
+
+A person who poses a skeleton over footage puts every joint a little off, and the whole figure too; an error
+upstream is made good downstream, so joints' places err independently, not their angles. And the posture may
+be that of a moment before or after the frame it was set at. These shapes are assumed, their sizes are not.
 
 A library's postures are another performer's, so joints differ, and what hangs on them differs along with
-them; a person who poses a keyframe errs in the joints' places instead (`posing_error`). The place across the
-line of sight follows from where the markers are seen, the one along it from little.
+them. Where the markers are seen tells the place across the line of sight, and little of that along it.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.kinematics import Body, Pose
 from ..body.posture import Posture
 from ..body.skeleton import Skeleton
 from ..evidence.keypoints import DEPTH_STD_M
 from ..footage.camera import Camera
+
+# --- Posed
+
+
+POINT_STD_M = 0.014  # error of each point along each axis [m]
+POSED_PLACE_STD_M = 0.009  # error that all points share along each axis [m]
+FREE_STD_RAD = 0.5  # error of rotations that no point determines, about a limb's own axis [rad]
+
+
+def posing_covariance(body: Body, pose: Pose) -> Array:
+    """A person's usual posing error at given poses, as covariance (K, D, D) of the posture's tangent."""
+    count = body.skeleton.dof_count
+    jacobian = body.points_jacobian(pose).reshape(*pose.posture.batch, -1, count) / POINT_STD_M
+    information = np.swapaxes(jacobian, -1, -2) @ jacobian + np.eye(count) * FREE_STD_RAD**-2
+    covariance = np.linalg.solve(information, np.broadcast_to(np.eye(count), information.shape))
+    place = np.arange(3)
+    covariance[..., place, place] += POSED_PLACE_STD_M**2
+    return np.asarray(0.5 * (covariance + np.swapaxes(covariance, -1, -2)))
+
+
+def velocities(keyframes: Posture, frame: IndexArray) -> Array:
+    """Velocities of K keyframes' postures, (K, D) of the tangent per frame: of the parabola through three."""
+    if len(frame) < 2:
+        return np.zeros((len(frame), keyframes.skeleton.dof_count))
+    gap = np.diff(frame)[:, None].astype(np.float64)
+    after = keyframes[1:].minus(keyframes[:-1]) / gap
+    velocity = np.concatenate([after, -keyframes[-2:-1].minus(keyframes[-1:]) / gap[-1:]])
+    before = -keyframes[:-2].minus(keyframes[1:-1]) / gap[:-1]
+    velocity[1:-1] = (gap[1:] * before + gap[:-1] * after[1:]) / (gap[1:] + gap[:-1])
+    return velocity
+
+
+# --- Matched
+
 
 JOINT_STD_DEG = {
     "pelvis": 9.0,
@@ -24,24 +64,18 @@ JOINT_STD_DEG = {
     "hip": 12.0,
     "knee": 15.0,
     "shin": 10.0,
-}
-"""Usual difference of a joint, about each of its axes, between performers at the same moment of a motion."""
-PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20
-"""Usual error of the place across and along the line of sight [m]."""
+}  # usual difference of a joint, about each of its axes, between performers at the same moment of a motion
+PLACE_STD_M, PLACE_DEPTH_STD_M = 0.06, 0.20  # usual error of the place across and along the line of sight [m]
+# Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
+# keyframe that is certain and near one that is certainly wrong. A limb that leans toward the camera looks
+# like one that leans away from it, a body turned to one side nearly like one turned to the other: what was
+# found there is right or wrong, which a covariance about it does not show. In 25 recordings with truth where
+# nothing was posed, errors along the line of sight were 13 cm where the confidence was below 0.7, 9 cm at
+# 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm.
 SURE_STD_M, UNSURE_STD_M = np.array([0.02, 0.07]), np.array([0.07, 0.16])
-"""Error of points across and along the line of sight beyond the estimate's own covariance [m], near a found
-keyframe that is certain and near one that is certainly wrong.
-
-A limb that leans toward the camera looks like one that leans away from it, a body turned to one side nearly
-like one turned to the other: what was found there is right or wrong, which a covariance about it does not
-show. In 25 recordings with truth where nothing was posed, errors along the line of sight were 13 cm where the
-confidence was below 0.7, 9 cm at 0.85 and 8 cm above 0.9; across it 5, 4 and 2 cm."""
-SIZE_STD = 0.05
-"""Error of a distance by the performer's size, as a share: lengths are average ones, and a detector's points
-lie farther in or out than joints. All frames share it."""
+SIZE_STD = 0.05  # of a distance by the performer's size, as a share: lengths are average ones
+# Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share it.
 GROUND_STD_M = 0.04
-"""Error of how high ankles stand over the floor: shoes, and where a detector has them. All frames share
-it."""
 POINT_DEPTH_STD_M = 2.0
 """Noise of the points' depths as observations of their own (paper, eq. 9) near a matched posture [m]: so
 large that they count for nothing, since place and joints have errors of their own that determine them."""
@@ -68,10 +102,7 @@ def match_covariance(posture: Posture, camera: Camera, frame: IndexArray) -> Arr
 def depth_std_m(index: IndexArray, matched: BoolArray, frames: int) -> Array:
     """(F,) noise of the prior's depths over a clip [m], between that of posed and of matched keyframes.
 
-    Args:
-        index: (K,) the keyframes' indices in the clip, in order.
-        matched: (K,) which of them are matched.
-        frames: Frames of the clip, F.
+    `index` (K,): the keyframes' frames, in order; `matched` (K,): which of them are matched.
     """
     share = np.interp(np.arange(frames), index, matched.astype(np.float64))
     return np.asarray(DEPTH_STD_M * (POINT_DEPTH_STD_M / DEPTH_STD_M) ** share)
@@ -82,10 +113,7 @@ def place_depth_std_m(points: Array, ankles: Array, camera: Camera) -> Array:
 
     Sizes tell a distance, and so does the floor, the better the more the camera looks down on it.
 
-    Args:
-        points: (F, P, 3) in the world [m].
-        ankles: (F,) heights of the lower ankle [m].
-        camera: The camera.
+    `points` (F, P, 3) in the world and `ankles` (F,), heights of the lower one [m].
     """
     frame = np.arange(len(points))
     middle = points.mean(axis=1)
@@ -108,13 +136,9 @@ def undetermined_covariance(
 ) -> Array:
     """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
-    Args:
-        points: Places in the world [m].
-        camera: The camera.
-        index: (K,) the keyframes' indices in the clip, in order.
-        match_scale: (K,) size of the found ones' error, relative to a usual one; 0 for posed ones.
-        confidence: (K,) probability that each is about right.
-        place_std_m: (F,) error of the whole performer's place along the line of sight, if more than usual.
+    Of K keyframes: `index` in the clip, in order; `match_scale`, size of the error relative to a usual one, 0
+    for posed ones; `confidence`, probability that each is about right. `place_std_m` (F,): error of the whole
+    performer's place along the line of sight, if more than usual.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
@@ -127,37 +151,33 @@ def undetermined_covariance(
     return np.asarray(variance[0] * (np.eye(3) - along) + variance[1] * along)
 
 
-# --- Additional variance of limbs that neither markers, keypoints nor keyframes have observed for some
-# time
+# --- Unobserved
 
 
-GRACE_S = 0.25
-"""Time for which the estimate's own covariance holds."""
-TIME_CONSTANT_S = 0.35
-"""Time constant at which a limb approaches the variance of anywhere in reach."""
-TRUNK_STD_RAD, LIMB_STD_RAD = 0.15, 0.5
-"""Standard deviation of joints anywhere in reach [rad]."""
-WALKING_SPEED_M_PER_S = 0.5
-"""Growth of the place's standard deviation along each axis: the performer may stand or walk."""
-FARTHEST_M = 2.0
+@dataclass(frozen=True)
+class UnobservedOptions:
+    """How postures become uncertain where nothing observes them."""
+
+    grace_s: float = 0.25  # time for which the estimate's own covariance holds
+    # time constant at which a limb approaches the variance of anywhere in reach
+    time_constant_s: float = 0.35
+    trunk_std_rad: float = 0.15  # standard deviation of joints anywhere in reach [rad]
+    limb_std_rad: float = 0.5
+    # Growth of the place's standard deviation along each axis: the performer may stand or walk.
+    walking_speed_m_per_s: float = 0.5
+    farthest_m: float = 2.0
+
+
+UNOBSERVED = UnobservedOptions()
 
 
 def unobserved_variance(
-    skeleton: Skeleton,
-    segments: tuple[str, ...],
-    visible: BoolArray,
-    keyframes: IndexArray,
-    time_s: Array,
+    skeleton: Skeleton, segments: tuple[str, ...], visible: BoolArray, keyframes: IndexArray, time_s: Array
 ) -> Array:
     """(F, D) variance of postures beyond their covariance, where nothing observes them [m², rad²].
 
-    Args:
-        skeleton: The body's.
-        segments: (M,) the segment each marker is bound to, or the joint each keypoint moves with; an unknown
-            name counts for the trunk.
-        visible: (F, M) whether each marker or keypoint is seen.
-        keyframes: (K,) frames whose posture is known.
-        time_s: (F,) time stamps.
+    `segments` (M,): the segment of each marker, or the joint of each keypoint; an unknown name counts for the
+    trunk; `visible` (F, M); `keyframes` (K,): frames whose posture is known.
     """
     trunk, *limbs = skeleton.limbs
     joint = {one.name: index for index, one in enumerate(skeleton.joints)}
@@ -171,22 +191,22 @@ def unobserved_variance(
         # Anything visible also locates the trunk.
         observed = posed | (visible if part is trunk else visible[:, own]).any(axis=1)
         unknown = _unobserved_time_s(observed, time_s)
-        std[:, part] = (
-            -np.expm1(-unknown / TIME_CONSTANT_S) * (TRUNK_STD_RAD if part is trunk else LIMB_STD_RAD)
-        )[:, None]
+        reach = UNOBSERVED.trunk_std_rad if part is trunk else UNOBSERVED.limb_std_rad
+        std[:, part] = (-np.expm1(-unknown / UNOBSERVED.time_constant_s) * reach)[:, None]
         if part is trunk:
-            std[:, :3] = np.minimum(WALKING_SPEED_M_PER_S * unknown, FARTHEST_M)[:, None]
+            walked = UNOBSERVED.walking_speed_m_per_s * unknown
+            std[:, :3] = np.minimum(walked, UNOBSERVED.farthest_m)[:, None]
     return std**2
 
 
 def _unobserved_time_s(observed: BoolArray, time_s: Array) -> Array:
     """(F,) time from the nearest observed frame beyond the grace [s]."""
     if not observed.any():
-        return np.full(len(time_s), FARTHEST_M / WALKING_SPEED_M_PER_S)
+        return np.full(len(time_s), UNOBSERVED.farthest_m / UNOBSERVED.walking_speed_m_per_s)
     known = time_s[observed]
     after = np.searchsorted(known, time_s)
     gap = np.minimum(
         np.abs(time_s - known[np.minimum(after, len(known) - 1)]),
         np.abs(time_s - known[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(np.maximum(gap - GRACE_S, 0.0))
+    return np.asarray(np.maximum(gap - UNOBSERVED.grace_s, 0.0))
