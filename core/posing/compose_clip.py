@@ -111,6 +111,8 @@ WORLD_FLOOR_M = 0.25
 """A floor found this near to z = 0 is taken to be there: sizes are no more exact."""
 FLOOR_COST_MARGIN = 1.5
 """Mean cost of a frame that putting the floor at z = 0 may add before another height is preferred."""
+FARTHER = 1.5
+"""Sizes rule out z = 0 where a performer on it would be so many times farther away or nearer."""
 MOST_PLACED = 16
 """Frames in which the performer is placed by size."""
 
@@ -230,10 +232,10 @@ def frame_costs(
 
 
 def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) -> float:
-    """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
+    """Height of the floor by where feet are without it; 0 where sizes allow it, as scenes are built."""
     sampled = given.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
-    free, heights = [], []
+    free, heights, eyes = [], [], []
     for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):
         if not cost.likelihood.visible.any():
             continue
@@ -245,10 +247,15 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
             for limb in LEGS
         ]
         heights.append(min(feet))
+        eyes.append(float(cost.location[2]))
         free.append((row, float(states.cost.min())))
     found = float(np.median(heights)) if heights else 0.0
     if abs(found) < WORLD_FLOOR_M:
         return 0.0
+    # On a floor the performer is as far away as the camera is above it.
+    eye = float(np.median(eyes))
+    if not (eye - found) / FARTHER < eye < (eye - found) * FARTHER:
+        return found
     seen = np.array([row for row, _ in free])
     grounded = frame_costs(given, stances, sampled[seen], 0.0)
     added = [
