@@ -284,11 +284,7 @@ def _segments(index: dict[str, int]) -> tuple[Segment, ...]:
         ankle: Placement = {f"shin.{side}": (0.0, 0.0, -1.0)}
         segments += [
             Segment(
-                f"thigh.{side}",
-                index[f"hip.{side}"],
-                HERE,
-                {f"thigh.{side}": (0.0, 0.0, -1.0)},
-                "pelvis",
+                f"thigh.{side}", index[f"hip.{side}"], HERE, {f"thigh.{side}": (0.0, 0.0, -1.0)}, "pelvis"
             ),
             Segment(f"shin.{side}", index[f"shin.{side}"], HERE, ankle, f"thigh.{side}"),
             Segment(
@@ -327,5 +323,4 @@ def human_skeleton() -> Skeleton:
     return Skeleton(joints, _segments(index), _points(index))
 
 
-HUMAN = human_skeleton()
-"""The default skeleton; immutable, hence shared."""
+HUMAN = human_skeleton()  # the default skeleton; immutable, hence shared

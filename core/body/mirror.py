@@ -10,8 +10,7 @@ from .actor import Actor
 from .posture import Posture
 from .skeleton import Skeleton
 
-MIRROR = np.array([-1.0, 1.0, 1.0])
-"""Factors of the reflection on x, y and z."""
+MIRROR = np.array([-1.0, 1.0, 1.0])  # factors of the reflection on x, y and z
 OTHER_SIDE = {".L": ".R", ".R": ".L"}
 
 

@@ -38,10 +38,8 @@ class Joint:
     parent: int
     kind: JointKind
     placement: Placement
-    axis: Vector = (0.0, 0.0, 0.0)
-    """Unit hinge axis, the same in parent and child; unused otherwise."""
-    components: tuple[str, ...] = ()
-    """Names of its degrees of freedom after the joint's name."""
+    axis: Vector = (0.0, 0.0, 0.0)  # unit hinge axis, the same in parent and child; unused otherwise
+    components: tuple[str, ...] = ()  # names of its degrees of freedom after the joint's name
     limits_deg: tuple[tuple[float, float], ...] = ()
     """Range of each rotational component of the posture vector [degrees]."""
     deviations: tuple[float, ...] = ()

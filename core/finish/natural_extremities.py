@@ -23,8 +23,6 @@ HANGING_RAD = np.radians(20.0)
 """Plantarflexion of a foot that hangs free, well above the ground; near it the toes are kept up."""
 HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5
 """Heights of the sole above the ground between which a foot begins to hang."""
-SWING_CLEARANCE_M = 0.013
-"""Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72)."""
 STANDS_M_S, SWINGS_M_S = 1.0, 2.5
 """Speeds of the ankle below which no clearance is kept, and above which all of it."""
 STILL_M_S, LOW_M = 0.2, 0.04
@@ -32,36 +30,26 @@ STILL_M_S, LOW_M = 0.2, 0.04
 held flat by half."""
 SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)
 """Eversion and inversion (AAOS 1965, *Joint Motion*)."""
-LEVEL_WITHIN_M = 0.1
-"""Height above a flat foot's at which its sole is no longer held level across."""
 LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)
 """Leans of a shin to its side from which on, and at which, the ground no longer turns its foot."""
 FREE_HEADING_RAD = np.radians(25.0)
 """A resting foot keeps its heading while the shin above it turns by no more than this."""
-FADE_S = 0.2
-"""Time in which a resting foot's heading comes and goes."""
 
 
 def foot_turns(
     shins: Shins, soles: Soles, ground: FootGround, time_s: Array, contacts: Sequence[Contact]
 ) -> dict[str, Array]:
-    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment.
-
-    Args:
-        shins: The shins in F frames.
-        soles: The soles under them.
-        ground: The ground under them.
-        time_s: (F,) time of each frame [s].
-        contacts: Rests of the ankles, 0 the left and 1 the right.
-    """
+    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment; contacts are the ankles' rests."""
     upright = _upright(shins)
     height = shins.ankle[..., 2] - ground.height_m
     above = height - soles.flat_m
     speed = _speed(shins.ankle, time_s)
-    near = np.maximum(ground.resting, 1.0 - smooth_step(above / LEVEL_WITHIN_M))
+    # Height above a flat foot's at which its sole is no longer held level across.
+    near = np.maximum(ground.resting, 1.0 - smooth_step(above / 0.1))
     leveling = -upright * near * _within_range(shins.roll)
     swing = smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
-    lifted = np.maximum(height - SWING_CLEARANCE_M * swing, 0.0)
+    # Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72).
+    lifted = np.maximum(height - 0.013 * swing, 0.0)
     pitch = soles.above_ground(
         _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
     )
@@ -122,7 +110,7 @@ def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> A
         heading = np.unwrap(shins.heading[:, foot])
         middle = 0.5 * (heading[rows].min() + heading[rows].max())
         apart = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
-        near = 1.0 - smooth_step(apart / FADE_S)
+        near = 1.0 - smooth_step(apart / 0.2)  # time in which a resting foot's heading comes and goes
         turned[:, foot] += near * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
         weight[:, foot] += near
     # Two rests that follow closely share the time between them.
@@ -130,14 +118,7 @@ def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> A
 
 
 def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict[str, Array]:
-    """(F, 3, 3) turn of each foot in its shin's frame.
-
-    Args:
-        shins: The shins.
-        pitch: (F, 2) the feet's pitches.
-        leveling: (F, 2) by how much their rolls differ from the shins'.
-        turned: (F, 2) by how much their headings do.
-    """
+    """(F, 3, 3) turn of each foot in its shin's frame, by pitch and by what roll and heading differ."""
     x, y, z = np.eye(3)
     # The shin's own pitch and roll are undone before the foot's are done: where the shin lies on its side and
     # its pitch means nothing, only the difference counts.
@@ -151,26 +132,15 @@ def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict
 
 CURL_RAD = np.radians(10.0)
 """Bend of a relaxed hand toward the palm, half-closed fingers included, which one bone stands for."""
-DROOP_RAD = np.radians(8.0)
-"""What its weight bends a hand by when the forearm is level."""
+DROOP_RAD = np.radians(8.0)  # what its weight bends a hand by when the forearm is level
 BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)
 """Extension and flexion of a wrist (AAOS 1965, *Joint Motion*)."""
-THICKNESS_M = 0.012
-"""Height of the fingers' middle above the ground that they lie on."""
-BACK_FROM_RAD = np.radians(-15.0)
-"""The hand bends back where what is straight down lies beyond this bend, or else toward the palm."""
+THICKNESS_M = 0.012  # height of the fingers' middle above the ground that they lie on
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[str, Array]:
-    """(F, 3, 3) turn of each hand in its forearm's frame, by name of segment.
-
-    Args:
-        body: The body.
-        pose: Its poses in F frames.
-        ground_m: (F,) height of the ground.
-        time_s: (F,) time of each frame [s].
-    """
+    """(F, 3, 3) turn of each hand in its forearm's frame over ground at heights (F,), by name of segment."""
     turns = {}
     for side in SIDES:
         name = f"hand.{side}"
@@ -192,7 +162,7 @@ def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[s
 
 
 def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
-    """The bends (F,) that keep fingertips above the ground, as far as the wrists let them.
+    """The bends (F,) [rad] that keep fingertips above the ground, as far as the wrists let them.
 
     Args:
         bend: (F,) the relaxed ones [rad].
@@ -208,7 +178,8 @@ def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
     back = np.minimum(bend, steepest - apart)
     forth = np.maximum(bend, steepest + apart)
     passing = np.abs(np.remainder(bend - steepest + np.pi, 2.0 * np.pi) - np.pi) < apart
-    kept = np.where(steepest > BACK_FROM_RAD, back, forth)
+    # The hand bends back where what is straight down lies beyond this bend, or else toward the palm.
+    kept = np.where(steepest > np.radians(-15.0), back, forth)
     return np.clip(np.where(passing, kept, bend), -BACK_RAD, TO_PALM_RAD)
 
 
@@ -218,13 +189,9 @@ def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
 def natural_extremities(
     body: Body, posture: Posture, time_s: Array, contacts: Sequence[Contact] | None = None
 ) -> Extremities:
-    """Hands that hang relaxed, and feet that lie flat, roll and never pass the ground.
+    """Hands that hang relaxed, and feet that lie flat, roll and never pass the ground, in F postures.
 
-    Args:
-        body: The body.
-        posture: A batch of F postures.
-        time_s: (F,) rising time of each frame [s].
-        contacts: Rests of the ankles, 0 the left and 1 the right; found where not given.
+    `contacts` are rests of the ankles, 0 the left and 1 the right; they are found where not given.
     """
     pose = body.pose(posture)
     shins, soles = Shins.of(body, pose), Soles.of(body)

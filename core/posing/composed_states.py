@@ -19,16 +19,9 @@ from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 
-MOST_STANCES = 500
-"""Stances that limbs are hung on, by how well their torsos fit."""
-MOST_NEAR = 90
-"""Of these the ones that are tried at all distances."""
-MOST_STATES = 240
-"""States kept of a frame."""
-MARGIN = 14.0
-"""States whose cost exceeds the frame's least by more are dropped."""
-DEPTH_STD_M = 0.02
-"""How firmly a state keeps to its distance."""
+MOST_STATES = 240  # states kept of a frame
+MARGIN = 14.0  # states whose cost exceeds the frame's least by more are dropped
+DEPTH_STD_M = 0.02  # how firmly a state keeps to its distance
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
 
 
@@ -36,16 +29,11 @@ LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
 class FrameStates:
     """K states of a frame: a stance at a place, with the best limb of each kind."""
 
-    stance: IndexArray
-    """(K,)."""
-    hips: SingleArray
-    """(K, 3) places of the hips in the world [m]."""
-    cost: SingleArray
-    """(K,) negative log likelihood, up to a constant of the frame."""
-    limbs: IndexArray
-    """(K, 4) the best of each limb, in the order of `LIMBS`."""
-    exchanged: BoolArray
-    """(K,) whether left and right of the keypoints are exchanged for it."""
+    stance: IndexArray  # (K,)
+    hips: SingleArray  # (K, 3) places of the hips in the world [m]
+    cost: SingleArray  # (K,) negative log likelihood, up to a constant of the frame
+    limbs: IndexArray  # (K, 4) the best of each limb, in the order of `LIMBS`
+    exchanged: BoolArray  # (K,) whether left and right of the keypoints are exchanged for it
 
     def chosen(self, rows: IndexArray) -> "FrameStates":
         """Some of the states."""
@@ -92,9 +80,9 @@ class FrameCosts:
         middle = np.float32(depths_m[0])
         places = self.places(every, np.full(len(every), middle))
         cost = self.torso_cost(every, places)
-        kept = lowest(cost, MOST_STANCES, 2.0 * MARGIN)
+        kept = lowest(cost, 500, 2.0 * MARGIN)  # stances that limbs are hung on, by how well their torsos fit
         whole, _ = self.whole_cost(every[kept], places[kept], cost[kept])
-        kept = kept[lowest(whole, MOST_NEAR, 1.5 * MARGIN)]
+        kept = kept[lowest(whole, 90, 1.5 * MARGIN)]  # of these the ones that are tried at all distances
         stance = np.tile(every[kept], len(depths_m))
         depth = np.repeat(np.asarray(depths_m, dtype=np.float32), len(kept))
         places = self.places(stance, depth)
@@ -223,19 +211,11 @@ class FrameCosts:
         return cost, limbs
 
     def leg_pairs(
-        self,
-        stance: IndexArray,
-        places: SingleArray,
-        tables: Mapping[str, SingleArray],
-        limbs: IndexArray,
+        self, stance: IndexArray, places: SingleArray, tables: Mapping[str, SingleArray], limbs: IndexArray
     ) -> tuple[LegChoices, LegChoices, SingleArray]:
-        """The likeliest legs of stances at places, with (N, C, C) costs of their pairs.
+        """The likeliest legs of N stances at places (N, 3), with (N, C, C) costs of their pairs.
 
-        Args:
-            stance: (N,).
-            places: (N, 3) from the camera [m].
-            tables: (N, L) costs of each limb's parts.
-            limbs: (N, 4) the best limbs, of which arms count for the balance.
+        `tables` has costs (N, L) of each limb's parts, `limbs` (N, 4) the best ones: arms count for balance.
         """
         weights = mass_weights(HUMAN).astype(np.float32)
         level = self.stances.features.points[stance, :, :2] * weights[:, None]

@@ -30,14 +30,11 @@ class FlippedPart(Enum):
 
     UPPER = (True, False)
     """Upper arm or thigh, with forearm or shin leaning as before; of the trunk, the chest."""
-    LOWER = (False, True)
-    """Forearm or shin alone; of the trunk, the pelvis."""
-    BOTH = (True, True)
-    """The whole limb, or the whole trunk."""
+    LOWER = (False, True)  # forearm or shin alone; of the trunk, the pelvis
+    BOTH = (True, True)  # the whole limb, or the whole trunk
 
 
-FLIPPABLE = (TRUNK, *LIMBS)
-"""Parts of the body whose depth can be flipped, as `body/limbs` names them."""
+FLIPPABLE = (TRUNK, *LIMBS)  # parts of the body whose depth can be flipped, as `body/limbs` names them
 FLAT_M = 0.5 * DISTINCT_M
 """A part whose ends differ less in depth [m] lies flat in the picture, and has no other side."""
 SEEN_M, SEEN_DEPTH_M = 0.01, 0.1
@@ -59,14 +56,11 @@ def flipped(
         body: The actor's body.
         posture: A single posture.
         camera: The camera in this frame, as one that stands still.
-        part_of_body: One of `FLIPPABLE`.
+        part_of_body: One of `FLIPPABLE`; KeyError for another.
         part: What of it is flipped; by default everything that looks different.
 
     Returns:
         Up to three postures, none where the part lies flat in the picture, so that it has no depth to flip.
-
-    Raises:
-        KeyError: There is no such part of the body.
     """
     if part_of_body == TRUNK:
         return tuple(_flipped_trunks(body, posture, camera, part))

@@ -12,16 +12,6 @@ from ..estimate.terms.contact import STEP_M
 from ..numerics.robust import multivariate_cost
 from .match_evidence import student_cost
 
-MOST_PAIRED = 12
-"""Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand."""
-FLOOR_STD_M = 0.05
-"""Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters."""
-HEEL_M = 0.05
-"""A heel that is off the floor by this much is nothing unusual."""
-BALANCE_STD_M = 0.12
-"""Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way."""
-BALANCE_DEGREES = 3.0
-"""Of Student's t: who runs, leaps or leans on something is forgiven."""
 NO_CONTACT_COST = np.float32(4.0)
 """Cost of a frame in which neither foot stands on the floor: jumps, steps, furniture."""
 
@@ -30,21 +20,17 @@ NO_CONTACT_COST = np.float32(4.0)
 class LegChoices:
     """C parts of one leg for each of N stances."""
 
-    index: IndexArray
-    """(N, C) which parts."""
-    cost: SingleArray
-    """(N, C) of what is seen of them, and of feet below the floor."""
-    height: SingleArray
-    """(N, C) of the foot above the floor [m]."""
-    foot: SingleArray
-    """(N, C, 2) where the foot is, from the hips [m]."""
-    mass: SingleArray
-    """(N, C, 2) what the leg adds to the center of mass, from the hips [m]."""
+    index: IndexArray  # (N, C) which parts
+    cost: SingleArray  # (N, C) of what is seen of them, and of feet below the floor
+    height: SingleArray  # (N, C) of the foot above the floor [m]
+    foot: SingleArray  # (N, C, 2) where the foot is, from the hips [m]
+    mass: SingleArray  # (N, C, 2) what the leg adds to the center of mass, from the hips [m]
 
 
 def likeliest(table: SingleArray, height: SingleArray) -> IndexArray:
     """(N, C) the parts of a leg to pair, by costs and heights (N, L)."""
-    count = min(MOST_PAIRED, table.shape[1])
+    # Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand.
+    count = min(12, table.shape[1])
     free = np.argpartition(table, count - 1, axis=1)[:, :count]
     standing = np.argpartition(table + standing_cost(height), count - 1, axis=1)[:, :count]
     return np.asarray(np.concatenate([free, standing], axis=1))
@@ -53,10 +39,7 @@ def likeliest(table: SingleArray, height: SingleArray) -> IndexArray:
 def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> SingleArray:
     """(N, C, C) cost of each pair beyond the legs' own: that neither stands, or that the body falls.
 
-    Args:
-        left: The left legs.
-        right: The right ones.
-        mass: (N, 2) the center of mass without legs' shares, times the rest's share, from the hips [m].
+    `mass` (N, 2) is the center of mass without the legs' shares, times the rest's share, from the hips [m].
     """
     center = mass[:, None, None] + left.mass[:, :, None] + right.mass[:, None]
     first = left.foot[:, :, None]
@@ -65,8 +48,10 @@ def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> Single
     higher = right.height[:, None] - left.height[:, :, None]
     along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
     off = center - first - along[..., None].astype(np.float32) * way
-    squared = (off * off).sum(axis=-1) / np.float32(BALANCE_STD_M**2)
-    falling = multivariate_cost(squared, BALANCE_DEGREES, 2)
+    # Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way.
+    squared = (off * off).sum(axis=-1) / np.float32(0.12**2)
+    # Of Student's t: who runs, leaps or leans on something is forgiven.
+    falling = multivariate_cost(squared, 3.0, 2)
     stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
     return np.asarray(np.minimum(stands, NO_CONTACT_COST))
 
@@ -78,9 +63,11 @@ def below_cost(height: SingleArray) -> SingleArray:
 
 def standing_cost(height: SingleArray) -> SingleArray:
     """Cost of feet above the floor that should stand on it."""
-    return _floor_cost(np.maximum(height - np.float32(HEEL_M), 0.0))
+    # A heel that is off the floor by this much is nothing unusual.
+    return _floor_cost(np.maximum(height - np.float32(0.05), 0.0))
 
 
 def _floor_cost(height: SingleArray) -> SingleArray:
-    off = height / np.float32(FLOOR_STD_M)
+    # Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters.
+    off = height / np.float32(0.05)
     return student_cost(off * off, 1)

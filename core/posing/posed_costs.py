@@ -19,9 +19,6 @@ from .match_evidence import FrameLikelihood
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import JOINTS, TORSO
 
-POINT_STD_M = 0.06
-"""Distance of a posed point from the nearest part's: what pools are rough by, and a person's error."""
-
 
 class PosedCosts(FrameCosts):
     """Costs of stances and limbs by how far they are from a posed frame's points."""
@@ -34,19 +31,15 @@ class PosedCosts(FrameCosts):
         points: Array,
         tempering: float,
     ) -> None:
-        """Hold stances and limbs against a posed frame.
+        """Hold stances and limbs against hips (3,) and points (P, 3) from there of a posed frame [m].
 
-        Args:
-            likelihood: The frame.
-            stances: All stances.
-            hips: (3,) place of the hips [m].
-            points: (P, 3) points from there [m].
-            tempering: What the frame's costs will be multiplied by; a posed frame says its own once.
+        `tempering` is what the frame's costs will be multiplied by; a posed frame says its own once.
         """
         super().__init__(likelihood, stances, None)
         self.hips = np.asarray(hips - likelihood.location, dtype=np.float32)
         self.points = np.asarray(points, dtype=np.float32)
-        self.weight = np.float32(0.5 / POINT_STD_M**2 / tempering)
+        # Distance of a posed point from the nearest part's: what pools are rough by, and a person's error.
+        self.weight = np.float32(0.5 / 0.06**2 / tempering)
 
     def places(
         self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
@@ -80,17 +73,11 @@ KERNEL_M = 0.05
 """Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
 differ by in the same posture, as the likeliest width for one library by the others is 3 to 4 cm and these
 come from one hand."""
-DEGREES = 4.0
-"""Of Student's t, the shape of a kernel: the likeliest for one library by the others, too."""
+DEGREES = 4.0  # of Student's t, the shape of a kernel: the likeliest for one library by the others, too
 DIMENSIONS = 4.0
 """Degrees of freedom of a part: two directions of a limb's two segments; lean, turn and bend of a trunk."""
-UNUSUAL_SHARE = 0.002
-"""Share of known postures, each by the libraries it is not from, that are more unusual than is called
-plausible."""
 MARGIN = 6.0
 """Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
-BEYOND_RAD = 0.25
-"""A joint this far beyond its range is contorted, whatever is known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +97,8 @@ class Plausibility:
         """(N, 5) whether each part is where no known posture has anything like it."""
         most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
         skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
-        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
+        # A joint this far beyond its range is contorted, whatever is known.
+        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > 0.25
         parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
         return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
@@ -124,17 +112,13 @@ class Plausibility:
         for part in PARTS:
             shape = self.known.parts[part]
             cost = _cost(shape, shape, other)
-            median, unusual = np.quantile(cost, [0.5, 1.0 - UNUSUAL_SHARE])
+            median, unusual = np.quantile(cost, [0.5, 0.998])  # two in a thousand are called implausible
             found[part] = (float(median), float(unusual))
         return found
 
 
 def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
-    """The density of the postures of some libraries on a body.
-
-    Raises:
-        InputError: No library has a posture.
-    """
+    """The density of the postures of libraries, one of which has any, on a body."""
     return Plausibility(known_postures(body, libraries))
 
 
@@ -147,13 +131,7 @@ def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
 
 
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
-    """(N,) negative logarithm of the mean kernel of shapes (N, K) by known ones (M, K).
-
-    Args:
-        shape: The shapes to judge.
-        known: Those in the kernels' middles.
-        other: (N, M) which of them count for which; None for all.
-    """
+    """(N,) negative logarithm of the mean kernel of shapes (N, K) by known ones (M, K), or `other` ones."""
     # |a - b|² = |a|² + |b|² - 2 a·b: one product instead of all differences.
     squared = (shape**2).sum(-1)[:, None] + (known**2).sum(-1) - 2.0 * shape @ known.T
     kernel = -multivariate_cost(np.maximum(squared, 0.0) / KERNEL_M**2, DEGREES, DIMENSIONS)

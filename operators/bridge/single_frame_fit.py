@@ -46,14 +46,11 @@ class FrameInFootage:
     """The scene's current frame as a frame of the footage."""
 
     footage: Footage
-    evidence: SceneEvidence
-    """What is followed."""
-    reading: Reading | None
-    """An earlier reading of the clip, if it is of this footage and these markers."""
+    evidence: SceneEvidence  # what is followed
+    reading: Reading | None  # an earlier reading of the clip, if it is of this footage and these markers
     clip_frames: Array
     """(F,) scene frame of every frame of the clip; estimated from its header where it was not read."""
-    index: int
-    """Index of the current frame in the clip."""
+    index: int  # index of the current frame in the clip
 
     @property
     def styles(self) -> tuple[MarkerStyle, ...]:
@@ -68,8 +65,7 @@ class FrameInFootage:
     def regions(self, expected: ExpectedRegions | None = None) -> RegionTracks:
         """The markers' regions in the frame: from the reading, else found now.
 
-        Args:
-            expected: Expected regions (1, M), which tell markers of similar color apart.
+        `expected` regions (1, M) tell markers of similar color apart.
 
         Raises:
             InputError: A color does not occur in the clip, or the clip cannot be read.
@@ -84,11 +80,7 @@ class FrameInFootage:
         )
 
     def keypoints(self, body: Body, keyframes: Sequence[Keyframe] = ()) -> Keypoints:
-        """The performer's keypoints in all frames, (F, N); none where no keypoints are followed.
-
-        Args:
-            body: The actor's.
-            keyframes: Those known, which tell the performer from other people.
+        """The performer's keypoints (F, N) in all frames, told from others' by keyframes; or none.
 
         Raises:
             InputError: A file of keypoints cannot be used.
@@ -109,12 +101,7 @@ class FrameInFootage:
 def frame_in_footage(
     footage: Footage, evidence: SceneEvidence, reading: Reading | None = None
 ) -> FrameInFootage:
-    """The scene's current frame in the footage.
-
-    Args:
-        footage: Clip and camera in their scene.
-        evidence: What is followed.
-        reading: An earlier reading of the clip; used if it is of this footage and these markers.
+    """The scene's current frame in the footage; an earlier reading is used if it is of the same evidence.
 
     Raises:
         InputError: The clip is missing, or the current frame lies outside it.
@@ -153,12 +140,10 @@ class FrameResult:
 
     candidates: tuple[Candidate, ...]
     """Postures that the frame may show, the likeliest first; a single one near a pose."""
-    contradictions: tuple[str, ...]
-    """Names of the markers and keypoints that the first one does not explain."""
+    contradictions: tuple[str, ...]  # names of the markers and keypoints that the first one does not explain
     residual_px: Array
     """(M + N,) distances of markers and keypoints from where the first one has them [px]; NaN if hidden."""
-    cost: float = 0.0
-    """Near a pose, what tells the likelier of several poses apart, as in `FramePoses`."""
+    cost: float = 0.0  # near a pose, what tells the likelier of several poses apart, as in `FramePoses`
 
 
 def fit_to_frame(
