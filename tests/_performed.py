@@ -75,7 +75,4 @@ def errors_m(found: FoundPoses, truth: Posture) -> tuple[float, float]:
     points, true = (BODY.points(BODY.pose(posture)) for posture in (found.postures, truth))
     off = points - true
     hips = (found.postures.translation - truth.translation)[:, None]
-    return (
-        float(np.linalg.norm(off - hips, axis=-1).mean()),
-        float(np.linalg.norm(off, axis=-1).mean()),
-    )
+    return (float(np.linalg.norm(off - hips, axis=-1).mean()), float(np.linalg.norm(off, axis=-1).mean()))

@@ -19,7 +19,6 @@ def leaning(degrees: float) -> Posture:
 
 
 def test_who_stands_has_both_soles_flat_on_the_floor() -> None:
-    """Heel and tip, left and right, in a batch as well."""
     pose = BODY.pose(Posture.stack([standing_posture(BODY)] * 2))
     places = sole_places(BODY, pose)
     assert places.shape == (2, 2, 2, 3)
@@ -32,7 +31,6 @@ def test_who_stands_has_both_soles_flat_on_the_floor() -> None:
 def test_a_leg_before_the_body_stands_on_its_heel_and_one_behind_on_its_toes(
     degrees: float, lowest: int
 ) -> None:
-    """The foot is rigid: as the shin leans, heel or tip is the lowest place."""
     pose = BODY.pose(leaning(degrees))
     heights = sole_places(BODY, pose)[0, :, 2]
     assert heights.argmin() == lowest and abs(np.ptp(heights)) > 0.05

@@ -20,10 +20,7 @@ STAND = (0.0, FLAT_M)
 
 
 def walking(
-    left: np.ndarray,
-    right: np.ndarray,
-    hips_y: np.ndarray | float = 0.0,
-    hips_m: np.ndarray | float = HIPS_M,
+    left: np.ndarray, right: np.ndarray, hips_y: np.ndarray | float = 0.0, hips_m: np.ndarray | float = HIPS_M
 ) -> Posture:
     """Postures whose ankles follow paths (F, 2) of y and height [m], upright, facing -Y."""
     vector = np.zeros((len(left), len(NAMES)))
@@ -51,7 +48,6 @@ def path(frames: int, *legs: tuple[int, int, tuple[float, float], float]) -> np.
 
 
 def still(frames: int) -> np.ndarray:
-    """The path of an ankle that rests at `STAND`."""
     return np.tile(np.array(STAND), (frames, 1))
 
 
@@ -80,7 +76,6 @@ def step() -> Posture:
 
 
 def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
-    """Heel and tip of resting feet are level with the ground, to which rigid ones point."""
     shown, rigid = soles(step), soles(step, RIGID)
     for frames, foot in ((slice(5, 25), 0), (slice(55, 85), 0), (slice(5, 85), 1)):
         assert np.abs(shown[frames, foot, :, 2]).max() < 1e-3
@@ -88,12 +83,10 @@ def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
 
 
 def test_no_sole_passes_the_ground_between_rests(step: Posture) -> None:
-    """Through lift, swing and landing as well."""
     assert soles(step)[..., 2].min() > -2e-3
 
 
 def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:
-    """A foot rolls off over its tip, which stays on the ground, and comes down on its heel."""
     heel, tip = np.moveaxis(soles(step)[:, 0, :, 2], 1, 0)
     rising = slice(31, 35)
     assert (tip[rising] < 0.012).all() and heel[34] > tip[34] + 0.02
@@ -101,7 +94,6 @@ def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:
 
 
 def test_a_step_has_a_height_of_its_own() -> None:
-    """Stepping onto something, the foot lies flat on top of it and does not pass it."""
     height = 0.17
     left = path(90, (30, 55, (-0.4, FLAT_M + height), 0.1))
     shown = soles(walking(left, still(90), np.linspace(0.0, -0.15, 90)))
@@ -111,7 +103,6 @@ def test_a_step_has_a_height_of_its_own() -> None:
 
 
 def test_who_rises_on_the_toes_keeps_them_on_the_ground() -> None:
-    """An ankle that rests higher than it did at the same place stands on its toes: there is no step."""
     left = path(220, (40, 55, (0.0, FLAT_M + 0.07), 0.0), (170, 185, STAND, 0.0))
     heel, tip = np.moveaxis(soles(walking(left, still(220)))[:, 0, :, 2], 1, 0)
     held = slice(95, 130)
@@ -120,13 +111,11 @@ def test_who_rises_on_the_toes_keeps_them_on_the_ground() -> None:
 
 
 def test_a_foot_high_above_the_ground_hangs() -> None:
-    """Its toes are down against the shin, by the bend of a relaxed ankle."""
     left = path(90, (20, 40, (-0.25, 0.65), 0.0))
     np.testing.assert_allclose(flexion(walking(left, still(90)))[60:85], HANGING_RAD, atol=1e-4)
 
 
 def test_a_resting_foot_keeps_its_heading_while_the_shin_turns() -> None:
-    """The shin's turning above it, as estimates have it, does not turn the sole."""
     posture = walking(still(60), still(60))
     step = np.zeros((60, len(NAMES)))
     step[:, NAMES.index("shin.L.axial")] = np.radians(12.0) * np.sin(np.linspace(0.0, 6.0, 60))
@@ -138,7 +127,6 @@ def test_a_resting_foot_keeps_its_heading_while_the_shin_turns() -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
-    """Noise in the postures makes feet turn little faster than their shins do."""
     noise = np.random.default_rng(seed).normal(0.0, 0.003, (90, len(NAMES)))
     noisy = step.plus(noise)
     for side in ("L", "R"):
@@ -154,7 +142,6 @@ def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
 
 
 def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture) -> None:
-    """Turned, shifted and raised with the ground, the feet are turned alike."""
     elsewhere = turned_and_shifted(step, 2.5, np.array([1.0, -2.0, 0.7]))
     for name, turn in natural_extremities(BODY, step, times(step)).turns.items():
         np.testing.assert_allclose(
@@ -163,7 +150,6 @@ def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture)
 
 
 def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
-    """Left and right exchange, and with them the signs of rolls and headings."""
     lean = np.zeros((90, len(NAMES)))
     lean[:, NAMES.index("hip.L.rotation_y")], lean[:, NAMES.index("hip.R.rotation_z")] = 0.15, 0.2
     leaning = step.plus(lean)
@@ -177,7 +163,6 @@ def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_any_motion_keeps_the_ankles_range(seed: int) -> None:
-    """Tumbling included, flexion stays within a joint's range, and every turn is a rotation."""
     rng = np.random.default_rng(seed)
     low, high = BODY.skeleton.limits.T
     ends = [rng.uniform(np.maximum(low, -1.5), np.minimum(high, 1.5)) for _ in range(2)]
@@ -194,13 +179,11 @@ def test_any_motion_keeps_the_ankles_range(seed: int) -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_few_frames_are_enough(count: int) -> None:
-    """A single posture has feet too."""
     posture = walking(still(count), still(count))
     assert np.isfinite(soles(posture)).all()
 
 
 def test_every_stair_is_a_floor_of_its_own() -> None:
-    """Each foot lies flat on its own step while the other one passes it."""
     rise, run = 0.17, 0.28
     left = path(110, (10, 26, (-run, FLAT_M + rise), 0.08), (46, 62, (-3 * run, FLAT_M + 3 * rise), 0.08))
     right = path(

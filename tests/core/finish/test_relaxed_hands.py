@@ -35,14 +35,12 @@ def bend(posture: Posture, side: str) -> float:
     ids=["palm down", "palm up"],
 )
 def test_a_level_hand_droops(pronation: float, expected: float) -> None:
-    """Toward the palm if that faces down, and less bent if it faces up."""
     for side in ("L", "R"):
         shown = posed(**{f"forearm__{side}__pronation": pronation})
         assert bend(shown, side) == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_hanging_hand_is_bent_toward_its_palm_only() -> None:
-    """Its weight does nothing to it."""
     arms_down = Posture.stack([standing_posture(BODY, arms_lowered_rad=np.pi / 2)] * FRAMES)
     turns = natural_extremities(BODY, arms_down, TIME_S).turns
     for side in ("L", "R"):
@@ -51,7 +49,6 @@ def test_a_hanging_hand_is_bent_toward_its_palm_only() -> None:
 
 
 def test_fingers_do_not_pass_the_ground() -> None:
-    """A hand that reaches down bends back as its wrist nears the ground."""
     vector = np.tile(standing_posture(BODY, arms_lowered_rad=np.pi / 2).to_vector(), (60, 1))
     vector[:, NAMES.index("pelvis.rotation_x")] = np.linspace(0.0, 1.9, 60)
     for side in ("L", "R"):

@@ -48,7 +48,6 @@ def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:
 
 
 def exchanged(people: People, frames: range) -> People:
-    """Left taken for right in some frames."""
     changed = tuple(
         SeenPeople(seen.pixel[:, MIRRORED], seen.score[:, MIRRORED], seen.hint_m[:, MIRRORED])
         if index in frames
@@ -68,7 +67,6 @@ def unmarked(posture: Posture, seen_by: Camera, people: People) -> tuple[Take, R
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 @pytest.mark.parametrize("hinted", [False, True])
 def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float, hinted: bool) -> None:
-    """By keypoints alone, with and without a guess of their depths: phase, heading and place."""
     truth = performed(walking, np.radians(heading_deg))
     people = detected(truth, camera())
     people = people if hinted else people.without_hints()
@@ -80,7 +78,6 @@ def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float,
 
 
 def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
-    """A fifth of all points anywhere, and left for right for half of the clip."""
     truth = performed(walking, np.radians(35.0))
     people = exchanged(detected(truth, camera(), wrong=0.2), range(10, 35))
     found = run(pose_clip(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
@@ -88,7 +85,6 @@ def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
 
 
 def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(walking: Library) -> None:
-    """The markers know better; alone, keypoints could not tell a view from behind."""
     truth = performed(walking, np.radians(35.0))
     take, reading = filmed(truth, camera())
     wrong = replace(take, keypoints=(exchanged(detected(truth, camera()), range(FRAMES)),))
@@ -96,7 +92,6 @@ def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(w
 
 
 def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -> None:
-    """With a trunk's marker alone next to nothing is known of the rest; keypoints add it."""
     truth = performed(walking, np.radians(60.0))
     take, reading = filmed(truth, camera())
     names = ("centroid", "second_moment", "area", "quality", "clipped")
@@ -109,7 +104,6 @@ def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -
 
 
 def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
-    """To the last digit."""
     truth = performed(walking, 0.6)
     take, reading = filmed(truth, camera())
     blind = detected(truth, camera())
@@ -122,7 +116,6 @@ def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
 
 
 def test_a_take_with_neither_markers_nor_keypoints_is_refused(walking: Library) -> None:
-    """A sentence says what is missing."""
     truth = performed(walking, 0.6)
     take, reading = unmarked(truth, camera(), detected(truth, camera()))
     with pytest.raises(InputError, match="neither markers nor keypoints"):

@@ -69,7 +69,6 @@ def by_keypoints() -> tuple[Take, Reading]:
 
 @cache
 def found_by_markers() -> FoundPoses:
-    """The poses by five markers."""
     return run(pose_clip(*filmed(truth(), camera()), libraries()))
 
 
@@ -82,21 +81,18 @@ def errors_m(postures: Posture) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_a_motion_of_no_library_is_found_by_five_markers() -> None:
-    """A walk with a waving arm: whole postures of any library would be a waving arm's length off."""
     rooted, absolute = errors_m(found_by_markers().postures)
     assert rooted.mean() < 0.09
     assert absolute.mean() < 0.2
 
 
 def test_and_by_keypoints() -> None:
-    """Nothing but a detector's points, without depths."""
     rooted, absolute = errors_m(run(pose_clip(*by_keypoints(), libraries())).postures)
     assert rooted.mean() < 0.08
     assert absolute.mean() < 0.25
 
 
 def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
-    """What a person chooses among differs to the eye."""
     found = found_by_markers()
     assert found.frames[0].index == 0
     assert found.frames[-1].index == FRAMES - 1
@@ -111,7 +107,6 @@ def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
 
 
 def test_between_two_posed_frames_only_those_change() -> None:
-    """Two corrected keyframes hold, and what lies between follows them."""
     take, reading = filmed(truth(), camera())
     found = with_found(take, found_by_markers())
     posed = tuple(Keyframe(index, truth()[index]) for index in (12, 37))
@@ -129,7 +124,6 @@ def test_between_two_posed_frames_only_those_change() -> None:
 
 
 def test_what_is_needed_is_said() -> None:
-    """No library, and a take that nothing is seen of."""
     take, reading = filmed(truth(), camera())
     with pytest.raises(InputError, match="at least one is needed"):
         run(pose_clip(take, reading, ()))

@@ -14,7 +14,6 @@ BODY = Body(Actor.from_stature(1.7))
 
 
 def test_only_what_a_person_posed_counts_as_posed() -> None:
-    """Found keyframes say nothing new; the posed ones come in order, and the lowest sole is the floor."""
     library = read_library(SHIPPED / "squatting_lifting.json")
     low, other = (each.posture for each in library.postures[:2])
     raised = Posture(low.skeleton, low.translation + np.array([0.0, 0.0, 0.4]), low.rotations, low.angles)

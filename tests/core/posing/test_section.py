@@ -19,7 +19,6 @@ FOUND = Matched("composed", "Sway", False, 0.5)
 
 
 def keyframes(posed: list[int], found: list[int]) -> list[Keyframe]:
-    """Keyframes at some frames, of which some are found."""
     return [
         *(Keyframe(index, TRUTH[0]) for index in posed),
         *(Keyframe(index, TRUTH[0], matched=FOUND) for index in found),
@@ -37,12 +36,10 @@ def keyframes(posed: list[int], found: list[int]) -> list[Keyframe]:
     ],
 )
 def test_a_section_ends_where_keyframes_hold(posed: list[int], found: list[int], section: Section) -> None:
-    """Around frame 40, at 25 frames a second."""
     assert section_around(TIME_S, 40, keyframes(posed, found)) == section
 
 
 def test_what_bounds_a_section_holds_like_a_posed_keyframe(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Found ones within it are gone, as are those elsewhere."""
     folder = cast(Path, tmp_path_factory.mktemp("takes")) / "take"
     take: Take = read_take(write_synthetic_take(folder, 24))
     mixed = sorted(keyframes([12], [2, 6, 16, 22]), key=lambda each: each.index)
