@@ -6,7 +6,7 @@ The calibration starts from them and corrects them by the footage.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -50,26 +50,20 @@ class Piece:
         """The part between two fractions of the length; fractions outside 0 to 1 extend it."""
         along = self.end - self.start
         widths = self.half_widths[0] + np.outer([first, last], self.half_widths[1] - self.half_widths[0])
-        return Piece(
-            self.segment,
-            self.joint,
-            self.start + first * along,
-            self.start + last * along,
-            self.lateral,
-            self.sagittal,
-            np.maximum(widths, 0.2 * self.half_widths.min()),
+        return replace(
+            self,
+            start=self.start + first * along,
+            end=self.start + last * along,
+            half_widths=np.maximum(widths, 0.2 * self.half_widths.min()),
         )
 
     def changed(self, offset: Array, girth: float) -> "Piece":
         """The piece moved by `offset` (3,) [m] in its joint's frame and made `girth` times as thick."""
-        return Piece(
-            self.segment,
-            self.joint,
-            self.start + offset,
-            self.end + offset,
-            self.lateral,
-            self.sagittal,
-            self.half_widths * girth,
+        return replace(
+            self,
+            start=self.start + offset,
+            end=self.end + offset,
+            half_widths=self.half_widths * girth,
         )
 
     def rings(self, sides: int, cap: int, shaft: int) -> Array:
@@ -118,14 +112,11 @@ class PieceStack:
     def of(cls, pieces: Iterable[Piece]) -> "PieceStack":
         """Stack pieces in order."""
         listed = list(pieces)
+        names = ("start", "end", "lateral", "sagittal", "half_widths")
         return cls(
             tuple(piece.segment for piece in listed),
             np.array([piece.joint for piece in listed], dtype=np.intp),
-            np.stack([piece.start for piece in listed]),
-            np.stack([piece.end for piece in listed]),
-            np.stack([piece.lateral for piece in listed]),
-            np.stack([piece.sagittal for piece in listed]),
-            np.stack([piece.half_widths for piece in listed]),
+            *(np.stack([getattr(piece, name) for piece in listed]) for name in names),
         )
 
     def place(self, pose: Pose, local: Array) -> Array:

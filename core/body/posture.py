@@ -75,6 +75,16 @@ class Posture:
             np.concatenate([p.angles for p in batches]),
         )
 
+    @classmethod
+    def where(cls, mask: BoolArray, first: "Posture", second: "Posture") -> "Posture":
+        """The first of two batches of N where a mask (N,) holds, else the second, to the last digit."""
+        return cls(
+            first.skeleton,
+            np.where(mask[:, None], first.translation, second.translation),
+            np.where(mask[:, None, None, None], first.rotations, second.rotations),
+            np.where(mask[:, None], first.angles, second.angles),
+        )
+
     @property
     def batch(self) -> tuple[int, ...]:
         """Leading axes; () for a single posture."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..numerics.robust import levenberg_marquardt
 from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
@@ -169,16 +169,12 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
     posture = guess_posture(body, targets) if start is None else start
     weights = _neutral_weights(body)
     posture = levenberg_marquardt(
-        lambda batch: _residuals(body, batch, targets, weights), posture, Posture.plus, _choose, 60, 1e-9
+        lambda batch: _residuals(body, batch, targets, weights),
+        posture,
+        Posture.plus,
+        Posture.where,
+        60,
+        1e-9,
     )
     residual = np.linalg.norm(body.points(body.pose(posture)) - targets, axis=-1)
     return PostureFit(posture, residual)
-
-
-def _choose(mask: BoolArray, first: Posture, second: Posture) -> Posture:
-    return Posture(
-        first.skeleton,
-        np.where(mask[:, None], first.translation, second.translation),
-        np.where(mask[:, None, None, None], first.rotations, second.rotations),
-        np.where(mask[:, None], first.angles, second.angles),
-    )

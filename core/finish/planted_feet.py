@@ -142,7 +142,7 @@ def plant_feet(
         delta += step
         full = np.zeros((len(time_s), body.skeleton.dof_count))
         full[:, dofs] = delta
-        planted = _changed(posture, full, touched)
+        planted = Posture.where(touched, posture.plus(full), posture)
         yield 0.1 + 0.9 * (number + 1) / ITERATIONS
         if np.abs(step).max() < 1e-5:
             break
@@ -233,14 +233,3 @@ def _gauss_newton_step(
     equations.add(prior)
     gradient += prior.multiply(delta)
     return equations.factorize().solve(-gradient)
-
-
-def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:
-    """The posture with changes (F, D) in the touched frames; the others keep their very numbers."""
-    moved = posture.plus(delta)
-    return Posture(
-        posture.skeleton,
-        np.where(touched[:, None], moved.translation, posture.translation),
-        np.where(touched[:, None, None, None], moved.rotations, posture.rotations),
-        np.where(touched[:, None], moved.angles, posture.angles),
-    )

@@ -14,7 +14,6 @@ from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.skeleton import Skeleton
 from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
 from ..progress import Part, scaled
@@ -23,7 +22,7 @@ from .composed_states import LEGS, FrameCosts, FrameStates
 from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence, frame_likelihoods
 from .part_features import StanceFeatures, composed_postures
-from .part_pools import TORSO, PartPools, part_columns
+from .part_pools import TORSO, PartPools, part_dofs
 from .posed_costs import PosedCosts
 from .posing_input import PosingInput, tempering
 
@@ -35,7 +34,7 @@ def mean_postures(
     likeliest = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
     skeleton = likeliest.skeleton
     step = np.zeros((len(path.stance), skeleton.dof_count))
-    torso = [0, 1, 2, *_dofs(skeleton, TORSO)]
+    torso = [0, 1, 2, *part_dofs(skeleton, TORSO)]
     points = stances.features.points
     for row, (own, chance) in enumerate(zip(states, path.posterior, strict=True)):
         apart = np.linalg.norm(points[own.stance] - points[path.stance[row]], axis=-1).mean(axis=-1)
@@ -45,7 +44,7 @@ def mean_postures(
         step[row, torso] = weight @ others.minus(likeliest[np.full(len(kept), row)])[:, torso]
     for limb, chosen in zip(LIMBS, path.limbs.T, strict=True):
         kind, _, side = limb.partition(".")
-        dofs = _dofs(skeleton, kind, side)
+        dofs = part_dofs(skeleton, kind, side)
         every = _alone(pools, limb, len(stances.limbs[limb].points))
         shapes = stances.limbs[limb].points
         for row, part in enumerate(chosen):
@@ -70,12 +69,6 @@ def _alone(pools: PartPools, limb: str, count: int) -> Posture:
     none = np.zeros(count, dtype=np.intp)
     limbs = {other: np.arange(count) if other == limb else none for other in LIMBS}
     return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
-
-
-def _dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
-    """Degrees of freedom of a part."""
-    balls, hinges = part_columns(kind, side)
-    return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]
 
 
 # --- Postures of a clip put together from parts

@@ -13,7 +13,7 @@ from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN, LIMBS
 from ..numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from .composed_states import LEGS, FrameCosts, FrameStates
-from .match_evidence import student_cost
+from .match_evidence import squared_distances, student_cost
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
@@ -97,7 +97,7 @@ def limb_paths(
     def steps(limb: str, rows: Sequence[IndexArray | slice]) -> list[SingleArray]:
         moved = zip(points[limb][:-1], points[limb][1:], rows[:-1], rows[1:], variances, strict=True)
         return [
-            student_cost(_squared_distances(before[own], after[other]) / variance, 3)
+            student_cost(squared_distances(before[own], after[other]) / variance, 3)
             for before, after, own, other, variance in moved
         ]
 
@@ -130,14 +130,14 @@ def _step_cost(
 ) -> SingleArray:
     """(J, K) costs of steps between the states of two frames."""
     points = stances.features.points[:, TRUNK_POINTS]
-    apart = _squared_distances(points[before.stance], points[after.stance])
+    apart = squared_distances(points[before.stance], points[after.stance])
     turned = apart / np.float32((TRUNK_SPEED * duration_s) ** 2 + TRUNK_ROUGH_M**2)
     across = (PLACE_SPEED * duration_s) ** 2 + PLACE_ROUGH_M**2
     along = across + 0.5 * depth_step_m**2
     sight = cost.backward.astype(float)
     covariance = across * np.eye(3) + (along - across) * np.outer(sight, sight)
     whiten = np.linalg.inv(np.linalg.cholesky(covariance)).T.astype(np.float32)
-    moved = _squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])
+    moved = squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])
     # Largest cost of a step of the stance: evidence may be wrong for a while.
     total = np.minimum(turned + np.float32(0.5) * moved, np.float32(16.0))
     angle = stances.heading_rad[after.stance % HEADINGS]
@@ -147,11 +147,3 @@ def _step_cost(
     # How much likelier it is that a performer goes forwards by a meter than not.
     total -= np.float32(1.5) * np.clip(gone, -limit, limit)
     return np.asarray(total)
-
-
-def _squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
-    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
-    count = first.shape[1]
-    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
-    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
-    return np.maximum(squared, np.float32(0.0)) / np.float32(count)

@@ -29,6 +29,7 @@ from .match_evidence import (
     lowest,
     marker_moments,
     products,
+    squared_distances,
     student_cost,
 )
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
@@ -284,8 +285,6 @@ def _beliefs(
 
 def _nearness(first: Array, second: SingleArray) -> SingleArray:
     """(J, K) of points (J, Q, 3) and (K, Q, 3): 1 for the same place, 0 far away."""
-    a, b = np.asarray(first, dtype=np.float32).reshape(len(first), -1), second.reshape(len(second), -1)
-    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
-    mean = np.maximum(squared, 0.0) / np.float32(first.shape[1])
+    mean = squared_distances(np.asarray(first, dtype=np.float32), second)
     # Distance of a part's points between performers at the same moment of a motion.
     return np.asarray(np.exp(np.float32(-0.5 / 0.10**2) * mean))

@@ -272,6 +272,14 @@ def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
     return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
 
 
+def squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
+    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
+    count = first.shape[1]
+    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
+    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
+    return np.maximum(squared, np.float32(0.0)) / np.float32(count)
+
+
 def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
     """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
     kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))

@@ -17,6 +17,7 @@ from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture, yawed_at
+from ..body.skeleton import Skeleton
 from ..prior.library import Library
 from .known_motions import KnownMotions, known_motions
 
@@ -95,6 +96,12 @@ def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
     balls = [c for c, joint in enumerate(HUMAN.ball_joints) if HUMAN.joints[joint].name in names]
     hinges = [c for c, joint in enumerate(HUMAN.hinge_joints) if HUMAN.joints[joint].name in names]
     return balls, hinges
+
+
+def part_dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
+    """Degrees of freedom of a part."""
+    balls, hinges = part_columns(kind, side)
+    return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]
 
 
 _KEPT: OrderedDict[tuple[object, ...], Any] = OrderedDict()

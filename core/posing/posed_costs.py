@@ -10,14 +10,13 @@ from scipy.special import logsumexp
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.human import TRUNK
 from ..body.kinematics import Body, Pose
-from ..body.skeleton import Skeleton
 from ..numerics.robust import multivariate_cost
 from ..prior.library import Library
 from .composed_states import FrameCosts, FrameStates
 from .known_motions import PARTS, KnownPostures, known_postures, part_shapes
 from .match_evidence import FrameLikelihood
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
-from .part_pools import JOINTS, TORSO
+from .part_pools import TORSO, part_dofs
 
 
 class PosedCosts(FrameCosts):
@@ -99,7 +98,10 @@ class Plausibility:
         skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
         # A joint this far beyond its range is contorted, whatever is known.
         beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > 0.25
-        parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
+        parts = [
+            beyond[:, part_dofs(skeleton, *part.replace(TRUNK, TORSO).split("."))].any(axis=-1)
+            for part in PARTS
+        ]
         return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
     @cached_property
@@ -120,14 +122,6 @@ class Plausibility:
 def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
     """The density of the postures of libraries, one of which has any, on a body."""
     return Plausibility(known_postures(body, libraries))
-
-
-def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
-    """Degrees of freedom of a part."""
-    kind, _, side = part.partition(".")
-    stems = JOINTS[TORSO if part == TRUNK else kind]
-    joints = {f"{stem}.{side}" if side else stem for stem in stems}
-    return np.flatnonzero([name.rpartition(".")[0] in joints for name in skeleton.dof_names])
 
 
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
