@@ -216,8 +216,7 @@ def lower_sole_m(body: Body, posture: Posture) -> Array:
 # --- The default posture
 
 
-ARMS_LOWERED_RAD = float(np.radians(75.0))
-"""From the T pose; less than a right angle, as sleeves keep the arms off the trunk."""
+ARMS_LOWERED_RAD = float(np.radians(75.0))  # less than a right angle: sleeves keep arms off the trunk
 
 
 def standing_posture(

@@ -78,8 +78,7 @@ LIGHT: Mapping[str, Rgb] = {"L": (87, 181, 232), "R": (245, 168, 26), "": (235, 
 STRONG: Mapping[str, Rgb] = {"L": (0, 114, 178), "R": (213, 94, 0), "": (42, 45, 51)}
 """By side, on white paper: blue and vermilion, the dark neighbors of those; ink for the middle."""
 
-SHADED: Mapping[str, Rgb] = {**STRONG, "": (150, 153, 158)}
-"""The strong ones where the ground is dark: of bones that are not selected."""
+SHADED: Mapping[str, Rgb] = {**STRONG, "": (150, 153, 158)}  # the strong ones on dark ground: bones
 
 
 def side_of(name: str) -> str:
@@ -118,8 +117,7 @@ def mass_weights(skeleton: Skeleton) -> Array:
 # --- The default body
 
 
-WAIST_HEIGHT = 0.4
-"""Share of the trunk below the waist joint. The real spine bends all along; a single joint fits best here."""
+WAIST_HEIGHT = 0.4  # share of the trunk below the one waist joint, which stands for a whole spine
 XYZ = ("x", "y", "z")
 ROTATIONS = tuple(f"rotation_{axis}" for axis in XYZ)
 HERE: Placement = {}

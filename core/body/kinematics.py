@@ -148,9 +148,7 @@ class Body:
 class Extremities:
     """How hands and feet are turned about wrists and ankles, beside a batch of postures."""
 
-    turns: Mapping[str, Array]
-    """(..., 3, 3) by segment: its turn in its parent's frame. One that is not listed is rigid with its
-    parent."""
+    turns: Mapping[str, Array]  # (..., 3, 3) in its parent's frame, by segment; rigid if not listed
 
     def without(self, names: Collection[str]) -> "Extremities":
         """Those that are not named."""
@@ -199,9 +197,7 @@ class SegmentMotion:
 
     body: Body
     time_s: Array  # (F,) time of each frame [s]
-    turn: Mapping[str, Array]
-    """(F, 3, 3) by segment: its turn in the world from the rest posture, which stands upright in a T pose and
-    faces -Y."""
+    turn: Mapping[str, Array]  # (F, 3, 3) in the world from the T pose that faces -Y, by segment
     start: Mapping[str, Array]  # (F, 3) by segment: its joint nearer to the trunk [m]
     end: Mapping[str, Array]  # (F, 3) by segment: its other end [m]
 

@@ -12,8 +12,7 @@ from scipy.linalg.lapack import dpbsv
 
 from ..arrays import Array, BoolArray, IndexArray
 
-SLOPE_WEIGHT = 0.05
-"""Weight of the data's own slope at a key [frames]; it decides where no frame lies between two keys."""
+SLOPE_WEIGHT = 0.05  # of the data's slope at a key [frames]: decides where no frame lies between keys
 BAND = 3  # bandwidth: value and slope of a key couple with those of the next
 
 

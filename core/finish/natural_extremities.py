@@ -19,21 +19,13 @@ from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smoot
 from .key_reduction import steadied
 from .planted_feet import Contact, find_contacts
 
-HANGING_RAD = np.radians(20.0)
-"""Plantarflexion of a foot that hangs free, well above the ground; near it the toes are kept up."""
-HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5
-"""Heights of the sole above the ground between which a foot begins to hang."""
-STANDS_M_S, SWINGS_M_S = 1.0, 2.5
-"""Speeds of the ankle below which no clearance is kept, and above which all of it."""
-STILL_M_S, LOW_M = 0.2, 0.04
-"""Speed, and height above a flat foot's, at which a foot that does not rest, because it sways or slides, is
-held flat by half."""
-SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)
-"""Eversion and inversion (AAOS 1965, *Joint Motion*)."""
-LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)
-"""Leans of a shin to its side from which on, and at which, the ground no longer turns its foot."""
-FREE_HEADING_RAD = np.radians(25.0)
-"""A resting foot keeps its heading while the shin above it turns by no more than this."""
+HANGING_RAD = np.radians(20.0)  # plantarflexion of a foot that hangs free, well above the ground
+HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5  # heights of the sole between which a foot begins to hang
+STANDS_M_S, SWINGS_M_S = 1.0, 2.5  # ankle speeds that need no toe clearance, and all of it
+STILL_M_S, LOW_M = 0.2, 0.04  # where a foot that sways or slides is held flat by half
+SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)  # eversion, inversion (AAOS 1965)
+LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)  # leans between which the ground lets go
+FREE_HEADING_RAD = np.radians(25.0)  # a resting foot keeps its heading up to this turn of the shin
 
 
 def foot_turns(
@@ -130,11 +122,9 @@ def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict
 # --- Hands that hang relaxed
 
 
-CURL_RAD = np.radians(10.0)
-"""Bend of a relaxed hand toward the palm, half-closed fingers included, which one bone stands for."""
+CURL_RAD = np.radians(10.0)  # a relaxed hand's, half-closed fingers included, which one bone stands for
 DROOP_RAD = np.radians(8.0)  # what its weight bends a hand by when the forearm is level
-BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)
-"""Extension and flexion of a wrist (AAOS 1965, *Joint Motion*)."""
+BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)  # of a wrist (AAOS 1965, *Joint Motion*)
 THICKNESS_M = 0.012  # height of the fingers' middle above the ground that they lie on
 DOWN = np.array([0.0, 0.0, -1.0])
 

@@ -12,8 +12,7 @@ from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
 from .rig import Rig
 
-RELEASE_SPEED_M_S = 0.25
-"""Below this a foot may rest; once it must be slower than half of it."""
+RELEASE_SPEED_M_S = 0.25  # below this a foot may rest; once it must be slower than half of it
 NEIGHBORHOOD_S = 1.0
 STRAY_M = 0.025  # largest distance of a resting ankle's estimate from its place
 
@@ -108,8 +107,7 @@ ANKLE_STD_M = 2e-4  # standard deviation of an ankle from its target
 CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
 """Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
 twists."""
-RESTING_TOLERANCE_M = 0.0005
-"""Largest error that key reduction may give a resting ankle [m]: it must not slide again."""
+RESTING_TOLERANCE_M = 0.0005  # most that key reduction may move a resting ankle: it must not slide
 SOLE_TOLERANCE_M = 0.001  # largest error that it may give heel and tip of a resting foot [m], which lies flat
 ITERATIONS = 8
 

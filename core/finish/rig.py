@@ -25,13 +25,10 @@ class RigBone:
     mode: str
     """QUATERNION (w, x, y, z), AXIS_ANGLE (angle, x, y, z), the order of Euler angles such as XYZ, or
     `NO_TURN` for a bone whose rotation has no channels."""
-    left: Array
-    """(3, 3) and `right`: `left @ rotation @ right` is the joint's frame in its turner's joint's frame."""
+    left: Array  # (3, 3) `left @ rotation @ right` is the joint's frame in its turner's frame
     right: Array  # (3, 3)
-    origin: Array
-    """(3,) the joint in the parent's joint's frame [m], in the world for a root, before its own location."""
-    points: Array
-    """(N, 3) points fixed to the bone, in its joint's frame [m]: its end, and the ends of rigid leaves."""
+    origin: Array  # (3,) the joint in its parent's frame [m], of a root in the world, without location
+    points: Array  # (N, 3) fixed points in its joint's frame [m]: its end, and those of rigid leaves
     location_axes: Array | None = None
     """(3, 3) takes its location channels to the parent's joint's frame, for a root to the world; None for a
     bone that has none."""

@@ -74,10 +74,8 @@ def _alone(pools: PartPools, limb: str, count: int) -> Posture:
 # --- Postures of a clip put together from parts
 
 
-PART_SCALE = 0.4
-"""Deviation of a composed body from the performer, relative to that of another performer's posture."""
-WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
-"""Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
+PART_SCALE = 0.4  # deviation of a composed body, relative to that of another performer's posture
+WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)  # distances tried, as shares of one good to a tenth
 SMOOTH_S = 0.6  # time over which the rough distance is smoothed
 FARTHER = 1.5  # sizes rule out z = 0 where a performer on it would be so many times farther away or nearer
 MOST_PLACED = 16  # frames in which the performer is placed by size

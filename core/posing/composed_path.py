@@ -17,8 +17,7 @@ from .match_evidence import squared_distances, student_cost
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
-TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
-"""Usual speed of shoulders and hips about the hips' middle [m/s], and what pool and headings are rough by."""
+TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06  # of shoulders and hips about the hips [m/s]; of the pool [m]
 PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04  # the same of the place
 LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09  # the same of elbows, wrists, knees and ankles
 

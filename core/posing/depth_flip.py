@@ -28,17 +28,14 @@ from .limb_chain import (
 class FlippedPart(Enum):
     """The parts of a limb or of the trunk that lean to the other side."""
 
-    UPPER = (True, False)
-    """Upper arm or thigh, with forearm or shin leaning as before; of the trunk, the chest."""
+    UPPER = (True, False)  # upper arm or thigh, forearm or shin leaning as before; of the trunk, the chest
     LOWER = (False, True)  # forearm or shin alone; of the trunk, the pelvis
     BOTH = (True, True)  # the whole limb, or the whole trunk
 
 
 FLIPPABLE = (TRUNK, *LIMBS)  # parts of the body whose depth can be flipped, as `body/limbs` names them
-FLAT_M = 0.5 * DISTINCT_M
-"""A part whose ends differ less in depth [m] lies flat in the picture, and has no other side."""
-SEEN_M, SEEN_DEPTH_M = 0.01, 0.1
-"""How near the head on a flipped trunk stays to where it was seen, and to its new depth."""
+FLAT_M = 0.5 * DISTINCT_M  # a part whose ends differ less in depth has no other side [m]
+SEEN_M, SEEN_DEPTH_M = 0.01, 0.1  # how near a flipped trunk's head stays to its sight, and depth
 _ORDER_OF_TRUNK = (FlippedPart.BOTH, FlippedPart.UPPER, FlippedPart.LOWER)
 """A trunk that leans the wrong way mostly does so from the hips up."""
 

@@ -82,12 +82,9 @@ class Pull:
 
     point: str  # name of a principal point
     place: Array  # (3,) in the world [m]
-    std_m: float
-    """Standard deviation of its distance from there [m], ..."""
-    sight: Array | None = None
-    """... across this unit direction (3,), if given, ..."""
-    depth_std_m: float = 0.0
-    """... and along it [m]."""
+    std_m: float  # standard deviation of its distance from there [m], or of that ...
+    sight: Array | None = None  # ... across this unit direction (3,), where given, ...
+    depth_std_m: float = 0.0  # ... and of that along it [m]
 
     @property
     def weights(self) -> Array:

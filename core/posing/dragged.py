@@ -13,12 +13,9 @@ from ..body.posture import Posture
 from .drag import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
 
-ON_SIGHT_M = 0.001
-"""A dragged joint lies under the mouse: a millimeter is less than a pixel of any footage, ..."""
-DEPTH_M = 0.03
-"""... while its depth may give way where the body does not allow both."""
-PUSHED_M = 0.01
-"""A joint that is pushed along the line of sight comes as near as it can, off the line or on it."""
+ON_SIGHT_M = 0.001  # a joint lies under the mouse: less than a pixel of any footage
+DEPTH_M = 0.03  # its depth may give way where the body does not allow both
+PUSHED_M = 0.01  # a joint pushed along the line of sight comes as near as it can, off it or on it
 HELD_M = 0.05  # joints that should stay where they are, but may give way to the dragged one
 PLANTED_M = 0.005  # ankles of a body whose trunk is dragged
 FLAT_M = 0.01  # difference in depth of a limb's middle from its root below which it is on neither side [m]
@@ -26,8 +23,7 @@ HIPS = ("hip.L", "hip.R")
 
 Freedom = Mapping[str, float]
 
-_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})
-"""The bend of a leaning trunk is shared, most of it above the waist."""
+_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})  # most of a bend is above the waist
 _HEAD: Freedom = MappingProxyType({"neck": 1.0, "waist": 0.1})
 
 

@@ -17,19 +17,15 @@ NEAR_FRAMES = 2  # found keyframes keep farther than this from posed ones
 class FoundPoses:
     """The most probable postures of a clip that nobody posed."""
 
-    frames: tuple[MatchedFrame, ...]
-    """The frames proposed for keyframes, in order, with their candidates, the chosen one first."""
+    frames: tuple[MatchedFrame, ...]  # in order, those proposed for keyframes
     postures: Posture  # (F,) the posture in every frame of the clip
     fit: float  # mean share of the footage that is explained, 0 to 1
     floor_m: float  # height of the floor that the performer stands on [m]
-    reason: str
-    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
-    say."""
+    reason: str  # sentence for people: how much of the footage is explained
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
     library: str = COMPOSED  # identifier of the library that all was composed of, where only one was asked
-    between: tuple[int, int] | None = None
-    """First and last frame that were looked at; None for the whole clip."""
+    between: tuple[int, int] | None = None  # first and last frame that were looked at; None for all
 
     def keyframe(self, frame: MatchedFrame, index: int | None = None) -> Keyframe:
         """The found keyframe with a frame's chosen candidate, or at another index with the posture there."""

@@ -46,9 +46,7 @@ def believed_fit(
 # --- What contradicts a frame's plausible postures
 
 
-UNWORN_COST = 12.0
-"""Cost of a region that nobody wears: one marker in twenty, at one of some ten thousand places and sizes that
-can be told apart in a picture."""
+UNWORN_COST = 12.0  # one marker in twenty is worn by nobody, at one of ten thousand places and sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,11 +112,8 @@ class FramePoses:
     """What a frame may show."""
 
     candidates: tuple[Candidate, ...]  # the likeliest first; at least one
-    contradictions: tuple[str, ...] = ()
-    """Names of the markers and keypoints that the first candidate does not explain, as no plausible posture
-    does."""
-    cost: float = 0.0
-    """Near a pose, the negative logarithm of the posture's probability, up to a constant of the frame."""
+    contradictions: tuple[str, ...] = ()  # markers and keypoints that the first candidate does not explain
+    cost: float = 0.0  # near a pose, -log of the posture's probability, up to a constant of the frame
 
 
 def find_frame_poses(

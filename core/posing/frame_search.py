@@ -37,8 +37,7 @@ from .posed_costs import Plausibility, plausibility
 class FrameShown:
     """One frame's evidence."""
 
-    evidence: KeyframeEvidence
-    """The models of markers and keypoints, as calibrated on keyframes or of average proportions."""
+    evidence: KeyframeEvidence  # models of what is seen, calibrated on keyframes or average
     frame: int  # the frame's index, which a moving camera's pose depends on
     tracks: RegionTracks  # the markers' regions in this frame alone
     keypoints: Keypoints  # the performer's keypoints in this frame alone
@@ -102,10 +101,8 @@ class FrameShown:
 
 
 MOST_STARTS = 80  # postures that descend side by side
-PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3
-"""How far a descent may go from its start: sizes are good to a tenth, headings are 15 degrees apart."""
-FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))
-"""Factors of the image noise, one a step, from a composition, which a performer is about 5 cm off."""
+PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3  # of a descent: sizes are good to a tenth, headings to 15 degrees
+FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))  # factors of the image noise, one a step
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,8 +100,7 @@ def _flat(points: Array) -> Array:
 # body
 
 
-STEP_M = 0.045
-"""Mean distance of the points from one posture to the next: well below what performers differ by."""
+STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
 LEAST_RATE, MOST_RATE = 8.0, 25.0  # postures per second of a motion
 MOST_POSTURES = 450  # postures of a library, without mirror images; with more the steps are widened
 
@@ -111,8 +110,7 @@ class KnownMotions:
     """S postures, the second half the mirror images of the first; one in no motion is a motion of its own."""
 
     posture: Posture  # (S,) facing -Y, the hips at the origin
-    names: tuple[tuple[str, bool], ...]
-    """(S,) name of the library's posture nearest in time, and whether it is mirrored."""
+    names: tuple[tuple[str, bool], ...]  # (S,) the library's posture nearest in time, and if it is mirrored
     library: IndexArray  # (S,) number of the library, in the order in which they were given
     motion: IndexArray  # (S,) number of the motion
     time_s: Array  # (S,) time within the motion

@@ -12,8 +12,7 @@ from ..estimate.terms.contact import STEP_M
 from ..numerics.robust import multivariate_cost
 from .match_evidence import student_cost
 
-NO_CONTACT_COST = np.float32(4.0)
-"""Cost of a frame in which neither foot stands on the floor: jumps, steps, furniture."""
+NO_CONTACT_COST = np.float32(4.0)  # where neither foot stands: jumps, steps, furniture
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,8 +39,7 @@ from .posing_input import PosingInput, tempering
 MOST_STATES, MARGIN = 500, 15.0  # states kept of a frame, and how much more than the likeliest they may cost
 DEPTH_STD = 0.07  # error of the distance that a first composition has, as a share
 HIPS_STD_M = 0.05  # difference of the hips' height between performers at the same moment of a motion
-TURN_STD, TURN_ROUGH_RAD = 0.5, 0.13
-"""Turning besides the motion's own [rad/s], and what headings are rough by."""
+TURN_STD, TURN_ROUGH_RAD = 0.5, 0.13  # besides the motion's own [rad/s]; headings are as rough [rad]
 
 
 @dataclass(frozen=True, eq=False)

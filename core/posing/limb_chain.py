@@ -35,8 +35,7 @@ class LimbChain:
     ball: int  # place of the root's rotation in `Posture.rotations`
     hinge: int  # place of the bend in `Posture.angles`
     above: int  # the joint that carries the root
-    rest: Array
-    """(3, 3) as columns the limb's direction at rest, the direction it bends to, and the hinge's axis."""
+    rest: Array  # (3, 3) columns: direction at rest, the one it bends to, the hinge's axis
     dofs: IndexArray  # (4,) degrees of freedom of ball and hinge
 
 
@@ -150,8 +149,7 @@ class LimbInSight:
 
     posture: Posture  # the whole posture
     leans: BoolArray  # (2,) whether upper and lower part lead to the farther of the two places on their lines
-    excess_rad: float
-    """How far joint limits would have been passed, had the joints been put exactly on their lines [rad]."""
+    excess_rad: float  # how far beyond joint limits joints exactly on their lines would be [rad]
     off_m: float  # the larger distance of middle and end from their lines of sight [m]
     effort: float
     """Mean square distance of the limb's joints from the middle of their ranges, in half ranges: Liégeois
@@ -164,8 +162,7 @@ class LimbInSight:
         return OUTSIDE * self.excess_rad + 20.0 * self.off_m + self.effort
 
 
-OUTSIDE = 4.0
-"""Strain of a radian beyond joint limits: a quarter of it weighs as much as the whole of a limb's ranges."""
+OUTSIDE = 4.0  # strain of a radian beyond limits: a quarter of it weighs as a limb's whole ranges
 
 
 def ways_in_sight(

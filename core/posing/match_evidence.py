@@ -158,22 +158,18 @@ def _marker_deviation(segment: str) -> float:
 
 DEGREES_OF_FREEDOM = 4.0  # of Student's t distribution
 EXCHANGED_COST = np.float32(3.0)  # cost of taking a detector's left for right in a frame: one in twenty
-ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-"""Entries of a symmetric matrix in the order of `second_moment`."""
-ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0
-"""Second moments of a cylinder's flat silhouette: across it in squared radii, along it in squared lengths."""
+ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # of a symmetric matrix, as in `second_moment`
+ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0  # second moments of a flat silhouette, in radii² and lengths²
 
 
 @dataclass(frozen=True, eq=False)
 class FrameLikelihood:
     """One frame: A points, M of them markers, and G guessed depths, one a keypoint or none."""
 
-    weight: Array
-    """(A,) one over the standard deviation of each point's place [1/m]; 0 where it is not visible."""
+    weight: Array  # (A,) one over the standard deviation of each place [1/m]; 0 where not visible
     backward: Array  # (3,) the camera's backward axis in the world
     location: Array  # (3,) the camera's place [m]
-    image_axes: Array
-    """(A, 2, 3) directions in the world along which a marker's image extends to the right and upwards."""
+    image_axes: Array  # (A, 2, 3) world directions of a marker's image to the right and upwards
     extent: Array  # (M, 3) square root of the observed second moments per meter of depth, xx, xy, yy
     sight: Array  # (3,) line of sight to the performer, along which depths are guessed
     depth_m: Array  # (G,) guessed depth of each keypoint behind the hips [m]; 0 where there is none
@@ -295,8 +291,7 @@ class MarkerMoments:
     A limb's image has nearly the moments of their projection, which is linear in them.
     """
 
-    centroid: Array
-    """(N, A, 3) of the markers' volumes, then the keypoints, relative to the hips' midpoint [m]."""
+    centroid: Array  # (N, A, 3) of markers' volumes, then keypoints, from the hips' midpoint [m]
     second_moment: Array  # (N, M, 3, 3) the markers' second central moments [m²]
     points: Array  # (N, P, 3) the body's points relative to the hips' midpoint [m]
 

@@ -29,8 +29,7 @@ class PartFeatures:
     observed: IndexArray  # (A,) which of the evidence's markers and keypoints lie on this part; markers first
     place: SingleArray  # (N, A, 3) where they are in the frame of what the part hangs on [m]
     second_moment: SingleArray  # (N, M, 6) second moments of the markers among them [m²], see `ENTRIES`
-    points: SingleArray
-    """(N, Q, 3) elbow and wrist or knee and ankle; of stances the body's points without those [m]."""
+    points: SingleArray  # (N, Q, 3) elbow and wrist, knee and ankle; of stances all others [m]
     soles: SingleArray  # (N, 2, 3) heel and tip of a leg's foot; none else [m]
     cost: SingleArray  # (N,) how unusual each is
 

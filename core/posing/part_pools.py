@@ -35,12 +35,9 @@ POINTS = {
     LEG: ("knee.L", "ankle.L"),
 }
 """Principal points by which parts are compared; of the left side where there are two."""
-KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}
-"""Parts of libraries whose points are nearer than this on average look the same: below what performers differ
-by, and as fine as a clip of a few seconds can be searched."""
+KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}  # libraries' parts nearer than this look the same
 MOST_KNOWN = {TORSO: 30, ARM: 130, LEG: 110}  # parts taken from libraries at most
-SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}
-"""Samples of the range of motion keep this far from one another and from known parts."""
+SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}  # distance of samples from one another and from known parts
 MOST_SAMPLED = {TORSO: 18, ARM: 90, LEG: 70}
 UNUSUAL_DEGREES = 3.0  # of the Student's t by which parts farther off are rarer: a prior must forgive
 TOGETHER_SHARE = 0.5  # weight of which parts libraries show together; the rest is for any other combination
@@ -51,8 +48,7 @@ class PartPool:
     """N parts of one kind."""
 
     kind: str
-    posture: Posture
-    """(N,) postures of the take's body whose part it is; of limbs the left one. Torsos face -Y, hips at 0."""
+    posture: Posture  # (N,) that have the part, the left one of limbs; torsos face -Y, hips at 0
     cost: Array  # (N,) negative log of how usual each is, 0 for a known one
     source: IndexArray  # (N,) the posture among all libraries' that is nearest
 
@@ -69,8 +65,7 @@ class PartPools:
     arms: PartPool
     legs: PartPool
     motions: KnownMotions  # what the parts are of, see `PartPool.source`
-    limb_cost: Mapping[str, Array]
-    """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
+    limb_cost: Mapping[str, Array]  # (T, L) -log of how usual limbs are with torsos
     legs_together: Array  # (L, L) the same of two legs, left and right, beyond what either is by itself
 
     def composed(

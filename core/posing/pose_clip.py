@@ -29,8 +29,7 @@ from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, posing_input, stretch_of, tempering
 
-LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8
-"""Shares of the work after which parts are learned, and postures composed."""
+LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8  # of the work, after which parts are learned and composed
 
 
 def pose_clip(

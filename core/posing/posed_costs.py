@@ -68,15 +68,10 @@ class PosedCosts(FrameCosts):
 # --- How plausible a body's parts are by all postures that are known
 
 
-KERNEL_M = 0.05
-"""Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
-differ by in the same posture, as the likeliest width for one library by the others is 3 to 4 cm and these
-come from one hand."""
+KERNEL_M = 0.05  # three fifths of what performers differ by; libraries predict each other by 3 to 4 cm
 DEGREES = 4.0  # of Student's t, the shape of a kernel: the likeliest for one library by the others, too
-DIMENSIONS = 4.0
-"""Degrees of freedom of a part: two directions of a limb's two segments; lean, turn and bend of a trunk."""
-MARGIN = 6.0
-"""Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
+DIMENSIONS = 4.0  # of a part: two directions of two segments; lean, turn and bend of a trunk
+MARGIN = 6.0  # how much more unusual an unknown motion may be: a part 40 cm from all known
 
 
 @dataclass(frozen=True, eq=False)

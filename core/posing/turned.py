@@ -22,8 +22,7 @@ from ..take.take import Take
 from .drag import Pull, SightLine, pulled
 from .limb_chain import limb_chain, sight_lines, strain_of, ways_in_sight
 
-HEAD_M, HEAD_DEPTH_M = 0.02, 0.3
-"""How near the head comes to where it was seen, and to the depth it has on the turned neck."""
+HEAD_M, HEAD_DEPTH_M = 0.02, 0.3  # how near the head comes to its sight, and to its turned depth
 
 
 class Facing(Enum):
@@ -39,8 +38,7 @@ class Sides(Enum):
     """What becomes of left and right when the performer is turned."""
 
     STAY = "stay"  # each arm and leg stays where it is in the picture; the trunk turns between them
-    EXCHANGE = "exchange"
-    """The left arm takes the right one's place in the picture, and so the legs: the outline stays."""
+    EXCHANGE = "exchange"  # left limbs take the right ones' place in the picture: the outline stays
     TURN = "turn"  # everything turns with the trunk, as on a turntable
 
 

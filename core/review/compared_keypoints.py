@@ -35,13 +35,11 @@ class ComparedKeypoints:
 
     names: tuple[str, ...]  # (N,) the body point each shows
     sources: tuple[str, ...]  # (N,) what saw each
-    seen: Array
-    """(F, N, 2) where each was seen [px]; left and right are exchanged back where they were swapped."""
+    seen: Array  # (F, N, 2) where each was seen [px], left and right exchanged back if swapped
     predicted: Array  # (F, N, 2) where the motion puts it [px]
     confidence: Array  # (F, N) of its source, 1 for what it is sure of, 0 where not seen
     distance_px: Array  # (F, N) between the two; NaN where not compared
-    expected_px: Array
-    """(F, N) standard deviation of each coordinate of that distance; infinite for what is left out."""
+    expected_px: Array  # (F, N) std of each coordinate of that distance; infinite for what is left out
     thrown_out: BoolArray  # (F, N) seen, but not believed
     swapped: BoolArray  # (F, N) seen on the other side of the body by its source
 

@@ -18,8 +18,7 @@ from scipy.special import gammainc
 
 from ..arrays import Array
 
-TOLERANCE_SHARE = 0.025
-"""Tolerance as a share of the performer's stature: four to five centimeters for an adult."""
+TOLERANCE_SHARE = 0.025  # of the performer's stature: four to five centimeters for an adult
 
 
 def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) -> Array:

@@ -32,8 +32,7 @@ class ContourSight:
     parts: tuple[str, ...]  # (O,) their segments
     quality: Array  # (F, O) share of a part's contour near which an edge was found, of what usually is
     misfit: Array  # (F, O) reduced squared distance from these edges; NaN where none was found
-    lines: Array
-    """(F, L, S, 2) contour lines of all parts, hands and feet included, as the motion predicts them [px]."""
+    lines: Array  # (F, L, S, 2) contour lines of all parts as the motion predicts them [px]
 
     @classmethod
     def none(cls, frames: int) -> "ContourSight":

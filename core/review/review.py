@@ -51,19 +51,15 @@ class Review:
     predicted: Array  # (F, M, K, 2) the same of each marker's visible part as the motion predicts it [px]
     points: Array  # (F, 13, 3) principal points in the world [m]
     image_points: Array  # (F, 13, 2) the same in the picture, through the calibrated lens [px]
-    sigma_m: Array
-    """(F, 13) square root of the trace of each point's covariance [m]; NaN for a method without."""
-    reprojection_px: Array
-    """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
+    sigma_m: Array  # (F, 13) root of the trace of each point's covariance [m]; NaN without
+    reprojection_px: Array  # (F, M) predicted from observed centroids [px]; NaN where not compared
     nearness: Array  # (F,) degree to which a keyframe is near, 0 to 1
     speed: Array  # (F,) V_sum [px per frame]
     confidence: Array  # (F,) from 0 to 1; NaN for a method without uncertainty
     keyframe_indices: IndexArray  # (K,) frame indices of the keyframes
     weak_frames: tuple[WeakFrame, ...]  # frames worth another keyframe, the worst first
-    contours: Array
-    """(F, L, S, 2) predicted contour lines of the body [px], where no marker shows how the motion fits."""
-    keypoints: ComparedKeypoints
-    """Of the performer, N of them; none in a review that was kept before there were any."""
+    contours: Array  # (F, L, S, 2) predicted contour lines [px], where no marker shows the fit
+    keypoints: ComparedKeypoints  # N of the performer; none in a review kept before there were any
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`; none needs pickling."""

@@ -28,20 +28,13 @@ class Score:
 
     frames: int
     keyframes: int
-    mpjpe: float
-    """Mean over free frames and 13 points of the distance to the true point."""
-    mpjpe_all: float
-    """The same over all frames."""
-    rooted: float
-    """Like `mpjpe`, after both are moved so that the hips' midpoints coincide."""
-    depth: float
-    """Mean absolute error along the line from the camera to the true point, free frames."""
-    image: float
-    """Mean error across that line, free frames."""
-    worst_p95: float
-    """95th percentile of the points' errors, free frames."""
-    jitter: float
-    """Mean length of the error's second difference, per frame²."""
+    mpjpe: float  # mean over free frames and 13 points of the distance to the true point
+    mpjpe_all: float  # the same over all frames
+    rooted: float  # like `mpjpe`, after both are moved so that the hips' midpoints coincide
+    depth: float  # mean absolute error along the line from the camera to the true point, free frames
+    image: float  # mean error across that line, free frames
+    worst_p95: float  # 95th percentile of the points' errors, free frames
+    jitter: float  # mean length of the error's second difference, per frame²
     skate: float | None
     """Mean horizontal travel per frame of ankles that truly stand; None where none ever stands."""
     coverage95: float | None

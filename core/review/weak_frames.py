@@ -18,14 +18,10 @@ WEAK_CONFIDENCE = 0.75  # frames of a higher confidence need no keyframe
 FRAMES_PER_NAMED = 20  # frames of the clip for each one that is named
 NEAREST_FRAMES = 4  # least distance of a named frame from a keyframe [frames]
 HIDDEN_QUALITY = 0.3
-NOTICEABLE_HIDDEN = 0.4
-"""Share of the frames around a weak one in which a marker is hidden, ..."""
-NOTICEABLE_MISFIT = 2.0
-"""... misfit, as in `confidence` (of which the root counts, as it is squared), ..."""
-NOTICEABLE_SPEED = 1.5
-"""... speed in the clip's median speeds, ..."""
-NOTICEABLE_DISTANCE = 0.6
-"""... and distance to the nearest keyframe in mean gaps, that make a reason; the greatest counts."""
+NOTICEABLE_HIDDEN = 0.4  # share of the frames around a weak one in which a marker is hidden,
+NOTICEABLE_MISFIT = 2.0  # misfit, as in `confidence`, of which the root counts as it is squared,
+NOTICEABLE_SPEED = 1.5  # speed in the clip's median speeds, and
+NOTICEABLE_DISTANCE = 0.6  # distance from keyframes in mean gaps that make a reason; the greatest counts
 
 
 class Reason(StrEnum):
@@ -45,8 +41,7 @@ class WeakFrame:
     reason: Reason
     strength: float  # worth of a keyframe there, relative to the worst frame's: 0 to 1
     marker: int | None = None  # the marker that is hidden or misplaced, where one is the reason
-    point: str | None = None
-    """The body point whose keypoints are hidden or misplaced, or the segment whose contour is."""
+    point: str | None = None  # the body point whose keypoints, or segment whose contour, is the reason
 
 
 @dataclass(frozen=True, eq=False)
