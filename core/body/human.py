@@ -1,8 +1,8 @@
-"""Joint limits: the range of motion of each joint of the default body [degrees].
+"""The default body: joint limits, parts, colors of sides, masses, and the skeleton itself.
 
-American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring and Recording*, widened by
-about a quarter because performers are no patients and because a ball's range is stated on the components of
-its rotation vector from rest, which is only a box around the true, rounder range.
+Limits: American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring and Recording*,
+widened by about a quarter because performers are no patients and because a ball's range is stated on the
+components of its rotation vector from rest, which is only a box around the true, rounder range.
 """
 
 from collections.abc import Mapping

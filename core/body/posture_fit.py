@@ -1,4 +1,4 @@
-"""Initial posture from thirteen points by geometry alone, close enough for a local fit to converge."""
+"""Inverse kinematics from thirteen points: a first posture by geometry alone, then a local fit."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Angles of joints over time, without leaps that no joint makes and without a tremor from frame to frame."""
+"""Key reduction: few keys whose curves keep all joints and ends of a body within a tolerance."""
 
 import heapq
 from collections.abc import Generator, Sequence
@@ -9,37 +9,8 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
-from ..numerics.vectors import gaussian, usual_step
 from .hermite import Spline, fit_keys, refit
 from .rig import Rig, RigPose
-
-
-def steadied(angles: Array, time_s: Array) -> Array:
-    """Angles (F, ...) [rad] no faster than a joint, smoothed a little."""
-    if len(time_s) < 2:
-        return angles
-    # Angular speed of an ankle in a sprinter's push-off.
-    slow = _slowed(angles, np.radians(700.0) * np.diff(time_s))
-    return gaussian(slow, 0.03 / usual_step(time_s), truncate=3.0)
-
-
-def _slowed(angles: Array, steps: Array) -> Array:
-    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
-
-    The mean of the lowest such curve above them and the highest below.
-    """
-    above, below = angles.copy(), angles.copy()
-    for frame, step in enumerate(steps):
-        above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
-        below[frame + 1] = np.minimum(below[frame + 1], below[frame] + step)
-    for frame in range(len(steps) - 1, -1, -1):
-        above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
-        below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
-    return np.asarray(0.5 * (above + below))
-
-
-# --- A body's motion by keys
-
 
 REACH = 3  # number of keys on either side of a new or removed one that are fitted anew
 

@@ -15,8 +15,8 @@ from ..body.kinematics import Body, Extremities, Pose
 from ..body.posture import Posture
 from ..body.rotations import exponential, hinge
 from ..body.skeleton import SIDES
+from ..numerics.vectors import gaussian, usual_step
 from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smooth_step
-from .key_reduction import steadied
 from .planted_feet import Contact, find_contacts
 
 HANGING_RAD = np.radians(20.0)  # plantarflexion of a foot that hangs free, well above the ground
@@ -48,7 +48,7 @@ def foot_turns(
     standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
     pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
     turned = upright * _held_heading(shins, contacts, time_s)
-    steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
+    steady = _steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
     flexion, leveling, turned = np.moveaxis(steady, 1, 0)
     level = np.cos(shins.roll + leveling)
     return _by_side(shins, soles.above_ground(shins.pitch + flexion, height, level, shins), leveling, turned)
@@ -119,6 +119,30 @@ def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict
     return {f"foot.{side}": turns[:, number] for number, side in enumerate(SIDES)}
 
 
+def _steadied(angles: Array, time_s: Array) -> Array:
+    """Angles (F, ...) [rad] no faster than a joint, smoothed a little."""
+    if len(time_s) < 2:
+        return angles
+    # Angular speed of an ankle in a sprinter's push-off.
+    slow = _slowed(angles, np.radians(700.0) * np.diff(time_s))
+    return gaussian(slow, 0.03 / usual_step(time_s), truncate=3.0)
+
+
+def _slowed(angles: Array, steps: Array) -> Array:
+    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
+
+    The mean of the lowest such curve above them and the highest below.
+    """
+    above, below = angles.copy(), angles.copy()
+    for frame, step in enumerate(steps):
+        above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
+        below[frame + 1] = np.minimum(below[frame + 1], below[frame] + step)
+    for frame in range(len(steps) - 1, -1, -1):
+        above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
+        below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
+    return np.asarray(0.5 * (above + below))
+
+
 # --- Hands that hang relaxed
 
 
@@ -145,7 +169,7 @@ def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[s
         wrist = pose.place(hand.joint, body.local(hand.start))[:, 2]
         over = (wrist - ground_m - THICKNESS_M) / length
         ahead, palm = -down @ (along / length), -down @ DOWN
-        bend = steadied(_above_ground(bend, over, ahead, palm), time_s)
+        bend = _steadied(_above_ground(bend, over, ahead, palm), time_s)
         bend = _above_ground(bend, over, ahead, palm)
         turns[name] = exponential(bend[:, None] * to_palm) @ exponential((droop @ aside)[:, None] * aside)
     return turns

@@ -1,4 +1,4 @@
-"""Contacts of feet: ranges of frames in which an ankle is slow, near one place, and low or carrying."""
+"""Contacts of feet, where an ankle is slow, near one place and low, and feet that are held there."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Means of composed postures: what the probable parts near the likeliest ones have in common.
+"""Postures of a clip, put together from parts: the likeliest path, and the mean of probable parts around it.
 
 The likeliest path takes one part of a pool a frame, some centimeters from the truth whatever is seen. The
 mean of the parts near it, weighed by their probabilities, is nearer; parts of another kind, as those on the
@@ -69,9 +69,6 @@ def _alone(pools: PartPools, limb: str, count: int) -> Posture:
     none = np.zeros(count, dtype=np.intp)
     limbs = {other: np.arange(count) if other == limb else none for other in LIMBS}
     return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
-
-
-# --- Postures of a clip put together from parts
 
 
 PART_SCALE = 0.4  # deviation of a composed body, relative to that of another performer's posture

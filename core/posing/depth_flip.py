@@ -11,8 +11,8 @@ from ..body.human import LIMBS, TRUNK
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
-from .drag import Pull, SightLine, pulled
 from .dragged import planted
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import (
     DISTINCT_M,
     LimbChain,

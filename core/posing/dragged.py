@@ -10,7 +10,7 @@ from ..body.human import TRUNK, limb_of
 from ..body.kinematics import Body
 from ..body.mirror import other_side
 from ..body.posture import Posture
-from .drag import Pull, SightLine, pulled
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
 
 ON_SIGHT_M = 0.001  # a joint lies under the mouse: less than a pixel of any footage

@@ -1,4 +1,4 @@
-"""What keyframes nearby tell of a frame: one more hypothesis, and a cost of all others."""
+"""The postures of one frame alone, with what keyframes nearby tell of it, and what contradicts them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""What one frame shows of the performer: its regions and keypoints, with the models they are compared by."""
+"""A search for the postures that one frame may show, from nothing but its regions and keypoints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,8 +25,7 @@ from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
 from .candidates import distinct_rows
 from .compose_clip import PART_SCALE, WIDE
-from .composed_states import FrameCosts
-from .leg_pairs import NO_CONTACT_COST
+from .composed_states import NO_CONTACT_COST, FrameCosts
 from .match_evidence import EXCHANGED_COST, MatchEvidence, frame_likelihoods
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
 from .part_pools import PartPools, kept, part_pools

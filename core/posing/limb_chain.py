@@ -18,7 +18,7 @@ from ..body.skeleton import Skeleton
 from ..footage.camera import Camera
 from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
-from .drag import SightLine
+from .inverse_kinematics import SightLine
 
 STEMS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 """Principal points of each kind of limb: root, middle and end. The first two are joints as well."""

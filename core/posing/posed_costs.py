@@ -1,4 +1,4 @@
-"""A frame that a person has posed, among frames that are composed: its parts are the nearest ones."""
+"""A posed frame among composed ones: its parts are the nearest; and how plausible any body's parts are."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

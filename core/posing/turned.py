@@ -19,7 +19,7 @@ from ..body.posture import Posture, facing_rad, headings_rad, yaw_rotation, yawe
 from ..footage.camera import Camera
 from ..prior.keyframes import Keyframe
 from ..take.take import Take
-from .drag import Pull, SightLine, pulled
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import limb_chain, sight_lines, strain_of, ways_in_sight
 
 HEAD_M, HEAD_DEPTH_M = 0.02, 0.3  # how near the head comes to its sight, and to its turned depth

@@ -1,7 +1,4 @@
-"""The contours of a motion in the pictures, part by part: which show, and which lie beside their edges.
-
-They judge a motion where no marker does.
-"""
+"""Evidence of each frame of a motion: markers, keypoints, and contours, which judge where no marker does."""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass

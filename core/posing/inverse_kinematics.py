@@ -1,4 +1,4 @@
-"""Lines of sight: where on one a point may lie that hangs on another by a rigid part.
+"""Inverse kinematics by pulls on points, and lines of sight on which a point that is dragged may lie.
 
 A point keeps its image exactly as long as it stays on the line from the camera through it, whatever the lens.
 """
