@@ -1,12 +1,16 @@
-"""The default skeleton and the actor's sizes."""
+"""The default skeleton, the actor's sizes, where the feet touch the floor, and the colors of both sides."""
+
+import colorsys
 
 import numpy as np
 import pytest
 from keymark.core.body.actor import REQUIRED, Actor
-from keymark.core.body.human import HUMAN, joint_limits_deg
+from keymark.core.body.body_volume import sole_heights_m, sole_places, standing_posture
+from keymark.core.body.human import HUMAN, LIGHT, SHADED, STRONG, joint_limits_deg, side_of
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
+from keymark.core.report import canvas
 
 BODY = Body(Actor.from_stature(1.75))
 LIMB_POINTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -120,3 +124,54 @@ def test_an_impossible_stature_is_refused(stature: float) -> None:
 def test_an_actors_lengths_cannot_be_changed() -> None:
     with pytest.raises(TypeError):
         Actor.from_stature(1.7).segments_m["trunk"] = 1.0  # type: ignore[index]
+
+
+def leaning(degrees: float) -> Posture:
+    """Standing, the left shin leaning backward by some degrees (the foot with it), the knee in its place."""
+    vector = standing_posture(BODY).to_vector()
+    vector[HUMAN.dof_names.index("hip.L.rotation_x")] = np.radians(-degrees)
+    return Posture.from_vector(HUMAN, vector)
+
+
+def test_who_stands_has_both_soles_flat_on_the_floor() -> None:
+    pose = BODY.pose(Posture.stack([standing_posture(BODY)] * 2))
+    places = sole_places(BODY, pose)
+    assert places.shape == (2, 2, 2, 3)
+    np.testing.assert_allclose(places[..., 2], 0.0, atol=1e-12)
+    assert places[0, 0, 0, 0] > 0.0 > places[0, 1, 0, 0]
+    assert (places[..., 0, 1] > places[..., 1, 1] + 0.2).all()
+
+
+@pytest.mark.parametrize(("degrees", "lowest"), [(20.0, 0), (-20.0, 1)])
+def test_a_leg_before_the_body_stands_on_its_heel_and_one_behind_on_its_toes(
+    degrees: float, lowest: int
+) -> None:
+    pose = BODY.pose(leaning(degrees))
+    heights = sole_places(BODY, pose)[0, :, 2]
+    assert heights.argmin() == lowest and abs(np.ptp(heights)) > 0.05
+    assert sole_heights_m(BODY, pose)[0] == heights.min()
+    assert sole_heights_m(BODY, pose)[1] == pytest.approx(0.0, abs=1e-12)
+
+
+SAME_HUE = 0.06
+"""Of the circle of hues; blue and orange are 0.45 apart."""
+
+
+def hue(rgb: tuple[int, int, int]) -> float:
+    return colorsys.rgb_to_hsv(*(level / 255.0 for level in rgb))[0]
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_a_side_has_one_hue_in_all_its_strengths(side: str) -> None:
+    hues = [hue(strength[side]) for strength in (LIGHT, STRONG, SHADED)]
+    assert max(hues) - min(hues) < SAME_HUE
+    assert (0.5 < hues[0] < 0.7) == (side == "L")
+
+
+def test_reports_have_the_same_colors() -> None:
+    assert canvas.LEFT[::-1] == STRONG["L"] and canvas.RIGHT[::-1] == STRONG["R"]
+
+
+def test_every_segment_and_point_has_a_side() -> None:
+    assert {side_of(segment.name) for segment in HUMAN.segments} == {"L", "R", ""}
+    assert side_of("shoulder.L") == "L" and side_of("head") == "" and side_of("Left.001") == ""

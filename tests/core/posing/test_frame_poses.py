@@ -99,11 +99,7 @@ def test_markers_alone_find_a_body_from_any_side(side: str, by_markers: Callable
 @pytest.mark.parametrize("side", TURNS)
 def test_keypoints_alone_find_a_body_from_any_side(side: str, libraries: Libraries) -> None:
     truth = performed(TURNS[side])
-    hidden = film(truth)
-    hidden = replace(
-        hidden, centroid=np.full_like(hidden.centroid, np.nan), quality=np.zeros_like(hidden.quality)
-    )
-    found = find_frame_poses(shown(hidden, detected(truth, 2)), libraries)
+    found = find_frame_poses(shown(hidden(film(truth)), detected(truth, 2)), libraries)
     assert min(errors_m(found, truth)) < 0.10
 
 
@@ -161,12 +157,8 @@ def test_keyframes_that_contradict_the_frame_are_overruled(libraries: Libraries)
 
 
 def test_a_frame_that_shows_nothing_says_so(libraries: Libraries) -> None:
-    tracks = film(performed(0.0))
-    empty = replace(
-        tracks, centroid=np.full_like(tracks.centroid, np.nan), quality=np.zeros_like(tracks.quality)
-    )
     with pytest.raises(InputError, match="neither a marker nor a keypoint is seen"):
-        find_frame_poses(shown(empty), libraries)
+        find_frame_poses(shown(hidden(film(performed(0.0)))), libraries)
 
 
 def test_known_postures_are_plausible_and_bent_ones_are_not(libraries: Libraries) -> None:

@@ -4,64 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _performed import BODY, FRAMES, camera, errors_m, filmed, performed
-from keymark.core.body.posture import Posture
+from _performed import FRAMES, NAMES, camera, detected, errors_m, exchanged, filmed, performed, unmarked
 from keymark.core.errors import InputError
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
+from keymark.core.footage.keypoints.keypoints import SeenPeople
 from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
-from keymark.core.take.take import Take
-
-NAMES = (
-    "nose", "ear.L", "ear.R",
-    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
-)  # fmt: skip
-MIRRORED = [NAMES.index(mirrored_point(name)) for name in NAMES]
-
-
-def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:
-    """What a detector finds: jitter, some points anywhere, and nobody in every ninth frame."""
-    rng = np.random.default_rng(8)
-    frames = np.arange(len(posture.translation))
-    pose = BODY.pose(posture)
-    model = KeypointModel.usual(BODY, seen_by, NAMES)
-    pixel = model.pixels(pose, frames) + rng.normal(0.0, 2.0, (len(frames), len(NAMES), 2))
-    far = rng.random(pixel.shape[:2]) < wrong
-    pixel[far] = rng.uniform(0.0, 480.0, (far.sum(), 2))
-    depth = model.camera.depth(model.world(pose), frames[:, None])
-    depth = depth - depth[:, [NAMES.index("hip.L"), NAMES.index("hip.R")]].mean(axis=1, keepdims=True)
-    hint = np.zeros((*depth.shape, 3))
-    hint[..., 2] = depth + rng.normal(0.0, 0.08, len(NAMES))  # alike in all frames
-    seen = [
-        SeenPeople(pixel[[i]][: 0 if i % 9 == 8 else 1], np.full((1, len(NAMES)), 0.9), hint[[i]])
-        for i in frames
-    ]
-    seen = [
-        replace(one, score=one.score[: len(one.pixel)], hint_m=one.hint_m[: len(one.pixel)]) for one in seen
-    ]
-    return People(NAMES, "test", seen_by.resolution, tuple(seen))
-
-
-def exchanged(people: People, frames: range) -> People:
-    changed = tuple(
-        SeenPeople(seen.pixel[:, MIRRORED], seen.score[:, MIRRORED], seen.hint_m[:, MIRRORED])
-        if index in frames
-        else seen
-        for index, seen in enumerate(people.frames)
-    )
-    return replace(people, frames=changed)
-
-
-def unmarked(posture: Posture, seen_by: Camera, people: People) -> tuple[Take, Reading]:
-    """The take of a performer who wears anything, with keypoints."""
-    take, reading = filmed(posture, seen_by)
-    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
-    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)
 
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])

@@ -6,25 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _performed import BODY, FRAMES, camera, filmed, performed
+from _performed import BODY, FRAMES, camera, detected, filmed, performed, unmarked
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.found_poses import FoundPoses, with_found
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
-from keymark.core.take.take import Take
 
 ROOT = Path(__file__).resolve().parents[3]
-NAMES = (
-    "nose",
-    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
-)
 
 
 @cache
@@ -51,22 +42,6 @@ def truth() -> Posture:
     return Posture(skeleton, legs.translation, rotations, angles)
 
 
-def by_keypoints() -> tuple[Take, Reading]:
-    """The same in any clothes, with a detector's keypoints, which jitter."""
-    rng = np.random.default_rng(8)
-    take, reading = filmed(truth(), camera())
-    frames = np.arange(FRAMES)
-    pixel = KeypointModel.usual(BODY, camera(), NAMES).pixels(BODY.pose(truth()), frames)
-    pixel = pixel + rng.normal(0.0, 2.0, pixel.shape)
-    seen = tuple(
-        SeenPeople(pixel[[i]], np.full((1, len(NAMES)), 0.9), np.full((1, len(NAMES), 3), np.nan))
-        for i in frames
-    )
-    people = People(NAMES, "test", camera().resolution, seen)
-    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
-    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)
-
-
 @cache
 def found_by_markers() -> FoundPoses:
     return run(pose_clip(*filmed(truth(), camera()), libraries()))
@@ -87,7 +62,11 @@ def test_a_motion_of_no_library_is_found_by_five_markers() -> None:
 
 
 def test_and_by_keypoints() -> None:
-    rooted, absolute = errors_m(run(pose_clip(*by_keypoints(), libraries())).postures)
+    rooted, absolute = errors_m(
+        run(
+            pose_clip(*unmarked(truth(), camera(), detected(truth(), camera()).without_hints()), libraries())
+        ).postures
+    )
     assert rooted.mean() < 0.08
     assert absolute.mean() < 0.25
 

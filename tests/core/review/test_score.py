@@ -1,9 +1,5 @@
 """Scores against the truth: by hand where it can be, and against another program where it is there."""
 
-import json
-import subprocess
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +7,7 @@ import pytest
 from _synthetic_take import BODY, CAMERA, named, true_postures, write_json
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.prior.keyframes import interpolate
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.take.take_file import read_take
 
 FRAMES = 12
 EYE_ALONG_Y = Camera.from_dict(CAMERA)
@@ -97,38 +91,3 @@ def test_a_truth_file_is_read_and_checked(tmp_path: Path) -> None:
     write_json(path, value)
     with pytest.raises(InputError, match=r"truth\.json: points"):
         read_truth(path, 5, FRAMES)
-
-
-@pytest.mark.parametrize("name", ["walk", "aerobic", "real_balance"])
-def test_scores_agree_with_the_shared_program(
-    take_folder: Callable[[str], Path], tmp_path: Path, name: str
-) -> None:
-    folder = take_folder(name)
-    program = folder.parent.parent / "tools" / "score_motion.py"
-    if not program.is_file():
-        pytest.skip("no shared/tools beside the takes")
-    take = read_take(folder, folder / "keyframes_noisy.json")
-    assert take.frame_count is not None
-    points = take.body.points(take.body.pose(interpolate(take.keyframes, take.frame_count)))
-    sigma = np.random.default_rng(5).uniform(0.0, 0.1, points.shape[:2])
-    motion = {
-        "frame_start": take.frame_start,
-        "points": named(np.swapaxes(points, 0, 1)),
-        "sigma_m": named(sigma.T),
-    }
-    write_json(tmp_path / "motion.json", motion)
-    words = [
-        sys.executable,
-        program,
-        tmp_path / "motion.json",
-        folder,
-        "--keyframes",
-        "keyframes_noisy.json",
-        "--json",
-    ]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    theirs = json.loads(done.stdout)
-    truth = read_truth(folder / "truth.json", take.frame_start, take.frame_count)
-    keyframes = [keyframe.index for keyframe in take.keyframes]
-    ours = score_points(points, truth, keyframes, take.camera, sigma).to_dict()
-    assert {key: theirs[key] for key in ours} == pytest.approx(ours)
