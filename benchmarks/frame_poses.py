@@ -27,10 +27,7 @@ from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa:
 from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
-from keymark.core.posing.frame_search import (  # noqa: E402
-    FrameShown,  # noqa: E402
-    knowledge,  # noqa: E402
-)
+from keymark.core.posing.frame_search import FrameShown, knowledge  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402

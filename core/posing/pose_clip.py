@@ -149,21 +149,19 @@ def _candidates(
     fitted: Posture,
     explained: Array,
 ) -> tuple[MatchedFrame, ...]:
-    frames = []
-    for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
-        index = int(given.sampled[row])
-        found = composed_candidates(
+    return tuple(
+        composed_candidates(
             pools,
             stances,
             composed.states[row],
             composed.path.posterior[row],
-            index + given.first,
-            fitted[index],
+            int(given.sampled[row]) + given.first,
+            fitted[int(given.sampled[row])],
             int(composed.path.stance[row]) // HEADINGS,
             float(explained[row]),
         )
-        frames.append(found)
-    return tuple(frames)
+        for row in map(int, np.searchsorted(given.sampled, given.keyframes))
+    )
 
 
 def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
@@ -172,8 +170,7 @@ def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, 
     names = (*markers, *given.evidence.keypoints.names)
     found = {}
     for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
-        # A marker or keypoint farther off than this many deviations between performers has not been
-        # explained.
+        # Three deviations between performers are no longer explained.
         wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > 3.0))
         if wrong:
             found[int(given.sampled[row]) + given.first] = wrong

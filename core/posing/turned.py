@@ -65,7 +65,7 @@ def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
 
 def facing_of(posture: Posture, camera: Camera) -> Facing:
     """The one of the four ways that is nearest to where a single posture faces."""
-    heading = float(headings_rad(_batch(posture))[0])
+    heading = float(headings_rad(posture))
     away = {f: _apart_rad(facing_heading_rad(camera, posture.translation, f), heading) for f in Facing}
     return min(away, key=lambda facing: away[facing])
 
@@ -109,7 +109,7 @@ def _changed(posture: Posture, base: Posture, dofs: IndexArray) -> float:
 
 
 def _at_heading(posture: Posture, heading_rad: float) -> Posture:
-    turn = heading_rad - float(headings_rad(_batch(posture))[0])
+    turn = heading_rad - float(headings_rad(posture))
     return yawed_in_place(posture, np.array([turn]))[0]
 
 
@@ -125,15 +125,9 @@ def _exchanged(posture: Posture, camera: Camera, heading_rad: float) -> Posture:
     # A reflection across a vertical plane is the one across x = 0, turned by twice the angle between them.
     rotation[0] = yaw_rotation(2.0 * depth) @ rotation[0]
     reflected = Posture(posture.skeleton, posture.translation, rotation, image.angles)
-    faces = float(headings_rad(_batch(reflected))[0])
-    return (
-        # Of the four directions, the nearest to a heading is at most this far away.
-        reflected if _apart_rad(faces, heading_rad) <= np.pi / 4.0 else _at_heading(reflected, heading_rad)
-    )
-
-
-def _batch(posture: Posture) -> Posture:
-    return Posture.stack([posture])
+    faces = float(headings_rad(reflected))
+    # Of the four directions, the nearest to a heading is at most an eighth of a turn away.
+    return reflected if _apart_rad(faces, heading_rad) <= np.pi / 4.0 else _at_heading(reflected, heading_rad)
 
 
 def _apart_rad(first: float, second: float) -> float:

@@ -81,6 +81,7 @@ def test_a_flip_within_joint_limits_keeps_the_image(seed: int, limb: str) -> Non
 @settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_flipping_the_same_part_again_comes_back(seed: int, limb: str) -> None:
+    """Where nothing was in the way, to within what counts as the same place."""
     posture, camera = natural_posture(seed, 0.5), camera_around(seed + 1)
     for part in FlippedPart:
         there = flipped(BODY, posture, camera, limb, part)
