@@ -27,8 +27,7 @@ from keymark.core.finish.rig import Rig  # noqa: E402
 from keymark.core.progress import run  # noqa: E402
 
 TOLERANCES_MM = (5, 10, 20)
-BAKED_MM = TOLERANCES_MM[0]
-"""Default tolerance of a bake."""
+BAKED_MM = TOLERANCES_MM[0]  # default tolerance of a bake
 COLUMNS = {
     "frames": 0,
     "keyframes": 0,

@@ -27,10 +27,7 @@ from keymark.core.footage.keypoints.keypoint_file import read_keypoints  # noqa:
 from keymark.core.footage.keypoints.keypoints import Keypoints  # noqa: E402
 from keymark.core.footage.region_tracks import RegionTracks  # noqa: E402
 from keymark.core.posing.frame_poses import find_frame_poses  # noqa: E402
-from keymark.core.posing.frame_search import (  # noqa: E402
-    FrameShown,  # noqa: E402
-    knowledge,  # noqa: E402
-)
+from keymark.core.posing.frame_search import FrameShown, knowledge  # noqa: E402
 from keymark.core.prior.library import Library  # noqa: E402
 from keymark.core.prior.registry import SHIPPED, find_libraries  # noqa: E402
 from keymark.core.prior.texts import EVERY_LIBRARY  # noqa: E402
@@ -43,12 +40,9 @@ from keymark.core.take.take_file import read_take  # noqa: E402
 
 KEYPOINT_FILES = ("keypoints_mediapipe.json", "keypoints.json")
 MARKERS, KEYPOINTS, BOTH = "markers", "keypoints", "both"
-RIGHT_M = 0.08
-"""Mean distance of the points, hips aligned, within which a posture is right."""
-ABOUT_RIGHT_M = 0.10
-"""The same for what a confidence is the probability of."""
-STEP = 9
-"""Frames from one that is posed to the next."""
+RIGHT_M = 0.08  # mean distance of the points, hips aligned, within which a posture is right
+ABOUT_RIGHT_M = 0.10  # the same for what a confidence is the probability of
+STEP = 9  # frames from one that is posed to the next
 BINS = ((0.0, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 1.0))
 
 
@@ -57,8 +51,7 @@ class Found:
     """One frame."""
 
     frame: int
-    error_mm: tuple[float, ...]
-    """Of each candidate, hips aligned."""
+    error_mm: tuple[float, ...]  # of each candidate, hips aligned
     confidence: tuple[float, ...]
     contradictions: tuple[str, ...]
     cpu_ms: float

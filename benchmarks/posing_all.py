@@ -58,37 +58,28 @@ COLUMNS = (
     "by one",
 )  # fmt: skip
 DIGITS = (0, 0, 0, 0, 2, 2, 2, 2, 2, 1, 1, 0, 0)
-BETWEEN_S = 1.0
-"""Time between two posed frames in the middle of a clip between which poses are found anew."""
+BETWEEN_S = 1.0  # time between two posed frames in the middle of a clip between which poses are found anew
 
 
 @dataclass(frozen=True)
 class Measured:
     """Errors [mm] of one take that nobody posed."""
 
-    found_rooted: float
-    """Mean over the found keyframes, the hips aligned."""
+    found_rooted: float  # mean over the found keyframes, the hips aligned
     found: float
-    rooted: float
-    """Mean over the frames of the motion of method `map`, the hips aligned."""
+    rooted: float  # mean over the frames of the motion of method `map`, the hips aligned
     mpjpe: float
     coverage: float
     wrong_side: float
     """Share of limbs' segments that lean away from the camera instead of toward it or the other way round."""
-    wrong_frames: float
-    """Share of frames in which some limb's segment does."""
-    confidence: float
-    """Mean of the chosen candidates'."""
-    right: float
-    """Share of found keyframes within 100 mm, the hips aligned: what the confidence should be."""
-    seconds: float
-    """Process time of posing 100 frames."""
-    between_s: float
-    """Process time of posing anew what lies between two posed frames."""
+    wrong_frames: float  # share of frames in which some limb's segment does
+    confidence: float  # mean of the chosen candidates'
+    right: float  # share of found keyframes within 100 mm, the hips aligned: what the confidence should be
+    seconds: float  # process time of posing 100 frames
+    between_s: float  # process time of posing anew what lies between two posed frames
     by_one_rooted: float | None
     """Like `rooted`, by the library with the take's own kind of motion alone; None where there is none."""
-    by_one: float | None
-    """Like `mpjpe`, by that library."""
+    by_one: float | None  # like `mpjpe`, by that library
 
 
 def measure(name: str, trial: Trial, libraries: Sequence[Library]) -> Measured:

@@ -1,13 +1,16 @@
 """A performance of a library's motion by somebody else, filmed: what matching is tested with."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture, yawed_at
+from keymark.core.evidence.keypoints import KeypointModel
 from keymark.core.evidence.regions import MarkerPlacement, RegionModel
 from keymark.core.footage.camera import Camera
+from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
 from keymark.core.footage.reading import Reading
 from keymark.core.footage.region_tracks import MarkerStyle, RegionTracks
 from keymark.core.posing.found_poses import FoundPoses
@@ -75,7 +78,51 @@ def errors_m(found: FoundPoses, truth: Posture) -> tuple[float, float]:
     points, true = (BODY.points(BODY.pose(posture)) for posture in (found.postures, truth))
     off = points - true
     hips = (found.postures.translation - truth.translation)[:, None]
-    return (
-        float(np.linalg.norm(off - hips, axis=-1).mean()),
-        float(np.linalg.norm(off, axis=-1).mean()),
+    return (float(np.linalg.norm(off - hips, axis=-1).mean()), float(np.linalg.norm(off, axis=-1).mean()))
+
+
+NAMES = (
+    "nose", "ear.L", "ear.R",
+    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
+)  # fmt: skip
+MIRRORED = [NAMES.index(mirrored_point(name)) for name in NAMES]
+
+
+def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:
+    """What a detector finds: jitter, some points anywhere, and nobody in every ninth frame."""
+    rng = np.random.default_rng(8)
+    frames = np.arange(len(posture.translation))
+    pose = BODY.pose(posture)
+    model = KeypointModel.usual(BODY, seen_by, NAMES)
+    pixel = model.pixels(pose, frames) + rng.normal(0.0, 2.0, (len(frames), len(NAMES), 2))
+    far = rng.random(pixel.shape[:2]) < wrong
+    pixel[far] = rng.uniform(0.0, 480.0, (far.sum(), 2))
+    depth = model.camera.depth(model.world(pose), frames[:, None])
+    depth = depth - depth[:, [NAMES.index("hip.L"), NAMES.index("hip.R")]].mean(axis=1, keepdims=True)
+    hint = np.zeros((*depth.shape, 3))
+    hint[..., 2] = depth + rng.normal(0.0, 0.08, len(NAMES))  # alike in all frames
+    seen = [
+        SeenPeople(pixel[[i]][: 0 if i % 9 == 8 else 1], np.full((1, len(NAMES)), 0.9), hint[[i]])
+        for i in frames
+    ]
+    seen = [
+        replace(one, score=one.score[: len(one.pixel)], hint_m=one.hint_m[: len(one.pixel)]) for one in seen
+    ]
+    return People(NAMES, "test", seen_by.resolution, tuple(seen))
+
+
+def exchanged(people: People, frames: range) -> People:
+    changed = tuple(
+        SeenPeople(seen.pixel[:, MIRRORED], seen.score[:, MIRRORED], seen.hint_m[:, MIRRORED])
+        if index in frames
+        else seen
+        for index, seen in enumerate(people.frames)
     )
+    return replace(people, frames=changed)
+
+
+def unmarked(posture: Posture, seen_by: Camera, people: People) -> tuple[Take, Reading]:
+    """The take of a performer who wears anything, with keypoints."""
+    take, reading = filmed(posture, seen_by)
+    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
+    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)

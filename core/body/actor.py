@@ -17,24 +17,11 @@ from ..files.kinds import ByName, Number
 from ..files.records import Record
 from .skeleton import SIDES
 
+_LIMBS = {"upper_arm": 0.186, "forearm": 0.146, "hand": 0.108, "thigh": 0.245, "shin": 0.246, "foot": 0.110}
 SHARES_OF_STATURE: Mapping[str, float] = MappingProxyType(
     {
-        "upper_arm.L": 0.186,
-        "upper_arm.R": 0.186,
-        "forearm.L": 0.146,
-        "forearm.R": 0.146,
-        "hand.L": 0.108,
-        "hand.R": 0.108,
-        "thigh.L": 0.245,
-        "thigh.R": 0.245,
-        "shin.L": 0.246,
-        "shin.R": 0.246,
-        "foot.L": 0.110,
-        "foot.R": 0.110,
-        "shoulder_width": 0.220,
-        "hip_width": 0.115,
-        "trunk": 0.285,
-        "neck_head": 0.135,
+        **{f"{part}.{side}": share for part, share in _LIMBS.items() for side in SIDES},
+        **{"shoulder_width": 0.220, "hip_width": 0.115, "trunk": 0.285, "neck_head": 0.135},
     }
 )
 REQUIRED = tuple(name for name in SHARES_OF_STATURE if not name.startswith(("hand", "foot")))

@@ -6,7 +6,7 @@ The calibration starts from them and corrects them by the footage.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -29,8 +29,7 @@ HALF_WIDTHS: dict[str, tuple[tuple[float, float], tuple[float, float]]] = {
     "shin": ((0.032, 0.034), (0.021, 0.022)),
     "foot": ((0.026, 0.024), (0.028, 0.014)),
 }
-HEAD_OVERSHOOT = 1.40
-"""Position of the crown along the head segment, whose end is the head's center."""
+HEAD_OVERSHOOT = 1.40  # position of the crown along the head segment, whose end is the head's center
 TRUNK = "trunk"
 TRUNK_PARTS = ("pelvis", "chest")
 
@@ -41,50 +40,36 @@ class Piece:
 
     segment: str
     joint: int
-    start: Array
-    """(3,) center of the first end in the joint's frame [m]."""
-    end: Array
-    """(3,) center of the other end [m]."""
-    lateral: Array
-    """(3,) unit direction of the first half-width, across the axis."""
-    sagittal: Array
-    """(3,) unit direction of the second half-width."""
-    half_widths: Array
-    """(2, 2) at start and end: lateral and sagittal half-width [m]."""
+    start: Array  # (3,) center of the first end in the joint's frame [m]
+    end: Array  # (3,) center of the other end [m]
+    lateral: Array  # (3,) unit direction of the first half-width, across the axis
+    sagittal: Array  # (3,) unit direction of the second half-width
+    half_widths: Array  # (2, 2) at start and end: lateral and sagittal half-width [m]
 
     def cut(self, first: float, last: float) -> "Piece":
         """The part between two fractions of the length; fractions outside 0 to 1 extend it."""
         along = self.end - self.start
         widths = self.half_widths[0] + np.outer([first, last], self.half_widths[1] - self.half_widths[0])
-        return Piece(
-            self.segment,
-            self.joint,
-            self.start + first * along,
-            self.start + last * along,
-            self.lateral,
-            self.sagittal,
-            np.maximum(widths, 0.2 * self.half_widths.min()),
+        return replace(
+            self,
+            start=self.start + first * along,
+            end=self.start + last * along,
+            half_widths=np.maximum(widths, 0.2 * self.half_widths.min()),
         )
 
     def changed(self, offset: Array, girth: float) -> "Piece":
         """The piece moved by `offset` (3,) [m] in its joint's frame and made `girth` times as thick."""
-        return Piece(
-            self.segment,
-            self.joint,
-            self.start + offset,
-            self.end + offset,
-            self.lateral,
-            self.sagittal,
-            self.half_widths * girth,
+        return replace(
+            self,
+            start=self.start + offset,
+            end=self.end + offset,
+            half_widths=self.half_widths * girth,
         )
 
     def rings(self, sides: int, cap: int, shaft: int) -> Array:
         """(2 * cap + shaft + 1, sides, 3) rings around the piece, which half ellipsoids close [m].
 
-        Args:
-            sides: Corners of a ring.
-            cap: Bands of a half ellipsoid, which is as deep as the narrower half-width.
-            shaft: Bands between the two.
+        A half ellipsoid has `cap` bands and is as deep as the narrower half-width; the shaft has `shaft`.
         """
         along = self.end - self.start
         axis = along / np.linalg.norm(along)
@@ -116,28 +101,22 @@ class PieceStack:
     """Several pieces as stacked arrays, for vectorized projection."""
 
     segments: tuple[str, ...]
-    joint: IndexArray
-    """(Q,) the joint each piece is fixed to."""
-    start: Array
-    """(Q, 3), like the other fields of `Piece` stacked."""
+    joint: IndexArray  # (Q,) the joint each piece is fixed to
+    start: Array  # (Q, 3), like the other fields of `Piece` stacked
     end: Array
     lateral: Array
     sagittal: Array
-    half_widths: Array
-    """(Q, 2, 2)."""
+    half_widths: Array  # (Q, 2, 2)
 
     @classmethod
     def of(cls, pieces: Iterable[Piece]) -> "PieceStack":
         """Stack pieces in order."""
         listed = list(pieces)
+        names = ("start", "end", "lateral", "sagittal", "half_widths")
         return cls(
             tuple(piece.segment for piece in listed),
             np.array([piece.joint for piece in listed], dtype=np.intp),
-            np.stack([piece.start for piece in listed]),
-            np.stack([piece.end for piece in listed]),
-            np.stack([piece.lateral for piece in listed]),
-            np.stack([piece.sagittal for piece in listed]),
-            np.stack([piece.half_widths for piece in listed]),
+            *(np.stack([getattr(piece, name) for piece in listed]) for name in names),
         )
 
     def place(self, pose: Pose, local: Array) -> Array:
@@ -151,10 +130,7 @@ class PieceStack:
 
 @lru_cache(maxsize=256)
 def segment_piece(body: Body, name: str) -> Piece:
-    """The volume of one of the skeleton's segments; KeyError for a segment without volume.
-
-    Cached: calibration cuts markers from the same few volumes again and again.
-    """
+    """The volume of one of the skeleton's segments, kept once made; KeyError for one without."""
     segment = next(s for s in body.skeleton.segments if s.name == name)
     start, end = body.local(segment.start), body.local(segment.end)
     if name == "head":
@@ -202,13 +178,7 @@ def sole_offsets(body: Body) -> Array:
 
 
 def sole_places(body: Body, pose: Pose, extremities: Extremities = RIGID) -> Array:
-    """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m].
-
-    Args:
-        body: The body.
-        pose: Its poses.
-        extremities: Its feet; by default rigid with the shins.
-    """
+    """World positions (..., 2, 2, 3) of heel and tip of the left and the right foot [m]."""
     feet = []
     for foot in (_foot(body, side) for side in SIDES):
         places = _sole(body, foot)
@@ -246,9 +216,7 @@ def lower_sole_m(body: Body, posture: Posture) -> Array:
 # --- The default posture
 
 
-ARMS_LOWERED_RAD = float(np.radians(75.0))
-"""From the T pose; less than a right angle, as sleeves keep the arms off the trunk."""
-ELBOWS_BENT_RAD = np.radians(10.0)
+ARMS_LOWERED_RAD = float(np.radians(75.0))  # less than a right angle: sleeves keep arms off the trunk
 
 
 def standing_posture(
@@ -257,10 +225,10 @@ def standing_posture(
     heading_rad: float = 0.0,
     arms_lowered_rad: float = ARMS_LOWERED_RAD,
 ) -> Posture:
-    """A posture that stands upright on the ground.
+    """A posture of the default skeleton that stands upright on the ground.
 
     Args:
-        body: The actor's body; its skeleton must be the default human one.
+        body: The actor's body.
         place: (3,) point on the ground between the feet [m]; the world's origin by default.
         heading_rad: Turn about the world's Z from facing -Y.
         arms_lowered_rad: Angle of the arms below the horizontal.
@@ -270,7 +238,7 @@ def standing_posture(
     vector = np.zeros(skeleton.dof_count)
     for side, out in zip(SIDES, (1.0, -1.0), strict=True):
         vector[column[f"shoulder.{side}.rotation_y"]] = out * arms_lowered_rad
-        vector[column[f"elbow.{side}.flexion"]] = ELBOWS_BENT_RAD
+        vector[column[f"elbow.{side}.flexion"]] = np.radians(10.0)
     vector[column["pelvis.rotation_z"]] = heading_rad
     vector[:3] = np.zeros(3) if place is None else place
     vector[2] += hip_height_m(body)

@@ -1,8 +1,8 @@
-"""Joint limits: the range of motion of each joint of the default body [degrees].
+"""The default body: joint limits, parts, colors of sides, masses, and the skeleton itself.
 
-American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring and Recording*, widened by
-about a quarter because performers are no patients and because a ball's range is stated on the components of
-its rotation vector from rest, which is only a box around the true, rounder range.
+Limits: American Academy of Orthopaedic Surgeons (1965), *Joint Motion: Method of Measuring and Recording*,
+widened by about a quarter because performers are no patients and because a ball's range is stated on the
+components of its rotation vector from rest, which is only a box around the true, rounder range.
 """
 
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from ..arrays import Array
-from .skeleton import SIDES, Joint, JointKind, Placement, PrincipalPoint, Segment, Skeleton
+from .skeleton import SIDES, Joint, JointKind, Placement, PrincipalPoint, Segment, Skeleton, Vector
 
 Range = tuple[float, float]
 
@@ -78,8 +78,7 @@ LIGHT: Mapping[str, Rgb] = {"L": (87, 181, 232), "R": (245, 168, 26), "": (235, 
 STRONG: Mapping[str, Rgb] = {"L": (0, 114, 178), "R": (213, 94, 0), "": (42, 45, 51)}
 """By side, on white paper: blue and vermilion, the dark neighbors of those; ink for the middle."""
 
-SHADED: Mapping[str, Rgb] = {**STRONG, "": (150, 153, 158)}
-"""The strong ones where the ground is dark: of bones that are not selected."""
+SHADED: Mapping[str, Rgb] = {**STRONG, "": (150, 153, 158)}  # the strong ones on dark ground: bones
 
 
 def side_of(name: str) -> str:
@@ -118,128 +117,58 @@ def mass_weights(skeleton: Skeleton) -> Array:
 # --- The default body
 
 
-WAIST_HEIGHT = 0.4
-"""Share of the trunk below the waist joint. The real spine bends all along; a single joint fits best here."""
+WAIST_HEIGHT = 0.4  # share of the trunk below the one waist joint, which stands for a whole spine
 XYZ = ("x", "y", "z")
 ROTATIONS = tuple(f"rotation_{axis}" for axis in XYZ)
 HERE: Placement = {}
+OUTWARD = {"L": 1.0, "R": -1.0}  # sign of x away from the middle
+
+
+def _ball(name: str, parent: int, placement: Placement, *deviations: float) -> Joint:
+    limits = joint_limits_deg(name)
+    return Joint(name, parent, JointKind.BALL, placement, (0.0, 0.0, 0.0), ROTATIONS, limits, deviations)
+
+
+def _hinge(
+    name: str, parent: int, placement: Placement, axis: Vector, component: str, deviation: float
+) -> Joint:
+    limits = joint_limits_deg(name)
+    return Joint(name, parent, JointKind.HINGE, placement, axis, (component,), limits, (deviation,))
 
 
 def _joints() -> tuple[Joint, ...]:
+    location = tuple(f"location_{axis}" for axis in XYZ)
+    chest: Placement = {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)}
     joints = [
         Joint(
             "pelvis",
             -1,
             JointKind.FREE,
             HERE,
-            components=(*(f"location_{axis}" for axis in XYZ), *ROTATIONS),
+            components=(*location, *ROTATIONS),
             deviations=(0.02, 0.015, 0.03, 0.05, 0.05, 0.05),
         ),
-        Joint(
-            "waist",
-            0,
-            JointKind.BALL,
-            {"trunk": (0.0, 0.0, WAIST_HEIGHT)},
-            components=ROTATIONS,
-            limits_deg=joint_limits_deg("waist"),
-            deviations=(0.08, 0.06, 0.06),
-        ),
-        Joint(
-            "neck",
-            1,
-            JointKind.BALL,
-            {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)},
-            components=ROTATIONS,
-            limits_deg=joint_limits_deg("neck"),
-            deviations=(0.25, 0.08, 0.12),
-        ),
+        _ball("waist", 0, {"trunk": (0.0, 0.0, WAIST_HEIGHT)}, 0.08, 0.06, 0.06),
+        _ball("neck", 1, chest, 0.25, 0.08, 0.12),
     ]
-    for side in SIDES:
-        joints += _arm(side, len(joints))
-    for side in SIDES:
-        joints += _leg(side, len(joints))
+    for side, out in OUTWARD.items():
+        first = len(joints)
+        width, arm = {"shoulder_width": (0.5 * out, 0.0, 0.0)}, {f"upper_arm.{side}": (out, 0.0, 0.0)}
+        joints += [
+            _hinge(f"girdle.{side}", 1, chest, (0.0, -out, 0.0), "elevation", 0.03),
+            _ball(f"shoulder.{side}", first, width, 0.12, 0.12, 0.14),
+            _hinge(f"elbow.{side}", first + 1, arm, (0.0, 0.0, -out), "flexion", 0.15),
+            _hinge(f"forearm.{side}", first + 2, HERE, (out, 0.0, 0.0), "pronation", 0.15),
+        ]
+    for side, out in OUTWARD.items():
+        first = len(joints)
+        width, thigh = {"hip_width": (0.5 * out, 0.0, 0.0)}, {f"thigh.{side}": (0.0, 0.0, -1.0)}
+        joints += [
+            _ball(f"hip.{side}", 0, width, 0.11, 0.08, 0.11),
+            _hinge(f"knee.{side}", first, thigh, (1.0, 0.0, 0.0), "flexion", 0.2),
+            _hinge(f"shin.{side}", first + 1, HERE, (0.0, 0.0, -1.0), "axial", 0.08),
+        ]
     return tuple(joints)
-
-
-def _arm(side: str, first: int) -> list[Joint]:
-    out = 1.0 if side == "L" else -1.0
-    chest = 1
-    return [
-        Joint(
-            f"girdle.{side}",
-            chest,
-            JointKind.HINGE,
-            {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)},
-            axis=(0.0, -out, 0.0),
-            components=("elevation",),
-            limits_deg=joint_limits_deg(f"girdle.{side}"),
-            deviations=(0.03,),
-        ),
-        Joint(
-            f"shoulder.{side}",
-            first,
-            JointKind.BALL,
-            {"shoulder_width": (0.5 * out, 0.0, 0.0)},
-            components=ROTATIONS,
-            limits_deg=joint_limits_deg(f"shoulder.{side}"),
-            deviations=(0.12, 0.12, 0.14),
-        ),
-        Joint(
-            f"elbow.{side}",
-            first + 1,
-            JointKind.HINGE,
-            {f"upper_arm.{side}": (out, 0.0, 0.0)},
-            axis=(0.0, 0.0, -out),
-            components=("flexion",),
-            limits_deg=joint_limits_deg(f"elbow.{side}"),
-            deviations=(0.15,),
-        ),
-        Joint(
-            f"forearm.{side}",
-            first + 2,
-            JointKind.HINGE,
-            HERE,
-            axis=(out, 0.0, 0.0),
-            components=("pronation",),
-            limits_deg=joint_limits_deg(f"forearm.{side}"),
-            deviations=(0.15,),
-        ),
-    ]
-
-
-def _leg(side: str, first: int) -> list[Joint]:
-    out = 1.0 if side == "L" else -1.0
-    return [
-        Joint(
-            f"hip.{side}",
-            0,
-            JointKind.BALL,
-            {"hip_width": (0.5 * out, 0.0, 0.0)},
-            components=ROTATIONS,
-            limits_deg=joint_limits_deg(f"hip.{side}"),
-            deviations=(0.11, 0.08, 0.11),
-        ),
-        Joint(
-            f"knee.{side}",
-            first,
-            JointKind.HINGE,
-            {f"thigh.{side}": (0.0, 0.0, -1.0)},
-            axis=(1.0, 0.0, 0.0),
-            components=("flexion",),
-            limits_deg=joint_limits_deg(f"knee.{side}"),
-            deviations=(0.2,),
-        ),
-        Joint(
-            f"shin.{side}",
-            first + 1,
-            JointKind.HINGE,
-            HERE,
-            axis=(0.0, 0.0, -1.0),
-            components=("axial",),
-            limits_deg=joint_limits_deg(f"shin.{side}"),
-            deviations=(0.08,),
-        ),
-    ]
 
 
 def _segments(index: dict[str, int]) -> tuple[Segment, ...]:
@@ -248,75 +177,36 @@ def _segments(index: dict[str, int]) -> tuple[Segment, ...]:
         Segment("chest", index["waist"], HERE, {"trunk": (0.0, 0.0, 1.0 - WAIST_HEIGHT)}, "pelvis"),
         Segment("head", index["neck"], HERE, {"neck_head": (0.0, 0.0, 1.0)}, "chest"),
     ]
-    for side in SIDES:
-        out = 1.0 if side == "L" else -1.0
+    for side, out in OUTWARD.items():
+        girdle, arm, forearm, hand = (f"{part}.{side}" for part in ("girdle", "upper_arm", "forearm", "hand"))
+        elbow, wrist = ({name: (out, 0.0, 0.0)} for name in (arm, forearm))
         segments += [
-            Segment(
-                f"girdle.{side}",
-                index[f"girdle.{side}"],
-                HERE,
-                {"shoulder_width": (0.5 * out, 0.0, 0.0)},
-                "chest",
-            ),
-            Segment(
-                f"upper_arm.{side}",
-                index[f"shoulder.{side}"],
-                HERE,
-                {f"upper_arm.{side}": (out, 0.0, 0.0)},
-                f"girdle.{side}",
-            ),
-            Segment(
-                f"forearm.{side}",
-                index[f"forearm.{side}"],
-                HERE,
-                {f"forearm.{side}": (out, 0.0, 0.0)},
-                f"upper_arm.{side}",
-            ),
-            Segment(
-                f"hand.{side}",
-                index[f"forearm.{side}"],
-                {f"forearm.{side}": (out, 0.0, 0.0)},
-                {f"forearm.{side}": (out, 0.0, 0.0), f"hand.{side}": (out, 0.0, 0.0)},
-                f"forearm.{side}",
-            ),
+            Segment(girdle, index[girdle], HERE, {"shoulder_width": (0.5 * out, 0.0, 0.0)}, "chest"),
+            Segment(arm, index[f"shoulder.{side}"], HERE, elbow, girdle),
+            Segment(forearm, index[forearm], HERE, wrist, arm),
+            Segment(hand, index[forearm], wrist, {**wrist, hand: (out, 0.0, 0.0)}, forearm),
         ]
     for side in SIDES:
-        ankle: Placement = {f"shin.{side}": (0.0, 0.0, -1.0)}
+        thigh, shin, foot = (f"{part}.{side}" for part in ("thigh", "shin", "foot"))
+        knee, ankle = ({name: (0.0, 0.0, -1.0)} for name in (thigh, shin))
         segments += [
-            Segment(
-                f"thigh.{side}",
-                index[f"hip.{side}"],
-                HERE,
-                {f"thigh.{side}": (0.0, 0.0, -1.0)},
-                "pelvis",
-            ),
-            Segment(f"shin.{side}", index[f"shin.{side}"], HERE, ankle, f"thigh.{side}"),
-            Segment(
-                f"foot.{side}",
-                index[f"shin.{side}"],
-                ankle,
-                {**ankle, f"foot.{side}": (0.0, -0.93, -0.36)},
-                f"shin.{side}",
-            ),
+            Segment(thigh, index[f"hip.{side}"], HERE, knee, "pelvis"),
+            Segment(shin, index[shin], HERE, ankle, thigh),
+            Segment(foot, index[shin], ankle, {**ankle, foot: (0.0, -0.93, -0.36)}, shin),
         ]
     return tuple(segments)
 
 
 def _points(index: dict[str, int]) -> tuple[PrincipalPoint, ...]:
     points = [PrincipalPoint("head", index["neck"], {"neck_head": (0.0, 0.0, 1.0)})]
-    for name, joint in (("shoulder", "shoulder"), ("elbow", "elbow")):
-        points += [PrincipalPoint(f"{name}.{side}", index[f"{joint}.{side}"], HERE) for side in SIDES]
-    for side in SIDES:
-        out = 1.0 if side == "L" else -1.0
-        points.append(
-            PrincipalPoint(f"wrist.{side}", index[f"forearm.{side}"], {f"forearm.{side}": (out, 0.0, 0.0)})
-        )
-    for name, joint in (("hip", "hip"), ("knee", "knee")):
-        points += [PrincipalPoint(f"{name}.{side}", index[f"{joint}.{side}"], HERE) for side in SIDES]
-    for side in SIDES:
-        points.append(
-            PrincipalPoint(f"ankle.{side}", index[f"shin.{side}"], {f"shin.{side}": (0.0, 0.0, -1.0)})
-        )
+    limbs = (("shoulder", "elbow", "wrist", "forearm"), ("hip", "knee", "ankle", "shin"))
+    for root, middle, end, last in limbs:
+        for name in (root, middle):
+            points += [PrincipalPoint(f"{name}.{side}", index[f"{name}.{side}"], HERE) for side in SIDES]
+        for side, out in OUTWARD.items():
+            along: Vector = (0.0, 0.0, -1.0) if last == "shin" else (out, 0.0, 0.0)
+            part = f"{last}.{side}"
+            points.append(PrincipalPoint(f"{end}.{side}", index[part], {part: along}))
     return tuple(points)
 
 
@@ -327,5 +217,4 @@ def human_skeleton() -> Skeleton:
     return Skeleton(joints, _segments(index), _points(index))
 
 
-HUMAN = human_skeleton()
-"""The default skeleton; immutable, hence shared."""
+HUMAN = human_skeleton()  # the default skeleton; immutable, hence shared

@@ -20,10 +20,8 @@ class Pose:
     """Result of forward kinematics: every joint's frame in the world."""
 
     posture: Posture
-    rotation: Array
-    """(..., J, 3, 3) world orientation of each joint's frame."""
-    origin: Array
-    """(..., J, 3) world position of each joint's frame [m]."""
+    rotation: Array  # (..., J, 3, 3) world orientation of each joint's frame
+    origin: Array  # (..., J, 3) world position of each joint's frame [m]
 
     def __getitem__(self, index: slice) -> "Pose":
         """The poses of some postures along the first batch axis."""
@@ -66,10 +64,7 @@ class Pose:
     def along_jacobian(self, joints: Sequence[int] | IndexArray, world: Array, direction: Array) -> Array:
         """d (direction · world) / d tangent (..., N, D) of points (..., N, 3), each fixed in a joint's frame.
 
-        Args:
-            joints: (N,) the joints.
-            world: (..., N, 3) the points [m].
-            direction: (..., N, 3) a vector for each, which does not turn with the body.
+        The directions (..., N, 3) do not turn with the body.
         """
         # direction · (v + ω × p) is direction · v + (p × direction) · ω.
         wrench = np.concatenate([direction, rotations.cross(world, direction)], axis=-1)
@@ -153,9 +148,7 @@ class Body:
 class Extremities:
     """How hands and feet are turned about wrists and ankles, beside a batch of postures."""
 
-    turns: Mapping[str, Array]
-    """(..., 3, 3) by segment: its turn in its parent's frame. One that is not listed is rigid with its
-    parent."""
+    turns: Mapping[str, Array]  # (..., 3, 3) in its parent's frame, by segment; rigid if not listed
 
     def without(self, names: Collection[str]) -> "Extremities":
         """Those that are not named."""
@@ -163,8 +156,7 @@ class Extremities:
         return Extremities(MappingProxyType(kept))
 
 
-RIGID = Extremities(MappingProxyType({}))
-"""All of them as their parents."""
+RIGID = Extremities(MappingProxyType({}))  # all of them as their parents
 
 
 def extremity_names(skeleton: Skeleton) -> tuple[str, ...]:
@@ -204,26 +196,14 @@ class SegmentMotion:
     """The body's segments in F frames, feet and hands included, which postures do not turn."""
 
     body: Body
-    time_s: Array
-    """(F,) time of each frame [s]."""
-    turn: Mapping[str, Array]
-    """(F, 3, 3) by segment: its turn in the world from the rest posture, which stands upright in a T pose and
-    faces -Y."""
-    start: Mapping[str, Array]
-    """(F, 3) by segment: its joint nearer to the trunk [m]."""
-    end: Mapping[str, Array]
-    """(F, 3) by segment: its other end [m]."""
+    time_s: Array  # (F,) time of each frame [s]
+    turn: Mapping[str, Array]  # (F, 3, 3) in the world from the T pose that faces -Y, by segment
+    start: Mapping[str, Array]  # (F, 3) by segment: its joint nearer to the trunk [m]
+    end: Mapping[str, Array]  # (F, 3) by segment: its other end [m]
 
 
 def segment_motion(body: Body, posture: Posture, time_s: Array, extremities: Extremities) -> SegmentMotion:
-    """The motion of every segment.
-
-    Args:
-        body: The body.
-        posture: A batch of F postures.
-        time_s: (F,) time of each frame [s].
-        extremities: Its hands and feet, as `finish/natural_extremities` gives them or as they are posed.
-    """
+    """The motion of every segment, hands and feet as they are posed or `finish/natural_extremities` says."""
     pose = body.pose(posture)
     names = [segment.name for segment in body.skeleton.segments]
     ends = {name: segment_ends(body, pose, extremities, name) for name in names}

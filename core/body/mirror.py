@@ -1,6 +1,5 @@
 """Mirror images: left and right exchanged about the plane x = 0 of the world."""
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -10,8 +9,7 @@ from .actor import Actor
 from .posture import Posture
 from .skeleton import Skeleton
 
-MIRROR = np.array([-1.0, 1.0, 1.0])
-"""Factors of the reflection on x, y and z."""
+MIRROR = np.array([-1.0, 1.0, 1.0])  # factors of the reflection on x, y and z
 OTHER_SIDE = {".L": ".R", ".R": ".L"}
 
 
@@ -40,15 +38,9 @@ def mirrored_actor(actor: Actor) -> Actor:
     return Actor({name: actor.segments_m[other_side(name)] for name in actor.segments_m})
 
 
-@dataclass(frozen=True)
-class _Opposites:
-    balls: tuple[int, ...]
-    hinges: tuple[int, ...]
-    signs: tuple[float, ...]
-
-
 @lru_cache(maxsize=8)
-def _pairs(skeleton: Skeleton) -> _Opposites:
+def _opposites(skeleton: Skeleton) -> tuple[list[int], list[int], Array]:
+    """Opposite columns of balls and of hinges, and the signs of these."""
     index = {joint.name: i for i, joint in enumerate(skeleton.joints)}
     missing = [joint.name for joint in skeleton.joints if other_side(joint.name) not in index]
     if missing:
@@ -61,13 +53,6 @@ def _pairs(skeleton: Skeleton) -> _Opposites:
         if abs(abs(along) - 1.0) > 1e-9:
             raise ValueError(f"the skeleton's joint {skeleton.joints[joint].name} has no mirrored axis")
         signs.append(float(np.sign(along)))
-    return _Opposites(
-        tuple(skeleton.ball_joints.index(opposite[joint]) for joint in skeleton.ball_joints),
-        tuple(skeleton.hinge_joints.index(opposite[joint]) for joint in skeleton.hinge_joints),
-        tuple(signs),
-    )
-
-
-def _opposites(skeleton: Skeleton) -> tuple[list[int], list[int], Array]:
-    pairs = _pairs(skeleton)
-    return list(pairs.balls), list(pairs.hinges), np.array(pairs.signs)
+    balls = [skeleton.ball_joints.index(opposite[joint]) for joint in skeleton.ball_joints]
+    hinges = [skeleton.hinge_joints.index(opposite[joint]) for joint in skeleton.hinge_joints]
+    return balls, hinges, np.array(signs)

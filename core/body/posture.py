@@ -27,12 +27,9 @@ class Posture:
     """
 
     skeleton: Skeleton
-    translation: Array
-    """(..., 3) position of the hips' midpoint [m], world axes."""
-    rotations: Array
-    """(..., B, 3, 3) rotation of each ball relative to its parent."""
-    angles: Array
-    """(..., H) hinge angles [rad]."""
+    translation: Array  # (..., 3) position of the hips' midpoint [m], world axes
+    rotations: Array  # (..., B, 3, 3) rotation of each ball relative to its parent
+    angles: Array  # (..., H) hinge angles [rad]
 
     def __post_init__(self) -> None:
         """Keep read-only copies of the arrays."""
@@ -76,6 +73,16 @@ class Posture:
             np.concatenate([p.translation for p in batches]),
             np.concatenate([p.rotations for p in batches]),
             np.concatenate([p.angles for p in batches]),
+        )
+
+    @classmethod
+    def where(cls, mask: BoolArray, first: "Posture", second: "Posture") -> "Posture":
+        """The first of two batches of N where a mask (N,) holds, else the second, to the last digit."""
+        return cls(
+            first.skeleton,
+            np.where(mask[:, None], first.translation, second.translation),
+            np.where(mask[:, None, None, None], first.rotations, second.rotations),
+            np.where(mask[:, None], first.angles, second.angles),
         )
 
     @property
@@ -131,8 +138,7 @@ class Posture:
 
 FARTHEST_M = 1000.0
 LARGEST_ANGLE_RAD = 4.0 * np.pi
-DECIMALS = 6
-"""Micrometers and microradians: far below any measurement error, and files stay short."""
+DECIMALS = 6  # micrometers and microradians: far below any measurement error, and files stay short
 
 
 def posture_to_json(posture: Posture, decimals: int = DECIMALS) -> dict[str, Any]:
@@ -159,10 +165,8 @@ class PostureValues(Kind):
     """A single posture: its values by name of degree of freedom, in meters and radians."""
 
     skeleton: Skeleton
-    farthest_m: float = FARTHEST_M
-    """Largest distance from the origin along an axis [m]."""
-    zeros_left_out: bool = False
-    """Whether an absent degree of freedom is zero; else it is an error."""
+    farthest_m: float = FARTHEST_M  # largest distance from the origin along an axis [m]
+    zeros_left_out: bool = False  # whether an absent degree of freedom is zero; else it is an error
     decimals: int = DECIMALS
 
     @property
@@ -235,13 +239,7 @@ def turn_headings_rad(turn: Array) -> Array:
 
 
 def yawed_at(posture: Posture, angle_rad: Array | float, hips: Array) -> Posture:
-    """Postures turned about the vertical, with their hips at given points.
-
-    Args:
-        posture: A batch of N.
-        angle_rad: (N,) or one angle.
-        hips: (N, 3) the hips' midpoint [m].
-    """
+    """N postures turned about the vertical by one angle or N, with their hips at points (N, 3) [m]."""
     matrices = np.array(posture.rotations)
     matrices[..., 0, :, :] = yaw_rotation(angle_rad) @ matrices[..., 0, :, :]
     return Posture(posture.skeleton, hips, matrices, posture.angles)
@@ -254,12 +252,6 @@ def yawed_in_place(posture: Posture, angle_rad: Array) -> Posture:
 
 
 def turned_and_shifted(posture: Posture, angle_rad: Array | float, shift: Array) -> Posture:
-    """Postures turned about the world's vertical axis, then shifted.
-
-    Args:
-        posture: A batch of F.
-        angle_rad: (F,) or one angle.
-        shift: (F, 3) or (3,) [m].
-    """
+    """F postures turned about the world's vertical axis, by one angle or F, then shifted [m]."""
     hips = (yaw_rotation(angle_rad) @ posture.translation[..., None])[..., 0] + shift
     return yawed_at(posture, angle_rad, hips)

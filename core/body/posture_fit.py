@@ -1,10 +1,10 @@
-"""Initial posture from thirteen points by geometry alone, close enough for a local fit to converge."""
+"""Inverse kinematics from thirteen points: a first posture by geometry alone, then a local fit."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, BoolArray
+from ..arrays import Array
 from ..numerics.robust import levenberg_marquardt
 from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
@@ -12,9 +12,6 @@ from . import rotations
 from .kinematics import Body
 from .posture import Posture
 from .skeleton import SIDES
-
-STRAIGHT = 0.15
-"""Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend."""
 
 
 def _frame(x: Array, y: Array, z: Array) -> Array:
@@ -39,7 +36,8 @@ def _limb(start: Array, upper: Array, lower: Array, bend: float) -> tuple[Array,
     """
     default = _least_turn(start, upper)
     across = lower - np.sum(lower * upper, axis=-1, keepdims=True) * upper
-    y = bend * across + STRAIGHT * default[..., :, 1]
+    # Sine of a limb's bend below which its plane is that of the rest pose rather than of the bend.
+    y = bend * across + 0.15 * default[..., :, 1]
     y = unit(y - np.sum(y * upper, axis=-1, keepdims=True) * upper)
     flexion = np.arccos(np.clip(np.sum(upper * lower, axis=-1), -1.0, 1.0))
     if abs(start[0]) > 0.5:
@@ -50,15 +48,7 @@ def _limb(start: Array, upper: Array, lower: Array, bend: float) -> tuple[Array,
 
 
 def guess_posture(body: Body, points: Array) -> Posture:
-    """Postures whose joints roughly reach the given points.
-
-    Args:
-        body: The actor's body; its skeleton must be the default human one.
-        points: (N, 13, 3) principal points in the world [m].
-
-    Returns:
-        A batch of N postures.
-    """
+    """N postures of the default skeleton whose joints roughly reach the points (N, 13, 3) [m]."""
     skeleton = body.skeleton
     point = {name: points[:, i] for i, name in enumerate(skeleton.point_names)}
     hips = 0.5 * (point["hip.L"] + point["hip.R"])
@@ -125,10 +115,7 @@ NEUTRAL_STD_RAD = {
     "shin": 0.2,
 }
 """Prior standard deviation of each joint from rest: weak wherever the points determine it."""
-LIMIT_STD_RAD = 0.02
-"""Standard deviation of a hinge's excess over its joint limits."""
-ITERATIONS = 60
-CONVERGED = 1e-9
+LIMIT_STD_RAD = 0.02  # standard deviation of a hinge's excess over its joint limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +123,7 @@ class PostureFit:
     """Postures fitted to points."""
 
     posture: Posture
-    residual_m: Array
-    """(N, 13) distance between each given and fitted point [m]; NaN where none was given."""
+    residual_m: Array  # (N, 13) distance between each given and fitted point [m]; NaN where none was given
 
 
 def _neutral_weights(body: Body) -> Array:
@@ -178,9 +164,6 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
         points: (N, 13, 3) principal points in the world [m]; NaN for an unknown point (then `start` is
             required).
         start: A batch of N postures to start from; by default a geometric guess.
-
-    Returns:
-        The fitted postures and the residual distance of each point.
     """
     targets = np.asarray(points, dtype=np.float64)
     posture = guess_posture(body, targets) if start is None else start
@@ -189,18 +172,9 @@ def fit_posture(body: Body, points: Array, start: Posture | None = None) -> Post
         lambda batch: _residuals(body, batch, targets, weights),
         posture,
         Posture.plus,
-        _choose,
-        ITERATIONS,
-        CONVERGED,
+        Posture.where,
+        60,
+        1e-9,
     )
     residual = np.linalg.norm(body.points(body.pose(posture)) - targets, axis=-1)
     return PostureFit(posture, residual)
-
-
-def _choose(mask: BoolArray, first: Posture, second: Posture) -> Posture:
-    return Posture(
-        first.skeleton,
-        np.where(mask[:, None], first.translation, second.translation),
-        np.where(mask[:, None, None, None], first.rotations, second.rotations),
-        np.where(mask[:, None], first.angles, second.angles),
-    )

@@ -12,21 +12,9 @@ from ..arrays import Array, IndexArray
 from . import rotations
 from .posture import Posture
 
-MONOTONE_LIMIT = 3.0
-"""Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone."""
-
 
 def cubic_spline(posed: Posture, knots: Array, times: Array) -> Posture:
-    """Monotone cubic spline through given postures, held before the first knot and after the last.
-
-    Args:
-        posed: A batch of K postures, at least two.
-        knots: (K,) their times, increasing, in any unit.
-        times: (T,) the times to evaluate at.
-
-    Returns:
-        A batch of T postures.
-    """
+    """T postures of a monotone cubic through K ≥ 2, held before the first knot (K,) and after the last."""
     step = posed[1:].minus(posed[:-1])  # (K-1, D), in the earlier posture's tangent space
     gap = np.diff(knots)[:, None]
     tangent = _tangents(step / gap, gap)  # (K, D) per unit of time
@@ -54,7 +42,8 @@ def _tangents(slope: Array, gap: Array) -> Array:
     tangent[0], tangent[-1] = slope[0], slope[-1]
     before, after = slope[:-1], slope[1:]
     parabolic = (gap[1:] * before + gap[:-1] * after) / (gap[1:] + gap[:-1])
-    limit = MONOTONE_LIMIT * np.minimum(np.abs(before), np.abs(after))
+    # Largest slope, in units of the smaller neighboring slope, that keeps a cubic monotone.
+    limit = 3.0 * np.minimum(np.abs(before), np.abs(after))
     agree = before * after > 0.0
     tangent[1:-1] = np.where(agree, np.clip(parabolic, -limit, limit), 0.0)
     return tangent

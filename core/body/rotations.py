@@ -9,33 +9,16 @@ from scipy.spatial.transform import Rotation
 
 from ..arrays import Array, BoolArray
 
-SMALL_ANGLE = 1e-4
-"""Angle [rad] below which series replace the closed forms, which lose digits there."""
-
 
 def exponential(rotation_vector: Array) -> Array:
-    """Rotation matrices of rotation vectors: Solà (2018), eq. 132.
-
-    Args:
-        rotation_vector: (..., 3) [rad].
-
-    Returns:
-        (..., 3, 3) rotation matrices.
-    """
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) [rad]: Solà (2018), eq. 132."""
     vectors = np.asarray(rotation_vector, dtype=np.float64)
     matrices: Array = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
     return matrices.reshape(*vectors.shape[:-1], 3, 3)
 
 
 def logarithm(rotation: Array) -> Array:
-    """Rotation vectors of rotation matrices, of angle at most π: Solà (2018), eq. 133.
-
-    Args:
-        rotation: (..., 3, 3).
-
-    Returns:
-        (..., 3) [rad].
-    """
+    """Rotation vectors (..., 3) of matrices (..., 3, 3), of angle at most π: Solà (2018), eq. 133."""
     matrices = np.asarray(rotation, dtype=np.float64)
     vectors: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_rotvec()
     return vectors.reshape(*matrices.shape[:-2], 3)
@@ -61,19 +44,12 @@ def _tangent(rotation_vector: Array) -> tuple[Array, Array, BoolArray, Array]:
     """[v]x, the angle, whether it is too small for the closed forms, and an angle safe to divide by."""
     v = np.asarray(rotation_vector, dtype=np.float64)
     angle = np.linalg.norm(v, axis=-1)[..., None, None]
-    small = angle < SMALL_ANGLE
+    small = angle < 1e-4  # angle [rad] below which series replace the closed forms, which lose digits there
     return cross_matrix(v), angle, small, np.where(small, 1.0, angle)
 
 
 def right_jacobian(rotation_vector: Array) -> Array:
-    """J_r with Exp(v + dv) ≈ Exp(v) Exp(J_r dv): Solà (2018), eq. 143.
-
-    Args:
-        rotation_vector: (..., 3) [rad].
-
-    Returns:
-        (..., 3, 3).
-    """
+    """J_r (..., 3, 3) with Exp(v + dv) ≈ Exp(v) Exp(J_r dv): Solà (2018), eq. 143."""
     K, angle, small, safe = _tangent(rotation_vector)
     first = np.where(small, 0.5 - angle**2 / 24.0, (1.0 - np.cos(safe)) / safe**2)
     second = np.where(small, 1.0 / 6.0 - angle**2 / 120.0, (safe - np.sin(safe)) / safe**3)
@@ -81,14 +57,7 @@ def right_jacobian(rotation_vector: Array) -> Array:
 
 
 def right_jacobian_inverse(rotation_vector: Array) -> Array:
-    """The inverse of `right_jacobian`, for angles below 2π: Solà (2018), eq. 144.
-
-    Args:
-        rotation_vector: (..., 3) [rad].
-
-    Returns:
-        (..., 3, 3).
-    """
+    """The inverse of `right_jacobian`, for angles below 2π: Solà (2018), eq. 144."""
     K, angle, small, safe = _tangent(rotation_vector)
     # (1 + cos) / (2 angle sin), written with the half angle so that it stays finite at π.
     closed = 1.0 / safe**2 - 1.0 / (2.0 * safe * np.tan(safe / 2.0))
@@ -102,29 +71,16 @@ def hinge(axis: Array, angle: Array) -> Array:
 
 
 def to_quaternions(rotation: Array) -> Array:
-    """Unit quaternions in the order w, x, y, z, with w ≥ 0.
-
-    Args:
-        rotation: (..., 3, 3).
-
-    Returns:
-        (..., 4).
-    """
+    """Unit quaternions (..., 4) in the order w, x, y, z, with w ≥ 0."""
     matrices = np.asarray(rotation, dtype=np.float64)
     xyzw: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(canonical=True)
     return xyzw[:, [3, 0, 1, 2]].reshape(*matrices.shape[:-2], 4)
 
 
 def continuous_quaternions(quaternions: Array) -> Array:
-    """Flip signs along the first axis so that each quaternion lies nearest the one before.
+    """Quaternions (F, ..., 4) with signs flipped so that each lies nearest the one before.
 
     Interpolating components, as F-curves do, is right only between quaternions of one sign.
-
-    Args:
-        quaternions: (F, ..., 4).
-
-    Returns:
-        (F, ..., 4), the same rotations.
     """
     q = np.asarray(quaternions, dtype=np.float64)
     if len(q) < 2:

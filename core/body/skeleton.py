@@ -16,8 +16,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, IndexArray
 
 Vector = tuple[float, float, float]
-Placement = dict[str, Vector]
-"""A position in the parent's frame: for each of the actor's lengths a factor on x, y and z."""
+Placement = dict[str, Vector]  # in the parent's frame: factors on x, y and z of the actor's lengths
 
 SIDES = ("L", "R")
 
@@ -38,14 +37,10 @@ class Joint:
     parent: int
     kind: JointKind
     placement: Placement
-    axis: Vector = (0.0, 0.0, 0.0)
-    """Unit hinge axis, the same in parent and child; unused otherwise."""
-    components: tuple[str, ...] = ()
-    """Names of its degrees of freedom after the joint's name."""
-    limits_deg: tuple[tuple[float, float], ...] = ()
-    """Range of each rotational component of the posture vector [degrees]."""
-    deviations: tuple[float, ...] = ()
-    """Standard deviation of each component from a keyframe-interpolated prior [m, rad] (measured)."""
+    axis: Vector = (0.0, 0.0, 0.0)  # unit hinge axis, the same in parent and child; unused otherwise
+    components: tuple[str, ...] = ()  # names of its degrees of freedom after the joint's name
+    limits_deg: tuple[tuple[float, float], ...] = ()  # range of each rotational component [degrees]
+    deviations: tuple[float, ...] = ()  # measured, from a keyframe-interpolated prior [m, rad]
 
     @property
     def dof_count(self) -> int:

@@ -18,26 +18,21 @@ from .planted_feet import NEIGHBORHOOD_S, Contact
 TOES_UP_RAD = np.radians(50.0)
 """Dorsiflexion of a loaded ankle: about 40 degrees in a lunge (Bennell et al. 1998, *Australian Journal of
 Physiotherapy* 44), widened by a quarter as the joint limits of the body are."""
-TOES_DOWN_RAD = np.radians(60.0)
-"""Plantarflexion: 50 degrees (AAOS 1965, *Joint Motion*), widened likewise."""
-LEAST_CLEARANCE_M = 0.02
-"""A foot that lies on its back or side is at least that thick."""
+TOES_DOWN_RAD = np.radians(60.0)  # plantarflexion: 50 degrees (AAOS 1965, *Joint Motion*), widened likewise
 
 
 @dataclass(frozen=True, eq=False)
 class Shins:
     """Both shins in F frames."""
 
-    heading: Array
-    """(F, 2) [rad]; `roll` and `pitch` likewise."""
+    heading: Array  # (F, 2) [rad]; `roll` and `pitch` likewise
     roll: Array
     pitch: Array
-    ankle: Array
-    """(F, 2, 3) its lower end [m]."""
+    ankle: Array  # (F, 2, 3) its lower end [m]
 
     @classmethod
     def of(cls, body: Body, pose: Pose) -> "Shins":
-        """The shins of a batch of F poses."""
+        """The shins of F poses."""
         feet = [next(s for s in body.skeleton.segments if s.name == f"foot.{side}") for side in SIDES]
         rotation = np.stack([pose.rotation[:, foot.joint] for foot in feet], axis=1)
         return cls(
@@ -62,10 +57,8 @@ class Shins:
 class Soles:
     """Heel and tip of both feet in their sagittal planes: distance from the ankle, and angle below level."""
 
-    heel_m: Array
-    """(2,) of the left and the right foot [m]."""
-    heel_rad: Array
-    """(2,) angle of the line from ankle to heel below the level one backward."""
+    heel_m: Array  # (2,) of the left and the right foot [m]
+    heel_rad: Array  # (2,) angle of the line from ankle to heel below the level one backward
     tip_m: Array
     tip_rad: Array
 
@@ -89,7 +82,8 @@ class Soles:
         """(F, 2) least height of an ankle above the ground: a flat foot's, if it can lie flat [m]."""
         low, high = shins.lowest_pitch, shins.highest_pitch
         depths = [self._depth_m(pitch) for pitch in (np.clip(0.0, low, high), low, high)]
-        return np.asarray(np.maximum(np.minimum.reduce(depths), LEAST_CLEARANCE_M))
+        # A foot that lies on its back or side is at least that thick.
+        return np.asarray(np.maximum(np.minimum.reduce(depths), 0.02))
 
     def above_ground(self, pitch: Array, height_m: Array, level: Array, shins: Shins) -> Array:
         """As `ahead`, but toes that the ankle cannot bring up in front of the shin go behind it."""
@@ -99,13 +93,7 @@ class Soles:
         return np.where(shins.lowest_pitch > most, behind, self.ahead(pitch, height_m, level))
 
     def ahead(self, pitch: Array, height_m: Array, level: Array) -> Array:
-        """The nearest pitches (F, 2) with neither heel nor tip below the ground [rad].
-
-        Args:
-            pitch: (F, 2) wanted pitches [rad].
-            height_m: (F, 2) heights of the ankles above the ground.
-            level: (F, 2) cosines of the feet's rolls.
-        """
+        """Nearest pitches (F, 2) [rad] with no heel or tip below the ground; `level` has cosines of rolls."""
         least, most = self._range(height_m, level)
         return np.clip(pitch, np.minimum(least, most), most)
 
@@ -131,41 +119,20 @@ class Soles:
 # --- The ground under each foot
 
 
-SETTLING_S = 0.1
-"""Time from the beginning of a rest until the foot lies, and from when it begins to roll off to its end."""
-ROLLING_S = 0.15
-"""Time before and after a rest in which the foot is over the same ground, coming down or rolling off."""
-SAME_PLACE_M = 0.12
-"""Distance on the ground within which two rests are on one floor."""
-HELD_M = 0.3
-"""A foot that rests this much higher than the other one, which rests meanwhile, is held in the air."""
-NOISE_M = 0.03
-"""Two rests on one floor differ by no more than this unless one is on the toes."""
-LOW_SHARE = 0.1
-"""Where no foot ever rests, the ground is where the lower foot is for this share of the time."""
+NOISE_M = 0.03  # two rests on one floor differ by no more than this unless one is on the toes
 
 
 @dataclass(frozen=True, eq=False)
 class FootGround:
     """The ground under both feet in F frames."""
 
-    height_m: Array
-    """(F, 2) height of the ground under the left and the right foot [m]."""
-    resting: Array
-    """(F, 2) how far the foot rests flat, 0 to 1."""
-    on_toes: Array
-    """(F, 2) how far it rests on its toes, 0 to 1."""
+    height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
+    resting: Array  # (F, 2) how far the foot rests flat, 0 to 1
+    on_toes: Array  # (F, 2) how far it rests on its toes, 0 to 1
 
 
 def find_ground(shins: Shins, soles: Soles, time_s: Array, contacts: Sequence[Contact]) -> FootGround:
-    """Find the ground under both feet.
-
-    Args:
-        shins: The shins in F frames.
-        soles: The soles under them.
-        time_s: (F,) time of each frame [s].
-        contacts: Rests of the ankles, 0 the left and 1 the right.
-    """
+    """Find the ground under both feet, by rests of the ankles, 0 the left and 1 the right."""
     beneath = shins.ankle[..., 2] - soles.clearance_m(shins)
     own = [float(beneath[c.first : c.last + 1, c.point].mean()) for c in contacts]
     levels = [_floor(index, contacts, own) for index in range(len(contacts))]
@@ -194,7 +161,9 @@ def on_ground(contacts: Sequence[Contact]) -> tuple[Contact, ...]:
         contact
         for contact in contacts
         if not any(
-            beside(contact, other) and contact.place[2] - other.place[2] > HELD_M for other in contacts
+            # So much higher than the other one, which rests meanwhile, a foot is held in the air.
+            beside(contact, other) and contact.place[2] - other.place[2] > 0.3
+            for other in contacts
         )
     )
 
@@ -205,14 +174,16 @@ def _floor(index: int, contacts: Sequence[Contact], own: Sequence[float]) -> flo
     near = [
         height
         for contact, height in zip(contacts, own, strict=True)
-        if np.linalg.norm(contact.place[:2] - here) < SAME_PLACE_M
+        # Distance on the ground within which two rests are on one floor.
+        if np.linalg.norm(contact.place[:2] - here) < 0.12
     ]
     return min(near) if own[index] - min(near) >= NOISE_M else own[index]
 
 
 def _settled(time_s: Array) -> Array:
     """(N,) rises from 0 at a rest's beginning to 1, and falls to 0 at its end."""
-    edge = np.minimum(time_s - time_s[0], time_s[-1] - time_s) / SETTLING_S
+    # Time from the beginning of a rest until the foot lies, and from when it begins to roll off to its end.
+    edge = np.minimum(time_s - time_s[0], time_s[-1] - time_s) / 0.1
     return smooth_step(edge)
 
 
@@ -232,7 +203,8 @@ def _between(foot: int, contacts: Sequence[Contact], levels: Sequence[float], ti
     height = np.full(len(time_s), rests[0][1])
     for (before, low), (after, high) in zip(rests, rests[1:], strict=False):
         start, stop = time_s[before.last], time_s[after.first]
-        rolling = min(ROLLING_S, (stop - start) / 3.0)
+        # Coming down and rolling off, the foot is over the same ground.
+        rolling = min(0.15, (stop - start) / 3.0)
         share = (time_s - start - rolling) / max(stop - start - 2.0 * rolling, 1e-9)
         height[before.last :] = low + (high - low) * smooth_step(share[before.last :])
     return height
@@ -242,7 +214,8 @@ def _lower_foot(beneath: Array, time_s: Array) -> Array:
     """(F,) where the lower foot is for a share of the time around each frame."""
     lower = beneath.min(axis=1)
     edges = np.searchsorted(time_s, [time_s - NEIGHBORHOOD_S, time_s + NEIGHBORHOOD_S])
-    return np.array([np.quantile(lower[a : b + 1], LOW_SHARE) for a, b in edges.T], dtype=np.float64)
+    # Where no foot ever rests, the ground is where the lower foot is for this share of the time.
+    return np.array([np.quantile(lower[a : b + 1], 0.1) for a, b in edges.T], dtype=np.float64)
 
 
 def smooth_step(share: Array) -> Array:

@@ -12,22 +12,17 @@ from scipy.linalg.lapack import dpbsv
 
 from ..arrays import Array, BoolArray, IndexArray
 
-SLOPE_WEIGHT = 0.05
-"""Weight of the data's own slope at a key [frames]; it decides where no frame lies between two keys."""
-BAND = 3
-"""Bandwidth: value and slope of a key couple with those of the next."""
+SLOPE_WEIGHT = 0.05  # of the data's slope at a key [frames]: decides where no frame lies between keys
+BAND = 3  # bandwidth: value and slope of a key couple with those of the next
 
 
 @dataclass(frozen=True, eq=False)
 class Spline:
     """K keys of C curves that share their frames."""
 
-    keys: IndexArray
-    """(K,) increasing frame indices of the keys."""
-    values: Array
-    """(K, C)."""
-    slopes: Array
-    """(K, C) per unit of time, the same on both sides of a key."""
+    keys: IndexArray  # (K,) increasing frame indices of the keys
+    values: Array  # (K, C)
+    slopes: Array  # (K, C) per unit of time, the same on both sides of a key
 
     def evaluate(self, times: Array, first: int, last: int) -> Array:
         """Values (N, C) at the frames `first` to `last`, both included, which lie between the outer keys."""
@@ -82,29 +77,17 @@ class Spline:
 
 
 def fit_keys(times: Array, data: Array, keys: IndexArray, exact: IndexArray) -> Spline:
-    """The spline with given keys that is nearest to the data in the sense of least squares.
+    """The spline with given keys that is nearest to data (F, C) in the sense of least squares.
 
-    Args:
-        times: (F,) rising times of the frames.
-        data: (F, C) values at the frames.
-        keys: (K,) increasing frame indices of at least two keys, the first and the last frame among them.
-        exact: Indices of frames at which a key takes the data's own value.
+    `keys` are at least two rising frames, the first and the last among them; at the frames `exact` a key has
+    the data's own value.
     """
     start = Spline(keys, data[keys], _slopes(times, data, keys))
     return refit(times, data, start, 0, len(keys) - 1, exact)
 
 
 def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exact: IndexArray) -> Spline:
-    """Fit the keys `first` to `last` (counted among the keys, both included) anew; all others stay.
-
-    Args:
-        times: (F,) rising times of the frames.
-        data: (F, C) values at the frames.
-        spline: The keys.
-        first: The first key that may change.
-        last: The last one.
-        exact: Indices of frames at which a key takes the data's own value.
-    """
+    """Fit the keys `first` to `last` (counted among the keys, both included) anew; all others stay."""
     low, high = max(first - 1, 0), min(last + 1, len(spline.keys) - 1)
     keys = spline.keys[low : high + 1]
     band, right = _normal_equations(times, data, keys)
@@ -128,8 +111,7 @@ def refit(times: Array, data: Array, spline: Spline, first: int, last: int, exac
 def _normal_equations(times: Array, data: Array, keys: IndexArray) -> tuple[Array, Array]:
     """Normal equations of the frames from the first to the last of K keys, values and slopes in turn.
 
-    Returns:
-        The matrix as upper bands (BAND + 1, 2 K), and the right-hand side (2 K, C).
+    The matrix as upper bands (BAND + 1, 2 K), and the right-hand side (2 K, C).
     """
     pieces = len(keys) - 1
     lengths = np.diff(keys)

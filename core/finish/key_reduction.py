@@ -1,4 +1,4 @@
-"""Angles of joints over time, without leaps that no joint makes and without a tremor from frame to frame."""
+"""Key reduction: few keys whose curves keep all joints and ends of a body within a tolerance."""
 
 import heapq
 from collections.abc import Generator, Sequence
@@ -9,48 +9,10 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
 from ..body import rotations
-from ..numerics.vectors import gaussian, usual_step
 from .hermite import Spline, fit_keys, refit
 from .rig import Rig, RigPose
 
-FASTEST_RAD_S = np.radians(700.0)
-"""Angular speed of an ankle in a sprinter's push-off."""
-SMOOTHING_S = 0.03
-
-
-def steadied(angles: Array, time_s: Array) -> Array:
-    """Angles (F, ...) no faster than a joint, smoothed a little.
-
-    Args:
-        angles: (F, ...) [rad].
-        time_s: (F,) rising times [s].
-    """
-    if len(time_s) < 2:
-        return angles
-    slow = _slowed(angles, FASTEST_RAD_S * np.diff(time_s))
-    return gaussian(slow, SMOOTHING_S / usual_step(time_s), truncate=3.0)
-
-
-def _slowed(angles: Array, steps: Array) -> Array:
-    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
-
-    The mean of the lowest such curve above them and the highest below.
-    """
-    above, below = angles.copy(), angles.copy()
-    for frame, step in enumerate(steps):
-        above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
-        below[frame + 1] = np.minimum(below[frame + 1], below[frame] + step)
-    for frame in range(len(steps) - 1, -1, -1):
-        above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
-        below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
-    return np.asarray(0.5 * (above + below))
-
-
-# --- A body's motion by keys
-
-
-REACH = 3
-"""Number of keys on either side of a new or removed one that are fitted anew."""
+REACH = 3  # number of keys on either side of a new or removed one that are fitted anew
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +21,9 @@ class Trial:
 
     group: int
     spline: Spline
-    frames: slice
-    """The frames that change."""
+    frames: slice  # the frames that change
     pose: RigPose
-    worst: float
-    """Largest error of any point in those frames, in units of its tolerance."""
+    worst: float  # largest error of any point in those frames, in units of its tolerance
 
 
 class KeyedBody:
@@ -161,14 +121,9 @@ class KeyedBody:
         self.pose.points[trial.frames] = trial.pose.points
 
     def influence(self, group: int, off: BoolArray) -> Array:
-        """Largest displacement of the points with errors that comes from a group's own error.
+        """(F,) largest displacement [m] that a group's own error gives the points that are `off` (F, P).
 
-        Args:
-            group: The group.
-            off: (F, P) which points have an error.
-
-        Returns:
-            (F,) [m], to first order; 0 where the group is pinned already.
+        To first order; 0 where the group is pinned already.
         """
         moved = np.zeros(len(self.times))
         for bone in self.groups[group]:
@@ -209,30 +164,17 @@ class KeyedBody:
 # --- Key reduction
 
 
-ADDING_MARGIN = 0.5
-"""Share of the tolerance that added keys must reach; removal then chooses among them."""
-INFLUENCE_SHARE = 0.6
-"""A bone gets a key where its influence on a point is at least this share of the largest bone's."""
-GLOBAL_ROUNDS = 3
-"""Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors."""
-REMOVAL_MARGIN = 0.98
-"""Share of the tolerance that removal may use: F-curves store numbers with few digits."""
-REQUEUE_RATIO = 1.02
-"""Ratio to the next candidate's error at which a removal goes back into the queue."""
-ADDING_SHARE = 0.2
-"""Share of the work that adding keys usually is."""
-TRIALS_A_YIELD = 25
-"""Removals tried between two reports of progress."""
+REMOVAL_MARGIN = 0.98  # share of the tolerance that removal may use: F-curves store numbers with few digits
+ADDING_SHARE = 0.2  # share of the work that adding keys usually is
+TRIALS_A_YIELD = 25  # removals tried between two reports of progress
 
 
 @dataclass(frozen=True, eq=False)
 class ReducedKeys:
     """Keys of every bone, and the error of the motion by them."""
 
-    splines: tuple[Spline, ...]
-    """One a bone, in the order of the rig's bones."""
-    furthest_m: float
-    """Largest distance of any point from its original place, over all frames [m]."""
+    splines: tuple[Spline, ...]  # one a bone, in the order of the rig's bones
+    furthest_m: float  # largest distance of any point from its original place, over all frames [m]
 
 
 def reduce_keys(
@@ -251,14 +193,8 @@ def reduce_keys(
         values: For each bone of the rig its channels, (F, C), without jumps.
         tolerance_m: Largest distance of any point from its place by the values, in any frame [m]; or one for
             each frame and point, (F, P), in the order of `Rig.point_slices`.
-        exact: Indices of frames that stay keys of every bone, with their values.
+        exact: Indices of frames that stay keys of every bone, with their values, as the first and last do.
         whole_pose: Whether all bones are keyed together, as poses; by default each bone where it needs keys.
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The keys. The first and the last frame are always among them.
     """
     bones = range(len(rig.bones))
     groups = [tuple(bones)] if whole_pose else [(bone,) for bone in bones]
@@ -276,7 +212,8 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
     """Add keys until the body has no error beyond the margin; yields the fraction done."""
     most = 0
     for number in count():
-        off = body.normalized_error() > ADDING_MARGIN
+        # Share of the tolerance that added keys must reach; removal then chooses among them.
+        off = body.normalized_error() > 0.5
         frames_off = int(off.any(axis=1).sum())
         if not frames_off:
             return
@@ -288,7 +225,8 @@ def _add_keys(body: KeyedBody) -> Generator[float, None, None]:
             yield done
         for group, frames in enumerate(_frames_for_keys(body, influence)):
             if len(frames):
-                body.insert(group, frames, everywhere=number < GLOBAL_ROUNDS)
+                # Rounds in which all keys are fitted anew; later ones fit only the new keys' neighbors.
+                body.insert(group, frames, everywhere=number < 3)
                 yield done
         body.update()
 
@@ -298,7 +236,8 @@ def _frames_for_keys(body: KeyedBody, influence: Array) -> list[IndexArray]:
     most = influence.max(axis=0)
     chosen = []
     for spline, own in zip(body.splines, influence, strict=True):
-        wanted = np.where(own >= INFLUENCE_SHARE * most, own, 0.0)
+        # A bone gets a key where its influence on a point is at least this share of the largest bone's.
+        wanted = np.where(own >= 0.6 * most, own, 0.0)
         starts, stops = spline.keys, np.append(spline.keys[1:], len(wanted))
         found = [
             int(start) + int(np.argmax(wanted[start:stop]))
@@ -330,7 +269,8 @@ def _remove_keys(body: KeyedBody) -> Generator[float, None, None]:
         trial = body.without_key(group, frame)
         number += 1
         if trial.worst <= REMOVAL_MARGIN:
-            if waiting and trial.worst > REQUEUE_RATIO * waiting[0][0]:
+            # Ratio to the next candidate's error at which a removal goes back into the queue.
+            if waiting and trial.worst > 1.02 * waiting[0][0]:
                 heapq.heappush(waiting, (trial.worst, group, frame))
             else:
                 body.accept(trial)

@@ -15,60 +15,40 @@ from ..body.kinematics import Body, Extremities, Pose
 from ..body.posture import Posture
 from ..body.rotations import exponential, hinge
 from ..body.skeleton import SIDES
+from ..numerics.vectors import gaussian, usual_step
 from .foot_ground import FootGround, Shins, Soles, find_ground, on_ground, smooth_step
-from .key_reduction import steadied
 from .planted_feet import Contact, find_contacts
 
-HANGING_RAD = np.radians(20.0)
-"""Plantarflexion of a foot that hangs free, well above the ground; near it the toes are kept up."""
-HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5
-"""Heights of the sole above the ground between which a foot begins to hang."""
-SWING_CLEARANCE_M = 0.013
-"""Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72)."""
-STANDS_M_S, SWINGS_M_S = 1.0, 2.5
-"""Speeds of the ankle below which no clearance is kept, and above which all of it."""
-STILL_M_S, LOW_M = 0.2, 0.04
-"""Speed, and height above a flat foot's, at which a foot that does not rest, because it sways or slides, is
-held flat by half."""
-SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)
-"""Eversion and inversion (AAOS 1965, *Joint Motion*)."""
-LEVEL_WITHIN_M = 0.1
-"""Height above a flat foot's at which its sole is no longer held level across."""
-LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)
-"""Leans of a shin to its side from which on, and at which, the ground no longer turns its foot."""
-FREE_HEADING_RAD = np.radians(25.0)
-"""A resting foot keeps its heading while the shin above it turns by no more than this."""
-FADE_S = 0.2
-"""Time in which a resting foot's heading comes and goes."""
+HANGING_RAD = np.radians(20.0)  # plantarflexion of a foot that hangs free, well above the ground
+HANGING_FROM_M, HANGING_AT_M = 0.15, 0.5  # heights of the sole between which a foot begins to hang
+STANDS_M_S, SWINGS_M_S = 1.0, 2.5  # ankle speeds that need no toe clearance, and all of it
+STILL_M_S, LOW_M = 0.2, 0.04  # where a foot that sways or slides is held flat by half
+SOLE_OUT_RAD, SOLE_IN_RAD = np.radians(20.0), np.radians(35.0)  # eversion, inversion (AAOS 1965)
+LEANING_RAD, LYING_RAD = np.radians(35.0), np.radians(60.0)  # leans between which the ground lets go
+FREE_HEADING_RAD = np.radians(25.0)  # a resting foot keeps its heading up to this turn of the shin
 
 
 def foot_turns(
     shins: Shins, soles: Soles, ground: FootGround, time_s: Array, contacts: Sequence[Contact]
 ) -> dict[str, Array]:
-    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment.
-
-    Args:
-        shins: The shins in F frames.
-        soles: The soles under them.
-        ground: The ground under them.
-        time_s: (F,) time of each frame [s].
-        contacts: Rests of the ankles, 0 the left and 1 the right.
-    """
+    """(F, 3, 3) turn of each foot in its shin's frame, by name of segment; contacts are the ankles' rests."""
     upright = _upright(shins)
     height = shins.ankle[..., 2] - ground.height_m
     above = height - soles.flat_m
     speed = _speed(shins.ankle, time_s)
-    near = np.maximum(ground.resting, 1.0 - smooth_step(above / LEVEL_WITHIN_M))
+    # Height above a flat foot's at which its sole is no longer held level across.
+    near = np.maximum(ground.resting, 1.0 - smooth_step(above / 0.1))
     leveling = -upright * near * _within_range(shins.roll)
     swing = smooth_step((speed - STANDS_M_S) / (SWINGS_M_S - STANDS_M_S))
-    lifted = np.maximum(height - SWING_CLEARANCE_M * swing, 0.0)
+    # Least clearance of the toes in the swing of a step (Winter 1992, *Physical Therapy* 72).
+    lifted = np.maximum(height - 0.013 * swing, 0.0)
     pitch = soles.above_ground(
         _free_pitch(shins, soles, ground, height), lifted, np.cos(shins.roll + leveling), shins
     )
     standing = np.maximum(ground.resting, (1.0 - ground.on_toes) * _still(speed, above))
     pitch += standing * upright * (np.clip(0.0, shins.lowest_pitch, shins.highest_pitch) - pitch)
     turned = upright * _held_heading(shins, contacts, time_s)
-    steady = steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
+    steady = _steadied(np.stack([pitch - shins.pitch, leveling, turned], axis=1), time_s)
     flexion, leveling, turned = np.moveaxis(steady, 1, 0)
     level = np.cos(shins.roll + leveling)
     return _by_side(shins, soles.above_ground(shins.pitch + flexion, height, level, shins), leveling, turned)
@@ -122,7 +102,7 @@ def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> A
         heading = np.unwrap(shins.heading[:, foot])
         middle = 0.5 * (heading[rows].min() + heading[rows].max())
         apart = np.maximum(time_s[contact.first] - time_s, time_s - time_s[contact.last])
-        near = 1.0 - smooth_step(apart / FADE_S)
+        near = 1.0 - smooth_step(apart / 0.2)  # time in which a resting foot's heading comes and goes
         turned[:, foot] += near * np.clip(middle - heading, -FREE_HEADING_RAD, FREE_HEADING_RAD)
         weight[:, foot] += near
     # Two rests that follow closely share the time between them.
@@ -130,14 +110,7 @@ def _held_heading(shins: Shins, contacts: Sequence[Contact], time_s: Array) -> A
 
 
 def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict[str, Array]:
-    """(F, 3, 3) turn of each foot in its shin's frame.
-
-    Args:
-        shins: The shins.
-        pitch: (F, 2) the feet's pitches.
-        leveling: (F, 2) by how much their rolls differ from the shins'.
-        turned: (F, 2) by how much their headings do.
-    """
+    """(F, 3, 3) turn of each foot in its shin's frame, by pitch and by what roll and heading differ."""
     x, y, z = np.eye(3)
     # The shin's own pitch and roll are undone before the foot's are done: where the shin lies on its side and
     # its pitch means nothing, only the difference counts.
@@ -146,31 +119,42 @@ def _by_side(shins: Shins, pitch: Array, leveling: Array, turned: Array) -> dict
     return {f"foot.{side}": turns[:, number] for number, side in enumerate(SIDES)}
 
 
+def _steadied(angles: Array, time_s: Array) -> Array:
+    """Angles (F, ...) [rad] no faster than a joint, smoothed a little."""
+    if len(time_s) < 2:
+        return angles
+    # Angular speed of an ankle in a sprinter's push-off.
+    slow = _slowed(angles, np.radians(700.0) * np.diff(time_s))
+    return gaussian(slow, 0.03 / usual_step(time_s), truncate=3.0)
+
+
+def _slowed(angles: Array, steps: Array) -> Array:
+    """Angles that change by no more than given steps (F - 1,); those that do not anyway stay as they are.
+
+    The mean of the lowest such curve above them and the highest below.
+    """
+    above, below = angles.copy(), angles.copy()
+    for frame, step in enumerate(steps):
+        above[frame + 1] = np.maximum(above[frame + 1], above[frame] - step)
+        below[frame + 1] = np.minimum(below[frame + 1], below[frame] + step)
+    for frame in range(len(steps) - 1, -1, -1):
+        above[frame] = np.maximum(above[frame], above[frame + 1] - steps[frame])
+        below[frame] = np.minimum(below[frame], below[frame + 1] + steps[frame])
+    return np.asarray(0.5 * (above + below))
+
+
 # --- Hands that hang relaxed
 
 
-CURL_RAD = np.radians(10.0)
-"""Bend of a relaxed hand toward the palm, half-closed fingers included, which one bone stands for."""
-DROOP_RAD = np.radians(8.0)
-"""What its weight bends a hand by when the forearm is level."""
-BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)
-"""Extension and flexion of a wrist (AAOS 1965, *Joint Motion*)."""
-THICKNESS_M = 0.012
-"""Height of the fingers' middle above the ground that they lie on."""
-BACK_FROM_RAD = np.radians(-15.0)
-"""The hand bends back where what is straight down lies beyond this bend, or else toward the palm."""
+CURL_RAD = np.radians(10.0)  # a relaxed hand's, half-closed fingers included, which one bone stands for
+DROOP_RAD = np.radians(8.0)  # what its weight bends a hand by when the forearm is level
+BACK_RAD, TO_PALM_RAD = np.radians(70.0), np.radians(80.0)  # of a wrist (AAOS 1965, *Joint Motion*)
+THICKNESS_M = 0.012  # height of the fingers' middle above the ground that they lie on
 DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[str, Array]:
-    """(F, 3, 3) turn of each hand in its forearm's frame, by name of segment.
-
-    Args:
-        body: The body.
-        pose: Its poses in F frames.
-        ground_m: (F,) height of the ground.
-        time_s: (F,) time of each frame [s].
-    """
+    """(F, 3, 3) turn of each hand in its forearm's frame over ground at heights (F,), by name of segment."""
     turns = {}
     for side in SIDES:
         name = f"hand.{side}"
@@ -185,14 +169,14 @@ def hand_turns(body: Body, pose: Pose, ground_m: Array, time_s: Array) -> dict[s
         wrist = pose.place(hand.joint, body.local(hand.start))[:, 2]
         over = (wrist - ground_m - THICKNESS_M) / length
         ahead, palm = -down @ (along / length), -down @ DOWN
-        bend = steadied(_above_ground(bend, over, ahead, palm), time_s)
+        bend = _steadied(_above_ground(bend, over, ahead, palm), time_s)
         bend = _above_ground(bend, over, ahead, palm)
         turns[name] = exponential(bend[:, None] * to_palm) @ exponential((droop @ aside)[:, None] * aside)
     return turns
 
 
 def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
-    """The bends (F,) that keep fingertips above the ground, as far as the wrists let them.
+    """The bends (F,) [rad] that keep fingertips above the ground, as far as the wrists let them.
 
     Args:
         bend: (F,) the relaxed ones [rad].
@@ -208,7 +192,8 @@ def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
     back = np.minimum(bend, steepest - apart)
     forth = np.maximum(bend, steepest + apart)
     passing = np.abs(np.remainder(bend - steepest + np.pi, 2.0 * np.pi) - np.pi) < apart
-    kept = np.where(steepest > BACK_FROM_RAD, back, forth)
+    # The hand bends back where what is straight down lies beyond this bend, or else toward the palm.
+    kept = np.where(steepest > np.radians(-15.0), back, forth)
     return np.clip(np.where(passing, kept, bend), -BACK_RAD, TO_PALM_RAD)
 
 
@@ -218,13 +203,9 @@ def _above_ground(bend: Array, over: Array, ahead: Array, palm: Array) -> Array:
 def natural_extremities(
     body: Body, posture: Posture, time_s: Array, contacts: Sequence[Contact] | None = None
 ) -> Extremities:
-    """Hands that hang relaxed, and feet that lie flat, roll and never pass the ground.
+    """Hands that hang relaxed, and feet that lie flat, roll and never pass the ground, in F postures.
 
-    Args:
-        body: The body.
-        posture: A batch of F postures.
-        time_s: (F,) rising time of each frame [s].
-        contacts: Rests of the ankles, 0 the left and 1 the right; found where not given.
+    `contacts` are rests of the ankles, 0 the left and 1 the right; they are found where not given.
     """
     pose = body.pose(posture)
     shins, soles = Shins.of(body, pose), Soles.of(body)

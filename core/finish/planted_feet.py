@@ -1,4 +1,4 @@
-"""Contacts of feet: ranges of frames in which an ankle is slow, near one place, and low or carrying."""
+"""Contacts of feet, where an ankle is slow, near one place and low, and feet that are held there."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
@@ -12,51 +12,27 @@ from ..body.skeleton import SIDES
 from ..estimate.block_banded import BlockBanded
 from .rig import Rig
 
-REST_SPEED_M_S = 0.12
-"""A resting ankle is slower than this ..."""
-RELEASE_SPEED_M_S = 0.25
-"""... once, and stays below this before and after."""
-REST_HEIGHT_M = 0.05
-"""A resting ankle is no higher than this above its own lowest within `NEIGHBORHOOD_S` ..."""
-STEPPING_SPEED_M_S = 0.5
-"""... or carries the body, as on stairs, while the other ankle is faster than this."""
+RELEASE_SPEED_M_S = 0.25  # below this a foot may rest; once it must be slower than half of it
 NEIGHBORHOOD_S = 1.0
-SHORTEST_S = 0.2
-"""Shortest rest; shorter ones are turning points of a moving foot."""
-STRAY_M = 0.025
-"""Largest distance of a resting ankle's estimate from its place."""
-MOST_OF_RUN = 0.6
-"""Least share of a slow run that a rest takes; a foot that is slow but does not stay slides."""
+STRAY_M = 0.025  # largest distance of a resting ankle's estimate from its place
 
 
 @dataclass(frozen=True, eq=False)
 class Contact:
     """A foot at rest."""
 
-    point: int
-    """Index of the point that rests."""
-    first: int
-    """The first frame of the rest, from 0."""
-    last: int
-    """Its last frame, included."""
-    place: Array
-    """(3,) its place [m]."""
+    point: int  # index of the point that rests
+    first: int  # the first frame of the rest, from 0
+    last: int  # its last frame, included
+    place: Array  # (3,) its place [m]
 
 
 def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tuple[Contact, ...]:
-    """Find the contacts of points.
+    """Find the contacts of points (F, N, 3) [m], in order of point and frame.
 
     No floor is assumed: a foot may rest on a step or a beam. One that sways or slides farther than it may
     stray does not rest. A rest on a step begins when the point comes there, though its way there still tells
     that it is high.
-
-    Args:
-        places: (F, N, 3) the points, by frame [m].
-        time_s: (F,) time of each frame [s].
-        stray_m: Largest distance of a resting point from its place [m].
-
-    Returns:
-        Rests in order of point and frame.
     """
     if len(places) < 3:
         return ()
@@ -64,13 +40,16 @@ def find_contacts(places: Array, time_s: Array, stray_m: float = STRAY_M) -> tup
     found: list[Contact] = []
     for point in range(places.shape[1]):
         path, own = places[:, point], speed[:, point]
-        carries = np.delete(speed, point, axis=1).max(axis=1, initial=0.0) > STEPPING_SPEED_M_S
+        # On stairs a foot that carries the body may be high, while the other one is faster than this.
+        carries = np.delete(speed, point, axis=1).max(axis=1, initial=0.0) > 0.5
         may_rest = carries | _is_low(path, time_s)
         free = 0
         for run in _slow_runs(own, may_rest):
             first, last = _longest_rest(path, stray_m, *run)
             lasted, whole = time_s[last] - time_s[first], time_s[run[1]] - time_s[run[0]]
-            if lasted >= max(SHORTEST_S, MOST_OF_RUN * whole):
+            # Shortest rest; shorter ones are turning points of a moving foot.
+            # Least share of a slow run that a rest takes; a foot that is slow but does not stay slides.
+            if lasted >= max(0.2, 0.6 * whole):
                 place = path[first : last + 1].mean(axis=0)
                 near = np.linalg.norm(path - place, axis=-1) <= stray_m
                 rest = _widened(~may_rest & near & (own < RELEASE_SPEED_M_S), first, last, free)
@@ -84,7 +63,7 @@ def _is_low(path: Array, time_s: Array) -> BoolArray:
     low = np.array(
         [path[np.abs(time_s - now) <= NEIGHBORHOOD_S, 2].min() for now in time_s], dtype=np.float64
     )
-    return np.asarray(path[:, 2] - low < REST_HEIGHT_M)
+    return np.asarray(path[:, 2] - low < 0.05)
 
 
 def _widened(stays: BoolArray, first: int, last: int, free: int) -> tuple[int, int]:
@@ -101,7 +80,7 @@ def _slow_runs(speed: Array, may_rest: BoolArray) -> list[tuple[int, int]]:
     slow = (speed < RELEASE_SPEED_M_S) & may_rest
     edges = np.flatnonzero(np.diff(np.concatenate([[0], slow.astype(np.intp), [0]])))
     runs = zip(edges[::2], edges[1::2] - 1, strict=True)
-    return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < REST_SPEED_M_S]
+    return [(int(a), int(b)) for a, b in runs if speed[a : b + 1].min() < 0.12]
 
 
 def _longest_rest(path: Array, stray_m: float, first: int, last: int) -> tuple[int, int]:
@@ -123,56 +102,28 @@ def _stays(path: Array, stray_m: float) -> bool:
 # --- Foot planting
 
 
-FADE_S = 0.2
-"""Time in which a correction fades on either side of a rest."""
-ANKLE_STD_M = 2e-4
-"""Standard deviation of an ankle from its target."""
+FADE_S = 0.2  # time in which a correction fades on either side of a rest
+ANKLE_STD_M = 2e-4  # standard deviation of an ankle from its target
 CHANGE_STD = {"pelvis.location": 0.005, "hip": 0.1, "knee": 0.1, "shin": 0.03}
 """Standard deviation of the change of each degree of freedom [m, rad]: legs before hips, bends before
 twists."""
-PACE_STD_PER_S = 2.0
-"""Standard deviation of the changes' own change in a second, relative: small, so that knees do not
-flicker."""
-UNCHANGED_STD = 1e-6
-"""Factor of `CHANGE_STD` in frames without a correction."""
-RESTING_TOLERANCE_M = 0.0005
-"""Largest error that key reduction may give a resting ankle [m]: it must not slide again."""
-SOLE_TOLERANCE_M = 0.001
-"""Largest error that it may give heel and tip of a resting foot [m], which lies flat."""
+RESTING_TOLERANCE_M = 0.0005  # most that key reduction may move a resting ankle: it must not slide
+SOLE_TOLERANCE_M = 0.001  # largest error that it may give heel and tip of a resting foot [m], which lies flat
 ITERATIONS = 8
-CONVERGED = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class PlantedFeet:
     """A motion whose resting feet stand still."""
 
-    posture: Posture
-    """A batch of F postures."""
-    contacts: tuple[Contact, ...]
-    """Where which ankle rests; points are counted left, right."""
+    posture: Posture  # a batch of F postures
+    contacts: tuple[Contact, ...]  # where which ankle rests; points are counted left, right
 
 
 def plant_feet(
-    body: Body,
-    posture: Posture,
-    time_s: Array,
-    stray_m: float = STRAY_M,
+    body: Body, posture: Posture, time_s: Array, stray_m: float = STRAY_M
 ) -> Generator[float, None, PlantedFeet]:
-    """Hold resting feet still.
-
-    Args:
-        body: The actor's body.
-        posture: A batch of F postures.
-        time_s: (F,) time of each frame [s].
-        stray_m: Largest distance of a resting foot's estimate from its place [m].
-
-    Yields:
-        The fraction done, from 0 to 1.
-
-    Returns:
-        The postures; those far from any rest are unchanged.
-    """
+    """Hold resting feet still, by their mean place; postures far from any rest are unchanged."""
     ankles = [body.skeleton.point_names.index(f"ankle.{side}") for side in SIDES]
     places = body.points(body.pose(posture))[:, ankles]
     contacts = find_contacts(places, time_s, stray_m)
@@ -189,23 +140,15 @@ def plant_feet(
         delta += step
         full = np.zeros((len(time_s), body.skeleton.dof_count))
         full[:, dofs] = delta
-        planted = _changed(posture, full, touched)
+        planted = Posture.where(touched, posture.plus(full), posture)
         yield 0.1 + 0.9 * (number + 1) / ITERATIONS
-        if np.abs(step).max() < CONVERGED:
+        if np.abs(step).max() < 1e-5:
             break
     return PlantedFeet(planted, contacts)
 
 
 def point_tolerances(rig: Rig, frame_count: int, tolerance_m: float, contacts: Sequence[Contact]) -> Array:
-    """(F, P) tolerance of each of the rig's points [m].
-
-    Args:
-        rig: The actor.
-        frame_count: F.
-        tolerance_m: The general tolerance [m].
-        contacts: Rests of the ankles, left and right, whose tolerance is at most `RESTING_TOLERANCE_M`, and
-            that of soles `SOLE_TOLERANCE_M`.
-    """
+    """(F, P) tolerance of each of the rig's points [m], less for resting ankles and soles."""
     allowed = np.full((frame_count, rig.point_slices[-1].stop), tolerance_m)
     row = {bone.name: index for index, bone in enumerate(rig.bones)}
     for contact in contacts:
@@ -278,22 +221,13 @@ def _gauss_newton_step(
     equations.add_rows((jacobian,))
     gradient = (residual[:, None] @ jacobian)[:, 0]
     every = slice(None)
-    unchanged = (std * np.where(touched, 1.0, UNCHANGED_STD)[:, None]) ** -2
-    steady = (std * PACE_STD_PER_S * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
+    # Factor of `CHANGE_STD` in frames without a correction.
+    unchanged = (std * np.where(touched, 1.0, 1e-6)[:, None]) ** -2
+    # Changes that change little from frame to frame: knees do not flicker.
+    steady = (std * 2.0 * np.maximum(np.diff(time_s), 1e-3)[:, None]) ** -2
     prior = BlockBanded(frames, size)
     prior.add_combination(every, (1.0,), unchanged)
     prior.add_combination(every, (-1.0, 1.0), steady)
     equations.add(prior)
     gradient += prior.multiply(delta)
     return equations.factorize().solve(-gradient)
-
-
-def _changed(posture: Posture, delta: Array, touched: BoolArray) -> Posture:
-    """The posture with changes (F, D) in the touched frames; the others keep their very numbers."""
-    moved = posture.plus(delta)
-    return Posture(
-        posture.skeleton,
-        np.where(touched[:, None], moved.translation, posture.translation),
-        np.where(touched[:, None, None, None], moved.rotations, posture.rotations),
-        np.where(touched[:, None], moved.angles, posture.angles),
-    )

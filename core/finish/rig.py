@@ -13,9 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 
-LEAST_LENGTH = 1e-12
-NO_TURN = "NONE"
-"""Rotation mode of a bone that is placed and not turned."""
+NO_TURN = "NONE"  # rotation mode of a bone that is placed and not turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,24 +21,18 @@ class RigBone:
     """A bone that turns, with the points rigidly fixed to it."""
 
     name: str
-    parent: int
-    """Index of its parent; -1 for the root."""
+    parent: int  # index; -1 for the root
     mode: str
     """QUATERNION (w, x, y, z), AXIS_ANGLE (angle, x, y, z), the order of Euler angles such as XYZ, or
     `NO_TURN` for a bone whose rotation has no channels."""
-    left: Array
-    """(3, 3) and `right`: `left @ rotation @ right` is the joint's frame in its turner's joint's frame."""
-    right: Array
-    """(3, 3)."""
-    origin: Array
-    """(3,) the joint in the parent's joint's frame [m], in the world for a root, before its own location."""
-    points: Array
-    """(N, 3) points fixed to the bone, in its joint's frame [m]: its end, and the ends of rigid leaves."""
+    left: Array  # (3, 3) `left @ rotation @ right` is the joint's frame in its turner's frame
+    right: Array  # (3, 3)
+    origin: Array  # (3,) the joint in its parent's frame [m], of a root in the world, without location
+    points: Array  # (N, 3) fixed points in its joint's frame [m]: its end, and those of rigid leaves
     location_axes: Array | None = None
     """(3, 3) takes its location channels to the parent's joint's frame, for a root to the world; None for a
     bone that has none."""
-    turned_by: int | None = None
-    """Index of the bone that turns it, -1 for none; None for its parent."""
+    turned_by: int | None = None  # index of the bone that turns it, -1 for none; None for its parent
 
     @property
     def turner(self) -> int:
@@ -132,10 +124,8 @@ class Rig:
 class RigPose:
     """Joints and points of a rig in F frames."""
 
-    rotation: Array
-    """(B, F, 3, 3) each bone's joint's frame in the world."""
-    points: Array
-    """(F, P, 3) joints and ends in the world [m], in the order of `Rig.point_slices`."""
+    rotation: Array  # (B, F, 3, 3) each bone's joint's frame in the world
+    points: Array  # (F, P, 3) joints and ends in the world [m], in the order of `Rig.point_slices`
 
     def local(self, rig: Rig, index: int, frames: slice) -> Array:
         """(N, 3, 3) a bone's joint's frame in that of the bone that turns it."""
@@ -168,7 +158,7 @@ def rotation_matrices(channels: Array, mode: str) -> Array:
         return np.asarray(Rotation.from_quat(channels[:, [1, 2, 3, 0]]).as_matrix())
     if mode == "AXIS_ANGLE":
         length = np.linalg.norm(channels[:, 1:], axis=-1, keepdims=True)
-        axis = channels[:, 1:] / np.maximum(length, LEAST_LENGTH)
+        axis = channels[:, 1:] / np.maximum(length, 1e-12)
         return np.asarray(Rotation.from_rotvec(channels[:, :1] * axis).as_matrix())
     order = ["XYZ".index(letter) for letter in mode]
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.

@@ -10,14 +10,9 @@ from .composed_states import FrameStates
 from .part_features import HEADINGS, StanceFeatures, composed_postures
 from .part_pools import PartPools
 
-MOST_CANDIDATES, MOST_STATES = 6, 60
-"""Candidates are chosen among so many of the most probable states."""
-DISTINCT_M = 0.08
-"""Postures whose points differ by less on average, the hips aligned, look the same."""
-ABOUT_RIGHT_M = 0.10
-"""Mean distance of the points, the hips aligned, within which a match is about right."""
-PROBABILITY_BOUNDS = 0.02, 0.98
-"""Probabilities are clipped to these before their odds are taken."""
+DISTINCT_M = 0.08  # postures whose points differ by less on average, the hips aligned, look the same
+ABOUT_RIGHT_M = 0.10  # mean distance of the points, the hips aligned, within which a match is about right
+PROBABILITY_BOUNDS = 0.02, 0.98  # probabilities are clipped to these before their odds are taken
 CHOSEN, OTHER = (-0.1, 0.5, 1.0 / 3.0), (-2.0, 2.0 / 3.0, 1.0 / 3.0)
 """Logistic regressions, rounded, of being about right, of the chosen posture, which the whole clip led to,
 and of the others, on 25 recordings with truth: of 237 chosen ones said to be up to 40, 60, 80 and 100 % sure,
@@ -28,25 +23,20 @@ and of the others, on 25 recordings with truth: of 237 chosen ones said to be up
 class Candidate:
     """A posture that a frame may show, of a library or put together from parts."""
 
-    posture: Posture
-    """Of the take's body, in the world."""
+    posture: Posture  # of the take's body, in the world
     name: str
     """Name of the libraries' posture nearest to it, or to its trunk where it was put together; empty where
     no library was asked."""
-    mirrored: bool
-    """Whether it is nearest to the mirror image of that."""
-    confidence: float
-    """Probability that it is about right, 0 to 1."""
+    mirrored: bool  # whether it is nearest to the mirror image of that
+    confidence: float  # probability that it is about right, 0 to 1
 
 
 @dataclass(frozen=True, eq=False)
 class MatchedFrame:
     """The candidates of one frame."""
 
-    index: int
-    """Index in the clip."""
-    candidates: tuple[Candidate, ...]
-    """The chosen one first, then the alternatives, the likelier first."""
+    index: int  # Index in the clip
+    candidates: tuple[Candidate, ...]  # the chosen one first, then the alternatives, the likelier first
 
 
 def composed_candidates(
@@ -71,13 +61,13 @@ def composed_candidates(
         torso: Its torso in the pool.
         explained: Share of the frame that it explains, 0 to 1.
     """
-    likely = np.argsort(-posterior, kind="stable")[:MOST_STATES]
+    likely = np.argsort(-posterior, kind="stable")[:60]
     some = states.chosen(likely)
     postures = composed_postures(pools, stances, some.stance, some.limbs, some.hips)
     everyone = Posture.concatenate([Posture.stack([chosen]), postures])
     shape = pools.body.points(pools.body.pose(everyone)) - everyone.translation[:, None]
     weight = np.concatenate([[0.0], posterior[likely] / max(float(posterior[likely].sum()), 1e-12)])
-    kept = distinct_rows(shape, np.arange(len(shape)), DISTINCT_M, MOST_CANDIDATES)
+    kept = distinct_rows(shape, np.arange(len(shape)), DISTINCT_M, most=6)
     found = []
     for rank in map(int, kept):
         near = np.linalg.norm(shape - shape[rank], axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
@@ -103,14 +93,7 @@ def confidence(share: float, explained: float, coefficients: tuple[float, float,
 
 
 def distinct_rows(points: Array, order: IndexArray, apart_m: float, most: int) -> IndexArray:
-    """Rows of postures' points that are apart from each other, the first in order.
-
-    Args:
-        points: (S, P, 3) points of S postures relative to the hips [m].
-        order: Rows, those that are preferred first.
-        apart_m: Mean distance of the points beyond which two postures are apart [m].
-        most: Number of rows at most.
-    """
+    """At most `most` rows, the first in `order`, of postures (S, P, 3) that are `apart_m` apart."""
     kept: list[int] = []
     for row in map(int, order):
         if not kept or np.linalg.norm(points[kept] - points[row], axis=-1).mean(axis=-1).min() > apart_m:

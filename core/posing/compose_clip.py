@@ -1,4 +1,4 @@
-"""Means of composed postures: what the probable parts near the likeliest ones have in common.
+"""Postures of a clip, put together from parts: the likeliest path, and the mean of probable parts around it.
 
 The likeliest path takes one part of a pool a frame, some centimeters from the truth whatever is seen. The
 mean of the parts near it, weighed by their probabilities, is nearer; parts of another kind, as those on the
@@ -14,7 +14,6 @@ from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import LIMBS
 from ..body.kinematics import Body
 from ..body.posture import Posture
-from ..body.skeleton import Skeleton
 from ..estimate.performer_placement import place_standing
 from ..footage.camera import Camera
 from ..progress import Part, scaled
@@ -23,31 +22,19 @@ from .composed_states import LEGS, FrameCosts, FrameStates
 from .library_motion import PartBelief, part_beliefs
 from .match_evidence import MatchEvidence, frame_likelihoods
 from .part_features import StanceFeatures, composed_postures
-from .part_pools import TORSO, PartPools, part_columns
+from .part_pools import TORSO, PartPools, part_dofs
 from .posed_costs import PosedCosts
 from .posing_input import PosingInput, tempering
-
-NEAR_M = 0.15
-"""Parts within about this distance are of one kind: less than there is between a limb's depth sides."""
-LEAST_SHARE = 1e-3
-"""Parts that weigh less than this share of the weightiest are left out."""
 
 
 def mean_postures(
     pools: PartPools, stances: StanceFeatures, states: Sequence[FrameStates], path: ComposedPath
 ) -> Posture:
-    """(T,) means of the likely postures around a path.
-
-    Args:
-        pools: All parts.
-        stances: Their stances.
-        states: The T frames' states.
-        path: The path through them.
-    """
+    """(T,) means of the likely postures around a path through T frames' states."""
     likeliest = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
     skeleton = likeliest.skeleton
     step = np.zeros((len(path.stance), skeleton.dof_count))
-    torso = [0, 1, 2, *_dofs(skeleton, TORSO)]
+    torso = [0, 1, 2, *part_dofs(skeleton, TORSO)]
     points = stances.features.points
     for row, (own, chance) in enumerate(zip(states, path.posterior, strict=True)):
         apart = np.linalg.norm(points[own.stance] - points[path.stance[row]], axis=-1).mean(axis=-1)
@@ -57,7 +44,7 @@ def mean_postures(
         step[row, torso] = weight @ others.minus(likeliest[np.full(len(kept), row)])[:, torso]
     for limb, chosen in zip(LIMBS, path.limbs.T, strict=True):
         kind, _, side = limb.partition(".")
-        dofs = _dofs(skeleton, kind, side)
+        dofs = part_dofs(skeleton, kind, side)
         every = _alone(pools, limb, len(stances.limbs[limb].points))
         shapes = stances.limbs[limb].points
         for row, part in enumerate(chosen):
@@ -68,12 +55,12 @@ def mean_postures(
 
 
 def _weights(chance: Array | SingleArray, apart_m: Array | SingleArray) -> tuple[IndexArray, Array]:
-    """Which of N parts count, by their probabilities and distances from the likeliest, and their weights."""
-    near = np.exp(-0.5 * (apart_m / NEAR_M) ** 2)
+    # Parts within about this distance are of one kind: less than there is between a limb's depth sides.
+    near = np.exp(-0.5 * (apart_m / 0.15) ** 2)
     weight = np.asarray(chance, dtype=float) * near
     if not weight.any():  # all that is probable is far away
         weight = near
-    kept = np.flatnonzero(weight >= LEAST_SHARE * weight.max())
+    kept = np.flatnonzero(weight >= 1e-3 * weight.max())
     return kept, weight[kept] / weight[kept].sum()
 
 
@@ -84,35 +71,11 @@ def _alone(pools: PartPools, limb: str, count: int) -> Posture:
     return pools.composed(none, limbs, np.zeros(count), np.zeros((count, 3)))
 
 
-def _dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
-    """Degrees of freedom of a part."""
-    balls, hinges = part_columns(kind, side)
-    return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]
-
-
-# --- Postures of a clip put together from parts
-
-
-PART_SCALE = 0.4
-"""Deviation of a composed body from the performer, relative to that of another performer's posture."""
-WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)
-"""Distances tried at first, as shares of a rough one: sizes in the picture are good to a tenth."""
-NARROW = (1.0, 0.96, 1.04, 0.92, 1.08)
-"""Distances tried about the first path."""
-BETWEEN_POSED = (1.0, 0.96, 1.04)
-"""Distances tried between two posed frames, which tell the place."""
-LONGEST_GAP_S = 2.0
-"""Between posed frames that are no farther apart nobody goes far away and comes back."""
-SEARCHED_AND_LED = 0.6, 0.7
-"""Shares of a round after which the states are found, and the path through them."""
-SMOOTH_S = 0.6
-"""Time over which the rough distance is smoothed."""
-WORLD_FLOOR_M = 0.25
-"""A floor found this near to z = 0 is taken to be there: sizes are no more exact."""
-FLOOR_COST_MARGIN = 1.5
-"""Mean cost of a frame that putting the floor at z = 0 may add before another height is preferred."""
-MOST_PLACED = 16
-"""Frames in which the performer is placed by size."""
+PART_SCALE = 0.4  # deviation of a composed body, relative to that of another performer's posture
+WIDE = (1.0, 0.92, 1.09, 0.84, 1.19, 0.77, 1.3)  # distances tried, as shares of one good to a tenth
+SMOOTH_S = 0.6  # time over which the rough distance is smoothed
+FARTHER = 1.5  # sizes rule out z = 0 where a performer on it would be so many times farther away or nearer
+MOST_PLACED = 16  # frames in which the performer is placed by size
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,37 +84,27 @@ class Composition:
 
     path: ComposedPath
     states: list[FrameStates]
-    posture: Posture
-    """(T,)."""
-    floor_m: float
-    """Height of the floor."""
+    posture: Posture  # (T,)
+    floor_m: float  # height of the floor
 
 
 def compose_frames(
     given: PosingInput, pools: PartPools, stances: StanceFeatures, floor_m: float | None
 ) -> Part[Composition]:
-    """Compose the postures of the T frames of a clip that are looked at.
+    """Compose the postures of the T frames of a clip that are looked at; `floor_m` is None where unknown.
 
     Whole motions of the libraries are believed in as far as the clip shows them; they are not asked between
     posed frames that are near each other.
-
-    Args:
-        given: The take.
-        pools: All parts.
-        stances: Their stances.
-        floor_m: Height of the floor; None where it is not known.
-
-    Yields:
-        The fraction done.
     """
     evidence, camera = given.evidence, given.camera
     sampled, time_s = given.sampled, given.time_s
-    rounds: tuple[tuple[float, ...], ...] = (WIDE, NARROW)
+    # Distances tried about the first path.
+    rounds: tuple[tuple[float, ...], ...] = (WIDE, (1.0, 0.96, 1.04, 0.92, 1.08))
     if _posed_throughout(given):  # the place is known, then, and what lies between is soon found
         known = given.posed
         depths = [camera.depth(hips, int(f)) for f, hips in zip(known.frames, known.hips, strict=True)]
         rough = np.interp(sampled, known.frames, depths)
-        rounds = (BETWEEN_POSED,)
+        rounds = ((1.0, 0.96, 1.04),)  # distances tried between two posed frames, which tell the place
     else:
         rough = rough_depths(given.body, camera, evidence, sampled, time_s)
     if floor_m is None:
@@ -160,10 +113,10 @@ def compose_frames(
     beliefs: Sequence[PartBelief | None] = [None] * len(sampled)
     for turn, shares in enumerate(rounds):
         begun, ended = (0.1 + 0.9 * (turn + end) / len(rounds) for end in (0, 1))
-        searched, led = (begun + part * (ended - begun) for part in SEARCHED_AND_LED)
+        searched, led = (begun + part * (ended - begun) for part in (0.6, 0.7))
         is_last = turn == len(rounds) - 1
         # The first round is for the place and the library; exchanged sides are tried where they are known.
-        rows = np.arange(len(sampled)) if is_last else _every_second(len(sampled))
+        rows = np.unique(np.append(np.arange(0, len(sampled), 1 if is_last else 2), len(sampled) - 1))
         weight = tempering(time_s[rows])
         believed = [beliefs[row] for row in rows]
         costs = _costs(given, stances, sampled[rows], floor_m, believed, weight)
@@ -185,17 +138,13 @@ def compose_frames(
     return Composition(path, states, posture, floor_m)
 
 
-def _every_second(count: int) -> IndexArray:
-    """Every second of some frames, and the last."""
-    return np.unique(np.append(np.arange(0, count, 2), count - 1)).astype(np.intp)
-
-
 def _posed_throughout(given: PosingInput) -> bool:
     """Whether the first and the last frame are posed, and others so often that the place is known."""
     frames = given.posed.frames
     if not {int(given.sampled[0]), int(given.sampled[-1])} <= set(map(int, frames)):
         return False
-    return bool((np.diff(given.evidence.tracks.time_s[frames]) <= LONGEST_GAP_S).all())
+    # Between posed frames that are no farther apart nobody goes far away and comes back.
+    return bool((np.diff(given.evidence.tracks.time_s[frames]) <= 2.0).all())
 
 
 def _costs(
@@ -206,7 +155,6 @@ def _costs(
     beliefs: Sequence[PartBelief | None],
     weight: float,
 ) -> list[FrameCosts]:
-    """What some frames say; where somebody has posed them, that."""
     costs = frame_costs(given, stances, frames, floor_m, beliefs)
     posed = given.posed
     for index, frame in enumerate(posed.frames):
@@ -230,10 +178,10 @@ def frame_costs(
 
 
 def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) -> float:
-    """Height of the floor by where feet are without it; 0 where that is about right, as scenes are built."""
+    """Height of the floor by where feet are without it; 0 where sizes allow it, as scenes are built."""
     sampled = given.sampled
     rows = np.unique(np.linspace(0, len(sampled) - 1, MOST_PLACED).astype(int))
-    free, heights = [], []
+    free, heights, eyes = [], [], []
     for row, cost in zip(rows, frame_costs(given, stances, sampled[rows], None), strict=True):
         if not cost.likelihood.visible.any():
             continue
@@ -245,17 +193,23 @@ def floor_height_m(given: PosingInput, stances: StanceFeatures, rough: Array) ->
             for limb in LEGS
         ]
         heights.append(min(feet))
+        eyes.append(float(cost.location[2]))
         free.append((row, float(states.cost.min())))
     found = float(np.median(heights)) if heights else 0.0
-    if abs(found) < WORLD_FLOOR_M:
+    if abs(found) < 0.25:  # sizes are no more exact, and scenes are built on z = 0
         return 0.0
+    # On a floor the performer is as far away as the camera is above it.
+    eye = float(np.median(eyes))
+    if not (eye - found) / FARTHER < eye < (eye - found) * FARTHER:
+        return found
     seen = np.array([row for row, _ in free])
     grounded = frame_costs(given, stances, sampled[seen], 0.0)
     added = [
         float(cost.states(rough[row] * np.array(WIDE)).cost.min()) - least
         for (row, least), cost in zip(free, grounded, strict=True)
     ]
-    return 0.0 if np.mean(added) < FLOOR_COST_MARGIN else found
+    # Mean cost of a frame that putting the floor at z = 0 may add before another height is preferred.
+    return 0.0 if np.mean(added) < 1.5 else found
 
 
 def _states(

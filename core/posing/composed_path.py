@@ -13,37 +13,24 @@ from ..arrays import Array, IndexArray, SingleArray
 from ..body.human import HUMAN, LIMBS
 from ..numerics.markov_chain import cheapest_pairs, cheapest_path, path_posteriors
 from .composed_states import LEGS, FrameCosts, FrameStates
-from .match_evidence import student_cost
+from .match_evidence import squared_distances, student_cost
 from .part_features import HEADINGS, StanceFeatures
 
 TRUNK_POINTS = [HUMAN.point_names.index(f"{name}.{side}") for name in ("shoulder", "hip") for side in "LR"]
-TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06
-"""Usual speed of shoulders and hips about the hips' middle [m/s], and what pool and headings are rough by."""
-PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04
-"""The same of the place."""
-LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09
-"""The same of elbows, wrists, knees and ankles."""
-MOST_STEP_COST = np.float32(16.0)
-"""Largest cost of a step of the stance: evidence may be wrong for a while."""
-FORWARD_PER_M = 1.5
-"""How much likelier it is that a performer goes forwards by a meter than not."""
-FRAMES_A_YIELD = 8
+TRUNK_SPEED, TRUNK_ROUGH_M = 0.8, 0.06  # of shoulders and hips about the hips [m/s]; of the pool [m]
+PLACE_SPEED, PLACE_ROUGH_M = 1.5, 0.04  # the same of the place
+LIMB_SPEED, LIMB_ROUGH_M = 2.0, 0.09  # the same of elbows, wrists, knees and ankles
 
 
 @dataclass(frozen=True, eq=False)
 class ComposedPath:
     """The state of each of T frames and its limbs, all of the pools'."""
 
-    stance: IndexArray
-    """(T,)."""
-    hips: Array
-    """(T, 3) [m]."""
-    limbs: IndexArray
-    """(T, 4), in the order of `LIMBS`."""
-    posterior: list[SingleArray]
-    """T arrays (K,) of the probabilities of each frame's states."""
-    limb_posterior: dict[str, Array]
-    """(T, L) probability of each part of a limb on the stances, by limb."""
+    stance: IndexArray  # (T,)
+    hips: Array  # (T, 3) [m]
+    limbs: IndexArray  # (T, 4), in the order of `LIMBS`
+    posterior: list[SingleArray]  # t arrays (K,) of the probabilities of each frame's states
+    limb_posterior: dict[str, Array]  # (T, L) probability of each part of a limb on the stances, by limb
 
 
 def best_path(
@@ -55,7 +42,7 @@ def best_path(
     tempering: float,
     depth_step_m: float,
 ) -> Generator[float, None, ComposedPath]:
-    """The likeliest path through the states of T frames, see `ComposedPath`.
+    """The likeliest path through the states of T frames.
 
     Args:
         stances: All stances.
@@ -65,9 +52,6 @@ def best_path(
         time_s: (T,) times of the frames.
         tempering: Weight of a frame.
         depth_step_m: Distance between the depths that were tried.
-
-    Yields:
-        The fraction done.
     """
     steps = []
     for index in range(1, len(states)):
@@ -75,7 +59,7 @@ def best_path(
         steps.append(
             _step_cost(stances, states[index - 1], states[index], costs[index], duration, depth_step_m)
         )
-        if index % FRAMES_A_YIELD == 0:
+        if index % 8 == 0:
             yield 0.5 * index / len(states)
     own = [np.float32(tempering) * each.cost for each in states]
     best = cheapest_path(own, steps)
@@ -110,10 +94,9 @@ def limb_paths(
     found = np.empty((len(stance), len(LIMBS)), dtype=np.intp)
 
     def steps(limb: str, rows: Sequence[IndexArray | slice]) -> list[SingleArray]:
-        """Costs of steps from some parts to some parts of the next frame."""
         moved = zip(points[limb][:-1], points[limb][1:], rows[:-1], rows[1:], variances, strict=True)
         return [
-            student_cost(_squared_distances(before[own], after[other]) / variance, 3)
+            student_cost(squared_distances(before[own], after[other]) / variance, 3)
             for before, after, own, other, variance in moved
         ]
 
@@ -146,26 +129,20 @@ def _step_cost(
 ) -> SingleArray:
     """(J, K) costs of steps between the states of two frames."""
     points = stances.features.points[:, TRUNK_POINTS]
-    apart = _squared_distances(points[before.stance], points[after.stance])
+    apart = squared_distances(points[before.stance], points[after.stance])
     turned = apart / np.float32((TRUNK_SPEED * duration_s) ** 2 + TRUNK_ROUGH_M**2)
     across = (PLACE_SPEED * duration_s) ** 2 + PLACE_ROUGH_M**2
     along = across + 0.5 * depth_step_m**2
     sight = cost.backward.astype(float)
     covariance = across * np.eye(3) + (along - across) * np.outer(sight, sight)
     whiten = np.linalg.inv(np.linalg.cholesky(covariance)).T.astype(np.float32)
-    moved = _squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])
-    total = np.minimum(turned + np.float32(0.5) * moved, MOST_STEP_COST)
+    moved = squared_distances((before.hips @ whiten)[:, None], (after.hips @ whiten)[:, None])
+    # Largest cost of a step of the stance: evidence may be wrong for a while.
+    total = np.minimum(turned + np.float32(0.5) * moved, np.float32(16.0))
     angle = stances.heading_rad[after.stance % HEADINGS]
     ahead = np.stack([np.sin(angle), -np.cos(angle)], axis=-1).astype(np.float32)  # facing -Y at 0
     gone = (after.hips[:, :2] * ahead).sum(axis=-1) - before.hips[:, :2] @ ahead.T
     limit = np.float32(4.0 * duration_s)
-    total -= np.float32(FORWARD_PER_M) * np.clip(gone, -limit, limit)
+    # How much likelier it is that a performer goes forwards by a meter than not.
+    total -= np.float32(1.5) * np.clip(gone, -limit, limit)
     return np.asarray(total)
-
-
-def _squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
-    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
-    count = first.shape[1]
-    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
-    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
-    return np.maximum(squared, np.float32(0.0)) / np.float32(count)

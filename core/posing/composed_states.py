@@ -13,39 +13,29 @@ import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.human import HUMAN, LIMBS, mass_weights
-from .leg_pairs import LegChoices, below_cost, likeliest, pair_costs
+from ..estimate.terms.contact import STEP_M
+from ..numerics.robust import multivariate_cost
 from .library_motion import PartBelief
 from .match_evidence import EXCHANGED_COST, FrameLikelihood, extent_cost, lowest, products, student_cost
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM
 
-MOST_STANCES = 500
-"""Stances that limbs are hung on, by how well their torsos fit."""
-MOST_NEAR = 90
-"""Of these the ones that are tried at all distances."""
-MOST_STATES = 240
-"""States kept of a frame."""
-MARGIN = 14.0
-"""States whose cost exceeds the frame's least by more are dropped."""
-DEPTH_STD_M = 0.02
-"""How firmly a state keeps to its distance."""
+MOST_STATES = 240  # states kept of a frame
+MARGIN = 14.0  # states whose cost exceeds the frame's least by more are dropped
+DEPTH_STD_M = 0.02  # how firmly a state keeps to its distance
 LEGS = tuple(limb for limb in LIMBS if not limb.startswith(ARM))
+NO_CONTACT_COST = np.float32(4.0)  # where neither foot stands: jumps, steps, furniture
 
 
 @dataclass(frozen=True, eq=False)
 class FrameStates:
     """K states of a frame: a stance at a place, with the best limb of each kind."""
 
-    stance: IndexArray
-    """(K,)."""
-    hips: SingleArray
-    """(K, 3) places of the hips in the world [m]."""
-    cost: SingleArray
-    """(K,) negative log likelihood, up to a constant of the frame."""
-    limbs: IndexArray
-    """(K, 4) the best of each limb, in the order of `LIMBS`."""
-    exchanged: BoolArray
-    """(K,) whether left and right of the keypoints are exchanged for it."""
+    stance: IndexArray  # (K,)
+    hips: SingleArray  # (K, 3) places of the hips in the world [m]
+    cost: SingleArray  # (K,) negative log likelihood, up to a constant of the frame
+    limbs: IndexArray  # (K, 4) the best of each limb, in the order of `LIMBS`
+    exchanged: BoolArray  # (K,) whether left and right of the keypoints are exchanged for it
 
     def chosen(self, rows: IndexArray) -> "FrameStates":
         """Some of the states."""
@@ -64,6 +54,17 @@ class FrameStates:
             np.arange(count + len(other.cost)) >= count,
         )
         return both.chosen(lowest(both.cost, MOST_STATES, MARGIN))
+
+
+@dataclass(frozen=True, eq=False)
+class LegChoices:
+    """C parts of one leg for each of N stances."""
+
+    index: IndexArray  # (N, C) which parts
+    cost: SingleArray  # (N, C) of what is seen of them, and of feet below the floor
+    height: SingleArray  # (N, C) of the foot above the floor [m]
+    foot: SingleArray  # (N, C, 2) where the foot is, from the hips [m]
+    mass: SingleArray  # (N, C, 2) what the leg adds to the center of mass, from the hips [m]
 
 
 class FrameCosts:
@@ -92,9 +93,9 @@ class FrameCosts:
         middle = np.float32(depths_m[0])
         places = self.places(every, np.full(len(every), middle))
         cost = self.torso_cost(every, places)
-        kept = lowest(cost, MOST_STANCES, 2.0 * MARGIN)
+        kept = lowest(cost, 500, 2.0 * MARGIN)  # stances that limbs are hung on, by how well their torsos fit
         whole, _ = self.whole_cost(every[kept], places[kept], cost[kept])
-        kept = kept[lowest(whole, MOST_NEAR, 1.5 * MARGIN)]
+        kept = kept[lowest(whole, 90, 1.5 * MARGIN)]  # of these the ones that are tried at all distances
         stance = np.tile(every[kept], len(depths_m))
         depth = np.repeat(np.asarray(depths_m, dtype=np.float32), len(kept))
         places = self.places(stance, depth)
@@ -223,19 +224,11 @@ class FrameCosts:
         return cost, limbs
 
     def leg_pairs(
-        self,
-        stance: IndexArray,
-        places: SingleArray,
-        tables: Mapping[str, SingleArray],
-        limbs: IndexArray,
+        self, stance: IndexArray, places: SingleArray, tables: Mapping[str, SingleArray], limbs: IndexArray
     ) -> tuple[LegChoices, LegChoices, SingleArray]:
-        """The likeliest legs of stances at places, with (N, C, C) costs of their pairs.
+        """The likeliest legs of N stances at places (N, 3), with (N, C, C) costs of their pairs.
 
-        Args:
-            stance: (N,).
-            places: (N, 3) from the camera [m].
-            tables: (N, L) costs of each limb's parts.
-            limbs: (N, 4) the best limbs, of which arms count for the balance.
+        `tables` has costs (N, L) of each limb's parts, `limbs` (N, 4) the best ones: arms count for balance.
         """
         weights = mass_weights(HUMAN).astype(np.float32)
         level = self.stances.features.points[stance, :, :2] * weights[:, None]
@@ -290,3 +283,52 @@ def soft_least(cost: SingleArray) -> SingleArray:
 def _pairs(axes: Any) -> tuple[tuple[Any, Any], ...]:
     first, second = axes
     return (first, first), (first, second), (second, second)
+
+
+# --- Two legs on a stance: which stands on the floor, and whether the body is balanced over that
+
+
+def likeliest(table: SingleArray, height: SingleArray) -> IndexArray:
+    """(N, C) the parts of a leg to pair, by costs and heights (N, L)."""
+    # Parts of each leg that are paired: so many of the likeliest, and of the likeliest that stand.
+    count = min(12, table.shape[1])
+    free = np.argpartition(table, count - 1, axis=1)[:, :count]
+    standing = np.argpartition(table + standing_cost(height), count - 1, axis=1)[:, :count]
+    return np.asarray(np.concatenate([free, standing], axis=1))
+
+
+def pair_costs(left: LegChoices, right: LegChoices, mass: SingleArray) -> SingleArray:
+    """(N, C, C) cost of each pair beyond the legs' own: that neither stands, or that the body falls.
+
+    `mass` (N, 2) is the center of mass without the legs' shares, times the rest's share, from the hips [m].
+    """
+    center = mass[:, None, None] + left.mass[:, :, None] + right.mass[:, None]
+    first = left.foot[:, :, None]
+    way = right.foot[:, None] - first
+    along = ((center - first) * way).sum(axis=-1) / np.maximum((way * way).sum(axis=-1), np.float32(1e-4))
+    higher = right.height[:, None] - left.height[:, :, None]
+    along = np.where(higher > STEP_M, 0.0, np.where(higher < -STEP_M, 1.0, np.clip(along, 0.0, 1.0)))
+    off = center - first - along[..., None].astype(np.float32) * way
+    # Horizontal distance of the center of mass from the feet that stand: a foot's length, a step under way.
+    squared = (off * off).sum(axis=-1) / np.float32(0.12**2)
+    # Of Student's t: who runs, leaps or leans on something is forgiven.
+    falling = multivariate_cost(squared, 3.0, 2)
+    stands = standing_cost(np.minimum(left.height[:, :, None], right.height[:, None])) + falling
+    return np.asarray(np.minimum(stands, NO_CONTACT_COST))
+
+
+def below_cost(height: SingleArray) -> SingleArray:
+    """Cost of feet below the floor."""
+    return _floor_cost(np.minimum(height, 0.0))
+
+
+def standing_cost(height: SingleArray) -> SingleArray:
+    """Cost of feet above the floor that should stand on it."""
+    # A heel that is off the floor by this much is nothing unusual.
+    return _floor_cost(np.maximum(height - np.float32(0.05), 0.0))
+
+
+def _floor_cost(height: SingleArray) -> SingleArray:
+    # Height of an ankle over a foot that stands: shoes are not measured, nor the floor's last centimeters.
+    off = height / np.float32(0.05)
+    return student_cost(off * off, 1)

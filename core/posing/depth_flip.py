@@ -11,8 +11,8 @@ from ..body.human import LIMBS, TRUNK
 from ..body.kinematics import Body
 from ..body.posture import Posture
 from ..footage.camera import Camera
-from .drag import Pull, SightLine, pulled
 from .dragged import planted
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import (
     DISTINCT_M,
     LimbChain,
@@ -28,20 +28,14 @@ from .limb_chain import (
 class FlippedPart(Enum):
     """The parts of a limb or of the trunk that lean to the other side."""
 
-    UPPER = (True, False)
-    """Upper arm or thigh, with forearm or shin leaning as before; of the trunk, the chest."""
-    LOWER = (False, True)
-    """Forearm or shin alone; of the trunk, the pelvis."""
-    BOTH = (True, True)
-    """The whole limb, or the whole trunk."""
+    UPPER = (True, False)  # upper arm or thigh, forearm or shin leaning as before; of the trunk, the chest
+    LOWER = (False, True)  # forearm or shin alone; of the trunk, the pelvis
+    BOTH = (True, True)  # the whole limb, or the whole trunk
 
 
-FLIPPABLE = (TRUNK, *LIMBS)
-"""Parts of the body whose depth can be flipped, as `body/limbs` names them."""
-FLAT_M = 0.5 * DISTINCT_M
-"""A part whose ends differ less in depth [m] lies flat in the picture, and has no other side."""
-SEEN_M, SEEN_DEPTH_M = 0.01, 0.1
-"""How near the head on a flipped trunk stays to where it was seen, and to its new depth."""
+FLIPPABLE = (TRUNK, *LIMBS)  # parts of the body whose depth can be flipped, as `body/limbs` names them
+FLAT_M = 0.5 * DISTINCT_M  # a part whose ends differ less in depth has no other side [m]
+SEEN_M, SEEN_DEPTH_M = 0.01, 0.1  # how near a flipped trunk's head stays to its sight, and depth
 _ORDER_OF_TRUNK = (FlippedPart.BOTH, FlippedPart.UPPER, FlippedPart.LOWER)
 """A trunk that leans the wrong way mostly does so from the hips up."""
 
@@ -59,14 +53,11 @@ def flipped(
         body: The actor's body.
         posture: A single posture.
         camera: The camera in this frame, as one that stands still.
-        part_of_body: One of `FLIPPABLE`.
+        part_of_body: One of `FLIPPABLE`; KeyError for another.
         part: What of it is flipped; by default everything that looks different.
 
     Returns:
         Up to three postures, none where the part lies flat in the picture, so that it has no depth to flip.
-
-    Raises:
-        KeyError: There is no such part of the body.
     """
     if part_of_body == TRUNK:
         return tuple(_flipped_trunks(body, posture, camera, part))

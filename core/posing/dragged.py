@@ -10,29 +10,20 @@ from ..body.human import TRUNK, limb_of
 from ..body.kinematics import Body
 from ..body.mirror import other_side
 from ..body.posture import Posture
-from .drag import Pull, SightLine, pulled
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import LimbChain, aimed, limb_chain, limb_excess_rad, limb_points, part_lengths_m, swing
 
-ON_SIGHT_M = 0.001
-"""A dragged joint lies under the mouse: a millimeter is less than a pixel of any footage, ..."""
-DEPTH_M = 0.03
-"""... while its depth may give way where the body does not allow both."""
-PUSHED_M = 0.01
-"""A joint that is pushed along the line of sight comes as near as it can, off the line or on it."""
-HELD_M = 0.05
-"""Joints that should stay where they are, but may give way to the dragged one."""
-PLANTED_M = 0.005
-"""Ankles of a body whose trunk is dragged."""
-FLAT_M = 0.01
-"""Difference in depth of a limb's middle from its root below which it is on neither side [m]."""
-STRAIGHT = 1e-3
-"""Sine of a bend below which a limb's middle lies on no side."""
+ON_SIGHT_M = 0.001  # a joint lies under the mouse: less than a pixel of any footage
+DEPTH_M = 0.03  # its depth may give way where the body does not allow both
+PUSHED_M = 0.01  # a joint pushed along the line of sight comes as near as it can, off it or on it
+HELD_M = 0.05  # joints that should stay where they are, but may give way to the dragged one
+PLANTED_M = 0.005  # ankles of a body whose trunk is dragged
+FLAT_M = 0.01  # difference in depth of a limb's middle from its root below which it is on neither side [m]
 HIPS = ("hip.L", "hip.R")
 
 Freedom = Mapping[str, float]
 
-_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})
-"""The bend of a leaning trunk is shared, most of it above the waist."""
+_TRUNK: Freedom = MappingProxyType({"pelvis": 0.3, "waist": 0.5})  # most of a bend is above the waist
 _HEAD: Freedom = MappingProxyType({"neck": 1.0, "waist": 0.1})
 
 
@@ -47,14 +38,11 @@ def dragged(
     Args:
         body: The actor's body.
         posture: A single posture.
-        point: Name of the principal point that is dragged.
+        point: Name of the principal point that is dragged; KeyError for another.
         place: (3,) where to [m].
         sight: (3,) unit direction in which the view looks there. Seen along it the joint comes to lie on
             `place`; in depth it comes as near as lengths allow.
         pushed: Whether it is dragged along the line of sight: then depth counts as much as the image.
-
-    Raises:
-        KeyError: There is no such point.
     """
     start = dict(zip(body.skeleton.point_names, body.points(body.pose(posture)), strict=True))
     if point in HIPS:
@@ -156,7 +144,7 @@ def _bent(places: Array, lengths: tuple[float, float], end: Array, out: Array) -
     along = (reach**2 + upper**2 - lower**2) / (2.0 * max(reach, 1e-9))
     aside = turn @ (middle - root)
     aside = aside - (aside @ axis) * axis
-    if np.linalg.norm(aside) < STRAIGHT * upper:
+    if np.linalg.norm(aside) < 1e-3 * upper:  # sine of a bend below which a limb's middle lies on no side
         aside = turn @ out
         aside = aside - (aside @ axis) * axis
     off = np.sqrt(max(upper**2 - along**2, 0.0))

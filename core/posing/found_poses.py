@@ -10,39 +10,25 @@ from ..prior.texts import COMPOSED
 from ..take.take import Take
 from .candidates import MatchedFrame
 
-NEAR_FRAMES = 2
-"""Found keyframes keep farther than this from posed ones."""
+NEAR_FRAMES = 2  # found keyframes keep farther than this from posed ones
 
 
 @dataclass(frozen=True, eq=False)
 class FoundPoses:
     """The most probable postures of a clip that nobody posed."""
 
-    frames: tuple[MatchedFrame, ...]
-    """The frames proposed for keyframes, in order, with their candidates, the chosen one first."""
-    postures: Posture
-    """(F,) the posture in every frame of the clip."""
-    fit: float
-    """Mean share of the footage that is explained, 0 to 1."""
-    floor_m: float
-    """Height of the floor that the performer stands on [m]."""
-    reason: str
-    """Sentence for people: how much of the footage is explained. Which frames are doubtful their candidates
-    say."""
+    frames: tuple[MatchedFrame, ...]  # in order, those proposed for keyframes
+    postures: Posture  # (F,) the posture in every frame of the clip
+    fit: float  # mean share of the footage that is explained, 0 to 1
+    floor_m: float  # height of the floor that the performer stands on [m]
+    reason: str  # sentence for people: how much of the footage is explained
     contradictions: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
     """Names of the markers and keypoints that no plausible posture explains, by index of a proposed frame."""
-    library: str = COMPOSED
-    """Identifier of the library that all was composed of, where only one was asked."""
-    between: tuple[int, int] | None = None
-    """First and last frame that were looked at; None for the whole clip."""
+    library: str = COMPOSED  # identifier of the library that all was composed of, where only one was asked
+    between: tuple[int, int] | None = None  # first and last frame that were looked at; None for all
 
     def keyframe(self, frame: MatchedFrame, index: int | None = None) -> Keyframe:
-        """The found keyframe with a frame's chosen candidate.
-
-        Args:
-            frame: One of `frames`.
-            index: Where to put it instead, with the posture found there.
-        """
+        """The found keyframe with a frame's chosen candidate, or at another index with the posture there."""
         chosen = frame.candidates[0]
         at = frame.index if index is None else index
         posture = chosen.posture if at == frame.index else self.postures[at]
@@ -58,11 +44,7 @@ def with_found(take: Take, found: FoundPoses) -> Take:
     """The take with the found keyframes; posed ones stay, and found ones make room for them.
 
     Beside a posed keyframe a found one tells how the performer differs from the postures it was made of
-    (`prior/performer_offset`).
-
-    Args:
-        take: The take; keyframes that were found earlier go, except where none was sought now.
-        found: What was found of it.
+    (`prior/performer_offset`). Keyframes that were found earlier go, except where none was sought now.
     """
     posed = [key.index for key in take.keyframes if key.matched is None]
     kept = {key.index: key for key in take.keyframes if key.matched is None or not found.sought(key.index)}
@@ -88,8 +70,7 @@ def _free_frame(index: int, posed: Sequence[int], frames: int) -> int | None:
 # --- Notes on evidence that no plausible posture explains, one sentence each
 
 
-MOST_NAMED = 3
-"""Largest number of frames that a note names, and of notes."""
+MOST_NAMED = 3  # largest number of frames that a note names, and of notes
 
 
 def contradiction_notes(take: Take, found: FoundPoses) -> tuple[str, ...]:

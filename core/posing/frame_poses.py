@@ -1,4 +1,4 @@
-"""What keyframes nearby tell of a frame: one more hypothesis, and a cost of all others."""
+"""The postures of one frame alone, with what keyframes nearby tell of it, and what contradicts them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,9 +17,6 @@ from .candidates import ABOUT_RIGHT_M, DISTINCT_M, PROBABILITY_BOUNDS, Candidate
 from .frame_search import FrameShown, Hypotheses, Knowledge, knowledge, points_from_hips, refined, search
 from .known_motions import PARTS, part_shapes
 
-TOGETHER = 0.5
-"""Share of the degrees of freedom that vary on their own: a body's change together."""
-
 
 def belief_costs(belief: FramePrior, posture: Posture) -> Array:
     """(S,) cost of postures beside keyframes: Gaussian near them, bounded by what tells them from others.
@@ -28,7 +25,8 @@ def belief_costs(belief: FramePrior, posture: Posture) -> Array:
     """
     deviation = posture.minus(Posture.stack([belief.posture])) / belief.std
     told = np.log(np.maximum(unrelated_std(posture.skeleton) / belief.std, 1.0)).sum()
-    return np.asarray(TOGETHER * np.minimum(0.5 * (deviation**2).sum(axis=-1), told))
+    # Share of the degrees of freedom that vary on their own: a body's change together.
+    return np.asarray(0.5 * np.minimum(0.5 * (deviation**2).sum(axis=-1), told))
 
 
 def believed_fit(
@@ -48,24 +46,15 @@ def believed_fit(
 # --- What contradicts a frame's plausible postures
 
 
-UNWORN_COST = 12.0
-"""Cost of a region that nobody wears: one marker in twenty, at one of some ten thousand places and sizes that
-can be told apart in a picture."""
-KEYPOINT_COST = 0.5
-"""What a keypoint costs where the posture is right, its guessed depth included: no gain of leaving a
-marker out."""
-FEW_STARTS = 24
-"""Starts of a search without a marker, which only asks how well the rest can be explained."""
+UNWORN_COST = 12.0  # one marker in twenty is worn by nobody, at one of ten thousand places and sizes
 
 
 @dataclass(frozen=True, eq=False)
 class Unworn:
     """A region that nobody wears."""
 
-    name: str
-    """Its marker."""
-    shown: FrameShown
-    """The frame without it."""
+    name: str  # Its marker
+    shown: FrameShown  # the frame without it
 
 
 def unworn_marker(
@@ -76,11 +65,14 @@ def unworn_marker(
     visible = np.flatnonzero(shown.tracks.visible[0])
     # Nothing is left to gain where all is well explained.
     alone = len(visible) + int(shown.points.seen.sum()) < 2
-    if least < UNWORN_COST + KEYPOINT_COST * shown.points.seen.sum() or alone or not len(visible):
+    # What a keypoint costs where the posture is right, its guessed depth included: no gain of leaving a
+    # marker out.
+    if least < UNWORN_COST + 0.5 * shown.points.seen.sum() or alone or not len(visible):
         return None
     rest = {int(marker): shown.without(int(marker)) for marker in visible}
     gains = {
-        marker: least - float(search(known, one, floor_m, FEW_STARTS).cost.min())
+        # Starts of a search without a marker, which only asks how well the rest can be explained.
+        marker: least - float(search(known, one, floor_m, 24).cost.min())
         for marker, one in rest.items()
     }
     best = max(gains, key=lambda marker: gains[marker])
@@ -109,31 +101,19 @@ def unexplained(known: Knowledge, shown: FrameShown, posture: Posture) -> tuple[
 # --- The postures of one frame, with no keyframe at all
 
 
-MOST_CANDIDATES = 4
-MOST_MEANS = 8
-"""Means that are brought to the evidence, where some may end alike."""
-APART_M = 0.13
-"""Hypotheses that lead to different means are farther apart than this on average, hips aligned."""
-NO_TORSO = -1
-"""Stands for the torso of a hypothesis from keyframes."""
+NO_TORSO = -1  # stands for the torso of a hypothesis from keyframes
 INTERCEPT, SHARE_COEFFICIENT, COST_COEFFICIENT = 0.6, 0.45, -0.055
 """Logistic regression, rounded, of being about right, on 184 candidates of 64 frames of four takes with
 truth: of those up to 20, 40, 60, 80 and 100 % sure, 13, 26, 42, 69 and 100 % were."""
-TEMPERATURE = 3.0
-"""Costs count for so many times less: what is seen of one body errs together, and so do its parts."""
 
 
 @dataclass(frozen=True, eq=False)
 class FramePoses:
     """What a frame may show."""
 
-    candidates: tuple[Candidate, ...]
-    """The likeliest first; at least one."""
-    contradictions: tuple[str, ...] = ()
-    """Names of the markers and keypoints that the first candidate does not explain, as no plausible posture
-    does."""
-    cost: float = 0.0
-    """Near a pose, the negative logarithm of the posture's probability, up to a constant of the frame."""
+    candidates: tuple[Candidate, ...]  # the likeliest first; at least one
+    contradictions: tuple[str, ...] = ()  # markers and keypoints that the first candidate does not explain
+    cost: float = 0.0  # near a pose, -log of the posture's probability, up to a constant of the frame
 
 
 def find_frame_poses(
@@ -170,9 +150,7 @@ def find_frame_poses(
 def near_pose(shown: FrameShown, belief: FramePrior) -> FramePoses:
     """The posture that explains a frame nearest to a pose that somebody has set for it.
 
-    Args:
-        shown: The frame.
-        belief: About that pose, which is not doubted as a whole: no library is asked.
+    `belief` is about that pose, which is not doubted as a whole: no library is asked.
     """
     fit = fit_frame(shown.evidence, shown.regions, belief, shown.frame, points=shown.points_of(False))
     names = [shown.tracks.names[marker] for marker in fit.misplaced]
@@ -202,7 +180,8 @@ def _candidates(
     """Distinct candidates, each the mean of the hypotheses near it; what keyframes tell stays if it leads."""
     body = known.pools.body
     points = points_from_hips(body, found.posture)
-    weight = np.exp(-(found.cost - found.cost.min()) / TEMPERATURE)
+    # Costs count for so many times less: what is seen of one body errs together, and so do its parts.
+    weight = np.exp(-(found.cost - found.cost.min()) / 3.0)
     weight /= weight.sum()
     near = np.linalg.norm(points[:, None] - points, axis=-1).mean(axis=-1) < ABOUT_RIGHT_M
     share = near @ weight
@@ -211,7 +190,9 @@ def _candidates(
     order = np.argsort(-share, kind="stable")
     if kept:
         order = np.concatenate([[leading], order])
-    chosen = distinct_rows(points, order, APART_M, MOST_MEANS)
+    # Means that are brought to the evidence, where some may end alike.
+    # Hypotheses that lead to different means are farther apart than this on average, hips aligned.
+    chosen = distinct_rows(points, order, 0.13, 8)
     means = Posture.concatenate([_mean(found.posture, row, near[row] * weight) for row in chosen])
     start = Hypotheses(means, found.cost[chosen], found.torso[chosen], found.exchanged[chosen])
     final = refined(known, shown, start, floor_m)
@@ -220,7 +201,7 @@ def _candidates(
         final = replace(final, posture=Posture.concatenate([found.posture[chosen[:1]], rest]))
     made = []
     ended = points_from_hips(body, final.posture)
-    for rank in distinct_rows(ended, np.arange(len(chosen)), DISTINCT_M, MOST_CANDIDATES):
+    for rank in distinct_rows(ended, np.arange(len(chosen)), DISTINCT_M, 4):
         posture = final.posture[int(rank)]
         name, flipped = _nearest(known, posture)
         sure = _confidence(float(share[chosen[rank]]), float(final.cost[rank]))
@@ -231,9 +212,8 @@ def _candidates(
 def _confidence(share: float, cost: float) -> float:
     """Probability that a candidate is about right, to 10 cm, the hips aligned.
 
-    Args:
-        share: Probability of it and of those near it among all hypotheses of the frame.
-        cost: Its own cost: a posture that beats all others may still explain the frame badly.
+    `share` is the probability of it and of those near it among all hypotheses of the frame, `cost` its own: a
+    posture that beats all others may still explain the frame badly.
     """
     bounded = float(np.clip(share, *PROBABILITY_BOUNDS))
     odds = INTERCEPT + SHARE_COEFFICIENT * np.log(bounded / (1.0 - bounded)) + COST_COEFFICIENT * cost

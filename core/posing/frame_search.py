@@ -1,4 +1,4 @@
-"""What one frame shows of the performer: its regions and keypoints, with the models they are compared by."""
+"""A search for the postures that one frame may show, from nothing but its regions and keypoints."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,8 +25,7 @@ from ..prior.frame_prior import ROUGH_POSE_SHARE, unrelated_std
 from ..prior.library import Library
 from .candidates import distinct_rows
 from .compose_clip import PART_SCALE, WIDE
-from .composed_states import FrameCosts
-from .leg_pairs import NO_CONTACT_COST
+from .composed_states import NO_CONTACT_COST, FrameCosts
 from .match_evidence import EXCHANGED_COST, MatchEvidence, frame_likelihoods
 from .part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
 from .part_pools import PartPools, kept, part_pools
@@ -37,16 +36,11 @@ from .posed_costs import Plausibility, plausibility
 class FrameShown:
     """One frame's evidence."""
 
-    evidence: KeyframeEvidence
-    """The models of markers and keypoints, as calibrated on keyframes or of average proportions."""
-    frame: int
-    """The frame's index, which a moving camera's pose depends on."""
-    tracks: RegionTracks
-    """The markers' regions in this frame alone."""
-    keypoints: Keypoints
-    """The performer's keypoints in this frame alone."""
-    points: ObservedKeypoints
-    """The same (1, N), with their confidence relative to the clip's."""
+    evidence: KeyframeEvidence  # models of what is seen, calibrated on keyframes or average
+    frame: int  # the frame's index, which a moving camera's pose depends on
+    tracks: RegionTracks  # the markers' regions in this frame alone
+    keypoints: Keypoints  # the performer's keypoints in this frame alone
+    points: ObservedKeypoints  # the same (1, N), with their confidence relative to the clip's
 
     @property
     def body(self) -> Body:
@@ -89,7 +83,7 @@ class FrameShown:
         return exchanged(self.points, known.model.names, known.sources) if is_exchanged else self.points
 
     def frames(self, count: int) -> IndexArray:
-        """(count,) the frame's index, for as many states of it."""
+        """(count,) the frame's index."""
         return np.full(count, self.frame, dtype=np.intp)
 
     def without(self, marker: int) -> "FrameShown":
@@ -105,19 +99,9 @@ class FrameShown:
 # --- A search for the postures that one frame may show, from nothing but what is seen in it
 
 
-MOST_STARTS = 80
-"""Postures that descend side by side."""
-DISTINCT_M = 0.05
-"""Starts whose points, hips aligned, are nearer than this lead to the same posture."""
-PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3
-"""How far a descent may go from its start: sizes are good to a tenth, headings are 15 degrees apart."""
-FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))
-"""Factors of the image noise, one a step, from a composition, which a performer is about 5 cm off."""
-NEVER_COST = 1e3
-"""Cost of a body part of which lies behind the camera, where nothing can be compared."""
-SCREENED_SHARE = 0.5
-"""Weight of a start's cost in screening, in which the many compositions around it count: a posture that only
-one combination leads to is less likely than its own evidence says."""
+MOST_STARTS = 80  # postures that descend side by side
+PLACE_STD_M, TURN_STD_RAD = 0.3, 0.3  # of a descent: sizes are good to a tenth, headings to 15 degrees
+FROM_START = (16.0, 8.0, 4.0, 2.0, *(1.0 for _ in range(6)))  # factors of the image noise, one a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,14 +116,10 @@ class Knowledge:
 class Hypotheses:
     """S postures that the frame may show."""
 
-    posture: Posture
-    """(S,) in the world."""
-    cost: Array
-    """(S,) negative log probability, up to a constant of the frame."""
-    torso: IndexArray
-    """(S,) torso of the pools that each began with."""
-    exchanged: BoolArray
-    """(S,) whether left and right of the keypoints are exchanged."""
+    posture: Posture  # (S,) in the world
+    cost: Array  # (S,) negative log probability, up to a constant of the frame
+    torso: IndexArray  # (S,) torso of the pools that each began with
+    exchanged: BoolArray  # (S,) whether left and right of the keypoints are exchanged
 
 
 def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
@@ -160,21 +140,15 @@ def knowledge(body: Body, libraries: Sequence[Library]) -> Knowledge:
 def search(
     known: Knowledge, shown: FrameShown, floor_m: float | None, count: int = MOST_STARTS
 ) -> Hypotheses:
-    """Look for the postures that a frame may show.
+    """Hypotheses, in no order, of the postures that a frame may show, from `count` starts.
 
-    Args:
-        known: What is known of postures.
-        shown: The frame.
-        floor_m: Height of the floor in the world [m]; None where it is not known, which asks whether z = 0
-            may be it.
-        count: Number of starts.
-
-    Returns:
-        The hypotheses, in no order.
+    Where the floor is not known, it is asked whether z = 0 may be it.
     """
     starts, screened, floor_m = _starts(known, shown, floor_m, count)
     posture, cost = _descended(known, shown, starts, floor_m)
-    return replace(starts, posture=posture, cost=cost + SCREENED_SHARE * (screened - screened.min()))
+    # Weight of a start's cost in screening, in which the many compositions around it count: a posture that
+    # only one combination leads to is less likely than its own evidence says.
+    return replace(starts, posture=posture, cost=cost + 0.5 * (screened - screened.min()))
 
 
 def _starts(
@@ -195,7 +169,11 @@ def _starts(
         np.concatenate([each.exchanged for each in found]),
     )
     kept = distinct_rows(
-        points_from_hips(known.pools.body, every.posture), np.argsort(every.cost), DISTINCT_M, count
+        # Starts whose points, hips aligned, are nearer than this lead to the same posture.
+        points_from_hips(known.pools.body, every.posture),
+        np.argsort(every.cost),
+        0.05,
+        count,
     )
     return _chosen(every, kept), every.cost[kept], floor_m
 
@@ -247,7 +225,8 @@ def _descended(
     posture = Posture.concatenate(postures)[place]
     cost = np.concatenate(costs)[place] + EXCHANGED_COST * starts.exchanged
     cost = cost + known.plausibility.costs(known.pools.body.pose(posture)).sum(axis=-1)
-    return posture, np.where(np.isfinite(cost), cost, NEVER_COST)
+    # Cost of a body part of which lies behind the camera, where nothing can be compared.
+    return posture, np.where(np.isfinite(cost), cost, 1e3)
 
 
 def _side_by_side(

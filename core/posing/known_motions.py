@@ -21,8 +21,7 @@ from ..prior.motion_playback import sample_motion
 from ..prior.transfer import transferred
 
 PARTS = (TRUNK, *LIMBS)
-CARRIERS = {"arm": "waist", "leg": "pelvis"}
-"""Joint that carries a limb, by its kind."""
+CARRIERS = {"arm": "waist", "leg": "pelvis"}  # joint that carries a limb, by its kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,14 +29,10 @@ class KnownPostures:
     """N postures, all facing -Y with the hips over the origin, as high above the floor z = 0 as they are."""
 
     body: Body
-    posture: Posture
-    """(N,)."""
-    names: tuple[str, ...]
-    """(N,) of the libraries' postures."""
-    mirrored: tuple[bool, ...]
-    """(N,) whether left and right are exchanged."""
-    library: IndexArray
-    """(N,) number of the library that each is from."""
+    posture: Posture  # (N,)
+    names: tuple[str, ...]  # (N,) of the libraries' postures
+    mirrored: tuple[bool, ...]  # (N,) whether left and right are exchanged
+    library: IndexArray  # (N,) number of the library that each is from
 
     def __len__(self) -> int:
         """Number of postures N."""
@@ -105,38 +100,25 @@ def _flat(points: Array) -> Array:
 # body
 
 
-STEP_M = 0.045
-"""Mean distance of the points from one posture to the next: well below what performers differ by."""
-LEAST_RATE, MOST_RATE = 8.0, 25.0
-"""Postures per second of a motion."""
-MOST_POSTURES = 450
-"""Postures of a library, without mirror images; with more the steps are widened."""
+STEP_M = 0.045  # mean distance of points between postures: well below performers' differences
+LEAST_RATE, MOST_RATE = 8.0, 25.0  # postures per second of a motion
+MOST_POSTURES = 450  # postures of a library, without mirror images; with more the steps are widened
 
 
 @dataclass(frozen=True, eq=False)
 class KnownMotions:
     """S postures, the second half the mirror images of the first; one in no motion is a motion of its own."""
 
-    posture: Posture
-    """(S,) facing -Y, the hips at the origin."""
-    names: tuple[tuple[str, bool], ...]
-    """(S,) name of the library's posture nearest in time, and whether it is mirrored."""
-    library: IndexArray
-    """(S,) number of the library, in the order in which they were given."""
-    motion: IndexArray
-    """(S,) number of the motion."""
-    time_s: Array
-    """(S,) time within the motion."""
-    step_s: Array
-    """(S,) time to the motion's next posture; 0 for a single one."""
-    period_s: Array
-    """(S,) duration of a cycle; infinite without one."""
-    height_m: Array
-    """(S,) of the hips over the floor."""
-    velocity: Array
-    """(S, 2) of the hips over the ground, as the posture faces [m/s]."""
-    turn_rate: Array
-    """(S,) change of the heading [rad/s]."""
+    posture: Posture  # (S,) facing -Y, the hips at the origin
+    names: tuple[tuple[str, bool], ...]  # (S,) the library's posture nearest in time, and if it is mirrored
+    library: IndexArray  # (S,) number of the library, in the order in which they were given
+    motion: IndexArray  # (S,) number of the motion
+    time_s: Array  # (S,) time within the motion
+    step_s: Array  # (S,) time to the motion's next posture; 0 for a single one
+    period_s: Array  # (S,) duration of a cycle; infinite without one
+    height_m: Array  # (S,) of the hips over the floor
+    velocity: Array  # (S, 2) of the hips over the ground, as the posture faces [m/s]
+    turn_rate: Array  # (S,) change of the heading [rad/s]
 
     def of_library(self, number: int) -> "KnownMotions":
         """Those of one library."""

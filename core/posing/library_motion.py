@@ -29,46 +29,25 @@ from .match_evidence import (
     lowest,
     marker_moments,
     products,
+    squared_distances,
     student_cost,
 )
 from .part_features import HEADINGS, TRUNK_POINTS, StanceFeatures, limb_points
 from .part_pools import ARM, PartPools
 from .posing_input import PosingInput, tempering
 
-MOST_COMPARED = 4
-"""Libraries whose postures are compared with the footage: those nearest to a first composition."""
-COMPARED_FRAMES = 15
-MOST_STATES, MARGIN = 500, 15.0
-"""States kept of a frame, and how much more than the likeliest they may cost."""
-DEPTH_STD = 0.07
-"""Error of the distance that a first composition has, as a share."""
-HIPS_STD_M = 0.05
-"""Difference of the hips' height between performers at the same moment of a motion."""
-SPEED_STD = 0.45
-"""Difference of the speed from a library's, as a share."""
-TURN_STD, TURN_ROUGH_RAD = 0.5, 0.13
-"""Turning besides the motion's own [rad/s], and what headings are rough by."""
-GOING_STD = 0.6
-"""Going besides the motion's own [m/s]."""
-JUMP_RATE = 0.4
-"""Jumps to another posture per second: one movement lasts a few seconds."""
-PERFORMERS_M = 0.10
-"""Distance of a part's points between performers at the same moment of a motion."""
-
-CERTAINTY = 0.4
-"""How many times likelier parts at a library's own places are than others if it explains half the footage,
-which grows with the square of the explained share's odds."""
-LEAST_SHARE = 1e-3
+MOST_STATES, MARGIN = 500, 15.0  # states kept of a frame, and how much more than the likeliest they may cost
+DEPTH_STD = 0.07  # error of the distance that a first composition has, as a share
+HIPS_STD_M = 0.05  # difference of the hips' height between performers at the same moment of a motion
+TURN_STD, TURN_ROUGH_RAD = 0.5, 0.13  # besides the motion's own [rad/s]; headings are as rough [rad]
 
 
 @dataclass(frozen=True, eq=False)
 class PartBelief:
     """What one frame's parts cost less for being near a library's: 0 far from it, negative near it."""
 
-    stance: SingleArray
-    """(S,) of the stances."""
-    limbs: dict[str, SingleArray]
-    """(L,) of each limb's parts, by limb."""
+    stance: SingleArray  # (S,) of the stances
+    limbs: dict[str, SingleArray]  # (L,) of each limb's parts, by limb
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +55,10 @@ class _Whole:
     """Whole postures N of a library in all headings H, heading by heading: N H states."""
 
     motions: KnownMotions
-    places: SingleArray
-    """(3 A, N H) of markers and keypoints from the hips [m]."""
-    second_moment: SingleArray
-    """(M, 6, N H) see `part_features.ENTRIES`."""
-    height_m: SingleArray
-    """(N H,)."""
-    velocity: SingleArray
-    """(N H, 2) in the world [m/s]."""
+    places: SingleArray  # (3 A, N H) of markers and keypoints from the hips [m]
+    second_moment: SingleArray  # (M, 6, N H) see `part_features.ENTRIES`
+    height_m: SingleArray  # (N H,)
+    velocity: SingleArray  # (N H, 2) in the world [m/s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +67,7 @@ class _States:
 
     row: IndexArray
     cost: SingleArray
-    explained: SingleArray
-    """(K,) mean weight of what is seen under Student's t, 0 to 1."""
+    explained: SingleArray  # (K,) mean weight of what is seen under Student's t, 0 to 1
 
 
 def part_beliefs(
@@ -113,9 +87,6 @@ def part_beliefs(
         posture: (N,) a first composition of some frames of the clip.
         hips: (T, 3) its places, smoothed [m].
         floor_m: Height of the floor.
-
-    Yields:
-        The fraction done.
     """
     evidence, sampled, time_s = given.evidence, given.sampled, given.time_s
     likelihoods = [
@@ -133,9 +104,10 @@ def part_beliefs(
         ]
         return both[0] if len(both) == 1 else _merged(*both)
 
-    few = np.unique(np.linspace(0, len(sampled) - 1, COMPARED_FRAMES).astype(int))
+    few = np.unique(np.linspace(0, len(sampled) - 1, 15).astype(int))
     least, best = np.inf, None
-    for number in nearest_libraries(pools, posture)[:MOST_COMPARED]:
+    # Libraries whose postures are compared with the footage: those nearest to a first composition.
+    for number in nearest_libraries(pools, posture)[:4]:
         whole = _whole(pools.motions.of_library(number), pools.body, evidence)
         cost = float(np.mean([states(whole, row).cost.min() for row in few]))
         if cost < least:
@@ -157,7 +129,9 @@ def part_beliefs(
     explained = float(
         np.mean([chance @ each.explained for chance, each in zip(posterior, found, strict=True)])
     )
-    odds = CERTAINTY * (explained / max(1.0 - explained, 0.02)) ** 2
+    # How many times likelier parts at a library's own places are than others if it explains half the
+    # footage, which grows with the square of the explained share's odds.
+    odds = 0.4 * (explained / max(1.0 - explained, 0.02)) ** 2
     yield 0.9
     return _beliefs(best.motions, pools.body, stances, found, posterior, odds)
 
@@ -213,7 +187,8 @@ def _states(
     residual *= residual
     visible = np.flatnonzero(seen.visible)
     cost = student_cost(residual[-1], 1) + student_cost(residual[-2], 1) + np.float32(cost_of_it)
-    going = ((whole.velocity - velocity.astype(np.float32)) ** 2).sum(axis=1) / np.float32(GOING_STD**2)
+    # Going besides the motion's own [m/s].
+    going = ((whole.velocity - velocity.astype(np.float32)) ** 2).sum(axis=1) / np.float32(0.6**2)
     cost += student_cost(going, 2)
     explained = np.zeros(count, dtype=np.float32)
     share = np.float32(seen.share)
@@ -262,12 +237,13 @@ def _step_cost(
     period = np.where(np.isfinite(motions.period_s), motions.period_s, 1e9)[second]
     late -= period * np.round(late / period)
     step = np.maximum(motions.step_s[second], 1e-3)
-    spread = np.hypot(SPEED_STD * duration_s, 0.5 * step)
+    spread = np.hypot(0.45 * duration_s, 0.5 * step)  # difference of the speed from a library's, as a share
     on = 0.5 * (late / spread) ** 2 + np.log(np.maximum(np.sqrt(2.0 * np.pi) * spread / step, 1.0))
     single = motions.step_s[second] == 0.0
     on = np.where(single, 0.0, on)
     on = np.where(motions.motion[second] == motions.motion[first][:, None], on, np.inf)
-    jump = np.log(len(motions.names)) - np.log(-np.expm1(-JUMP_RATE * duration_s))
+    # Jumps to another posture per second: one movement lasts a few seconds.
+    jump = np.log(len(motions.names)) - np.log(-np.expm1(-0.4 * duration_s))
     turned = 2.0 * np.pi / HEADINGS * (after % HEADINGS - (before % HEADINGS)[:, None])
     turned = turned - duration_s * 0.5 * (motions.turn_rate[second] + motions.turn_rate[first][:, None])
     turned = np.remainder(turned + np.pi, 2.0 * np.pi) - np.pi
@@ -296,7 +272,7 @@ def _beliefs(
     turn = yaw_rotation(stances.heading_rad)
     found = []
     for own, chance in zip(states, posterior, strict=True):
-        kept = np.flatnonzero(chance > LEAST_SHARE)
+        kept = np.flatnonzero(chance > 1e-3)
         weight = np.asarray(chance[kept], dtype=np.float32)
         row, heading = np.divmod(own.row[kept], HEADINGS)
         limbs = {limb: -np.log1p(np.float32(odds) * (weight @ near[limb][row])) for limb in LIMBS}
@@ -308,7 +284,6 @@ def _beliefs(
 
 def _nearness(first: Array, second: SingleArray) -> SingleArray:
     """(J, K) of points (J, Q, 3) and (K, Q, 3): 1 for the same place, 0 far away."""
-    a, b = np.asarray(first, dtype=np.float32).reshape(len(first), -1), second.reshape(len(second), -1)
-    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
-    mean = np.maximum(squared, 0.0) / np.float32(first.shape[1])
-    return np.asarray(np.exp(np.float32(-0.5 / PERFORMERS_M**2) * mean))
+    mean = squared_distances(np.asarray(first, dtype=np.float32), second)
+    # Distance of a part's points between performers at the same moment of a motion.
+    return np.asarray(np.exp(np.float32(-0.5 / 0.10**2) * mean))

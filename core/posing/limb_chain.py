@@ -18,12 +18,11 @@ from ..body.skeleton import Skeleton
 from ..footage.camera import Camera
 from ..numerics.vectors import across as any_across
 from ..numerics.vectors import unit
-from .drag import SightLine
+from .inverse_kinematics import SightLine
 
 STEMS = {"arm": ("shoulder", "elbow", "wrist"), "leg": ("hip", "knee", "ankle")}
 """Principal points of each kind of limb: root, middle and end. The first two are joints as well."""
-NO_BEND = 1e-6
-"""Sine of a bend below which it has no plane."""
+NO_BEND = 1e-6  # sine of a bend below which it has no plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,20 +30,13 @@ class LimbChain:
     """One limb of a skeleton."""
 
     name: str
-    points: tuple[str, str, str]
-    """Names of root, middle and end."""
-    columns: IndexArray
-    """(3,) their places among the principal points."""
-    ball: int
-    """Place of the root's rotation in `Posture.rotations`."""
-    hinge: int
-    """Place of the bend in `Posture.angles`."""
-    above: int
-    """The joint that carries the root."""
-    rest: Array
-    """(3, 3) as columns the limb's direction at rest, the direction it bends to, and the hinge's axis."""
-    dofs: IndexArray
-    """(4,) degrees of freedom of ball and hinge."""
+    points: tuple[str, str, str]  # names of root, middle and end
+    columns: IndexArray  # (3,) their places among the principal points
+    ball: int  # place of the root's rotation in `Posture.rotations`
+    hinge: int  # place of the bend in `Posture.angles`
+    above: int  # the joint that carries the root
+    rest: Array  # (3, 3) columns: direction at rest, the one it bends to, the hinge's axis
+    dofs: IndexArray  # (4,) degrees of freedom of ball and hinge
 
 
 @lru_cache(maxsize=32)
@@ -84,16 +76,9 @@ def part_lengths_m(body: Body, limb: LimbChain) -> tuple[float, float]:
 
 
 def aimed(body: Body, posture: Posture, limb: LimbChain, middle: Array, end: Array) -> Posture:
-    """A single posture with a limb that points from its root to `middle` and from there to `end`.
+    """A posture with a limb that points from its root to `middle` and from there to `end`, both (3,) [m].
 
     Lengths are the body's own: only the directions count. A straight limb is twisted as before.
-
-    Args:
-        body: The actor's body.
-        posture: Its posture, the rest of which stays.
-        limb: The limb.
-        middle: (3,) a point in the world [m].
-        end: (3,) likewise.
     """
     pose = body.pose(posture)
     root = body.points(pose)[limb.columns[0]]
@@ -155,25 +140,17 @@ def _frame(first: Array, second: Array) -> Array:
 # --- Limbs that keep their image
 
 
-DISTINCT_M = 0.02
-"""Joints closer than this in two postures [m]: turning one into the other shows nothing."""
-MOST_STEPS = 60
-DEPTH_SHARE = 0.1
-"""Weight of a joint's place along its line of sight beside that off it, where joint limits allow not both."""
+DISTINCT_M = 0.02  # joints closer than this in two postures [m]: turning one into the other shows nothing
 
 
 @dataclass(frozen=True, eq=False)
 class LimbInSight:
     """One way in which a limb can lie on given lines of sight, within its joint limits."""
 
-    posture: Posture
-    """The whole posture."""
-    leans: BoolArray
-    """(2,) whether upper and lower part lead to the farther of the two places on their lines."""
-    excess_rad: float
-    """How far joint limits would have been passed, had the joints been put exactly on their lines [rad]."""
-    off_m: float
-    """The larger distance of middle and end from their lines of sight [m]."""
+    posture: Posture  # the whole posture
+    leans: BoolArray  # (2,) whether upper and lower part lead to the farther of the two places on their lines
+    excess_rad: float  # how far beyond joint limits joints exactly on their lines would be [rad]
+    off_m: float  # the larger distance of middle and end from their lines of sight [m]
     effort: float
     """Mean square distance of the limb's joints from the middle of their ranges, in half ranges: Liégeois
     (1977), *Automatic supervisory control of the configuration and behavior of multibody mechanisms*."""
@@ -181,31 +158,21 @@ class LimbInSight:
     @property
     def strain(self) -> float:
         """How implausible the limb is; what lies outside joint limits or beside the image counts most."""
-        return OUTSIDE * self.excess_rad + BESIDE * self.off_m + self.effort
+        # Strain of a meter beside the image: 5 cm, half the width of a forearm, weigh as much.
+        return OUTSIDE * self.excess_rad + 20.0 * self.off_m + self.effort
 
 
-OUTSIDE = 4.0
-"""Strain of a radian beyond joint limits: a quarter of it weighs as much as the whole of a limb's ranges."""
-BESIDE = 20.0
-"""Strain of a meter beside the image: 5 cm, half the width of a forearm, weigh as much."""
+OUTSIDE = 4.0  # strain of a radian beyond limits: a quarter of it weighs as a limb's whole ranges
 
 
 def ways_in_sight(
     body: Body, posture: Posture, limb: LimbChain, lines: tuple[SightLine, SightLine]
 ) -> tuple[LimbInSight, ...]:
-    """All ways in which a limb can lie on the lines of sight to its middle and end.
+    """Up to four ways in which a limb can lie on the lines of sight to its middle and end, the best first.
 
     Lengths are exact and the rest of the body stays. Where joint limits forbid a way, it is the nearest
-    posture within them, which keeps the image rather than the depth.
-
-    Args:
-        body: The actor's body.
-        posture: A single posture, whose limb is replaced.
-        limb: The limb.
-        lines: Lines of sight of its middle and its end.
-
-    Returns:
-        Up to four ways, the most plausible first; of those that look the same, that one alone.
+    posture within them, which keeps the image rather than the depth. Of ways that look the same, the most
+    plausible alone counts.
     """
     start = limb_points(body, posture, limb)
     lengths = part_lengths_m(body, limb)
@@ -241,11 +208,7 @@ def _apart_m(first: Array, second: Array) -> float:
 
 
 def _within_limits(
-    body: Body,
-    ideal: Posture,
-    limb: LimbChain,
-    lines: tuple[SightLine, SightLine],
-    leans: BoolArray,
+    body: Body, ideal: Posture, limb: LimbChain, lines: tuple[SightLine, SightLine], leans: BoolArray
 ) -> LimbInSight:
     """A way of a limb, moved into its joint limits where it is beyond them."""
     excess = limb_excess_rad(ideal, limb)
@@ -281,14 +244,15 @@ def _allowed(
         return np.asarray((weights @ jacobian @ turned).reshape(-1, len(limb.dofs)))
 
     inside = np.clip(vector[limb.dofs], lower, upper)
-    fitted = least_squares(off, inside, rates, bounds=(lower, upper), max_nfev=MOST_STEPS)
+    fitted = least_squares(off, inside, rates, bounds=(lower, upper), max_nfev=60)
     return moved(np.clip(fitted.x, lower, upper))
 
 
 def _weights(line: SightLine) -> Array:
-    """(3, 3) matrix that leaves what is off a line of sight as it is, and makes less of what is along it."""
+    """(3, 3) matrix that makes less of what is along a line of sight."""
     along = np.outer(line.direction, line.direction)
-    return np.asarray(np.eye(3) - (1.0 - DEPTH_SHARE) * along)
+    # Where joint limits allow not both, what is off the line of sight counts ten times as much.
+    return np.asarray(np.eye(3) - 0.9 * along)
 
 
 def strain_of(posture: Posture, limb: LimbChain) -> float:

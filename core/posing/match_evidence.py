@@ -35,12 +35,6 @@ POINT_STD_M = {
     "ankle": 0.11,
 }
 """The same of points: halfway between those of the segments that meet there."""
-KEYPOINT_ERROR_M = 0.04
-"""Where detectors put a point beside the joint, and how far they miss it."""
-HINT_ERROR_M = 0.12
-"""Error of a network's depths: 6 to 18 cm, alike for many frames."""
-INDEPENDENT_KEYPOINTS = 8.0
-"""Number of keypoints that say different things of a posture: upper and lower parts of the limbs."""
 LEAST_QUALITY = 0.05
 
 
@@ -49,21 +43,19 @@ class MatchEvidence:
     """Regions of M markers and K keypoints in F frames; A = M + K, markers first."""
 
     tracks: RegionTracks
-    segments: tuple[str, ...]
-    """(M,) the segment of each marker."""
-    keypoints: Keypoints
-    """(F, K) those of principal points."""
+    segments: tuple[str, ...]  # (M,) the segment of each marker
+    keypoints: Keypoints  # (F, K) those of principal points
 
     @classmethod
     def of(cls, tracks: RegionTracks, segments: tuple[str, ...], keypoints: Keypoints) -> "MatchEvidence":
         """Evidence of markers and of keypoints in any layout."""
-        found = principal_keypoints(keypoints)
+        found = _without_leaps(principal_keypoints(keypoints), tracks.time_s)
         known = np.flatnonzero(found.seen.any(axis=0))
         return cls(tracks, segments, _selected(found, known))
 
     @property
     def marker_count(self) -> int:
-        """Number of markers M."""
+        """M."""
         return len(self.segments)
 
     @cached_property
@@ -91,7 +83,9 @@ class MatchEvidence:
     def deviation_m(self) -> Array:
         """(A,) usual distance between performers at the same moment of a motion, the hips aligned [m]."""
         of_points = [
-            np.hypot(POINT_STD_M[name.split(".")[0]], KEYPOINT_ERROR_M) for name in self.keypoints.names
+            # Where detectors put a point beside the joint, and how far they miss it.
+            np.hypot(POINT_STD_M[name.split(".")[0]], 0.04)
+            for name in self.keypoints.names
         ]
         return np.array([*(_marker_deviation(segment) for segment in self.segments), *of_points])
 
@@ -99,14 +93,15 @@ class MatchEvidence:
     def depth_deviation_m(self) -> Array:
         """(K,) the same of the keypoints' depths as a network guesses them [m]."""
         own = [POINT_STD_M[name.split(".")[0]] for name in self.keypoints.names]
-        return np.hypot(own, HINT_ERROR_M)
+        return np.hypot(own, 0.12)  # error of a network's depths: 6 to 18 cm, alike for many frames
 
     @cached_property
     def share(self) -> float:
         """Weight of each of the A: many points of one body differ from a library's together."""
         if not len(self.points):
             return 1.0
-        return min(1.0, INDEPENDENT_KEYPOINTS / (self.marker_count + len(self.points)))
+        # Number of keypoints that say different things of a posture: upper and lower parts of the limbs.
+        return min(1.0, 8.0 / (self.marker_count + len(self.points)))
 
     def exchanged(self) -> "MatchEvidence":
         """The evidence with left and right of the keypoints exchanged."""
@@ -130,6 +125,19 @@ class MatchEvidence:
         return replace(self, keypoints=changed)
 
 
+def _without_leaps(keypoints: Keypoints, time_s: Array) -> Keypoints:
+    """The keypoints but for those far from where they are just before and after, as detectors err."""
+    pixel, score = keypoints.pixel.copy(), keypoints.score.copy()
+    for frame in np.flatnonzero(keypoints.seen.any(axis=1)):
+        around = keypoints.pixel[np.abs(time_s - time_s[frame]) < 0.15]
+        known = np.flatnonzero(np.isfinite(around).all(axis=-1).any(axis=0))
+        usual = np.nanmedian(around[:, known], axis=0)
+        off = np.linalg.norm(keypoints.pixel[frame, known] - usual, axis=-1)
+        leaps = known[off > 0.3 * np.linalg.norm(np.ptp(usual, axis=0))]  # of the body's size
+        pixel[frame, leaps], score[frame, leaps] = np.nan, 0.0
+    return replace(keypoints, pixel=pixel, score=score)
+
+
 def _selected(keypoints: Keypoints, index: IndexArray) -> Keypoints:
     return Keypoints(
         tuple(keypoints.names[i] for i in index),
@@ -148,46 +156,28 @@ def _marker_deviation(segment: str) -> float:
 # --- What one frame shows, as postures are compared with it
 
 
-DEGREES_OF_FREEDOM = 4.0
-"""Of Student's t distribution."""
-EXTENT_STD_M = 0.025
-"""Deviation of a marker's extent: clothes, the color's ends, a limb turned by a few degrees."""
-EXCHANGED_COST = np.float32(3.0)
-"""Cost of taking a detector's left for right in a frame: one in twenty."""
-ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-"""Entries of a symmetric matrix in the order of `second_moment`."""
-ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0
-"""Second moments of a cylinder's flat silhouette: across it in squared radii, along it in squared lengths."""
+DEGREES_OF_FREEDOM = 4.0  # of Student's t distribution
+EXCHANGED_COST = np.float32(3.0)  # cost of taking a detector's left for right in a frame: one in twenty
+ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # of a symmetric matrix, as in `second_moment`
+ACROSS, ALONG = 1.0 / 3.0, 1.0 / 12.0  # second moments of a flat silhouette, in radii² and lengths²
 
 
 @dataclass(frozen=True, eq=False)
 class FrameLikelihood:
     """One frame: A points, M of them markers, and G guessed depths, one a keypoint or none."""
 
-    weight: Array
-    """(A,) one over the standard deviation of each point's place [1/m]; 0 where it is not visible."""
-    backward: Array
-    """(3,) the camera's backward axis in the world."""
-    location: Array
-    """(3,) the camera's place [m]."""
-    image_axes: Array
-    """(A, 2, 3) directions in the world along which a marker's image extends to the right and upwards."""
-    extent: Array
-    """(M, 3) square root of the observed second moments per meter of depth, xx, xy, yy."""
-    sight: Array
-    """(3,) line of sight to the performer, along which depths are guessed."""
-    depth_m: Array
-    """(G,) guessed depth of each keypoint behind the hips [m]; 0 where there is none."""
-    depth_weight: Array
-    """(G,) one over its standard deviation [1/m]; 0 where there is none."""
-    pixel_size: float
-    """Size of a pixel per meter of depth."""
-    visible: BoolArray
-    """(A,) points found in the frame."""
-    unclipped: BoolArray
-    """(M,) markers found whose region is not cut off by the picture's edge."""
-    share: float
-    """Weight of each point's cost, since they do not differ independently."""
+    weight: Array  # (A,) one over the standard deviation of each place [1/m]; 0 where not visible
+    backward: Array  # (3,) the camera's backward axis in the world
+    location: Array  # (3,) the camera's place [m]
+    image_axes: Array  # (A, 2, 3) world directions of a marker's image to the right and upwards
+    extent: Array  # (M, 3) square root of the observed second moments per meter of depth, xx, xy, yy
+    sight: Array  # (3,) line of sight to the performer, along which depths are guessed
+    depth_m: Array  # (G,) guessed depth of each keypoint behind the hips [m]; 0 where there is none
+    depth_weight: Array  # (G,) one over its standard deviation [1/m]; 0 where there is none
+    pixel_size: float  # size of a pixel per meter of depth
+    visible: BoolArray  # (A,) points found in the frame
+    unclipped: BoolArray  # (M,) markers found whose region is not cut off by the picture's edge
+    share: float  # weight of each point's cost, since they do not differ independently
 
 
 def frame_likelihoods(
@@ -195,11 +185,7 @@ def frame_likelihoods(
 ) -> list[FrameLikelihood]:
     """What some frames show.
 
-    Args:
-        camera: The camera.
-        evidence: The markers' regions and the keypoints.
-        frames: Which frames.
-        scale: Deviation of the postures that are compared, relative to another performer's.
+    `scale` is the deviation of the postures that are compared, relative to another performer's.
     """
     return [_frame_likelihood(camera, evidence, int(frame), scale) for frame in frames]
 
@@ -253,7 +239,8 @@ def extent_cost(
     """Cost of predicted second moments xx, xy, yy of a marker [m²] at some depths [m]."""
     predicted = square_root(*entries)
     depth = np.maximum(depth, np.float32(0.1))
-    variance = np.float32(EXTENT_STD_M**2) + (np.float32(seen.pixel_size) * depth) ** 2
+    # Deviation of a marker's extent: clothes, the color's ends, a limb turned by a few degrees.
+    variance = np.float32(0.025**2) + (np.float32(seen.pixel_size) * depth) ** 2
     observed = seen.extent[marker].astype(np.float32)
     squared = sum(
         (predicted[k] - observed[k] * depth) ** 2 * np.float32(2.0 if k == 1 else 1.0) for k in range(3)
@@ -281,6 +268,14 @@ def student_cost(squared: SingleArray, dimensions: int) -> SingleArray:
     return np.asarray(factor * np.log1p(squared / np.float32(DEGREES_OF_FREEDOM)))
 
 
+def squared_distances(first: SingleArray, second: SingleArray) -> SingleArray:
+    """(J, K) mean squared distances of points (J, Q, 3) and (K, Q, 3)."""
+    count = first.shape[1]
+    a, b = first.reshape(len(first), -1), second.reshape(len(second), -1)
+    squared = (a * a).sum(axis=1)[:, None] + (b * b).sum(axis=1) - np.float32(2.0) * (a @ b.T)
+    return np.maximum(squared, np.float32(0.0)) / np.float32(count)
+
+
 def lowest(cost: SingleArray, count: int, margin: float) -> IndexArray:
     """Indices of the lowest costs within a margin of the least, at most `count`, in order of index."""
     kept = np.flatnonzero(cost <= cost.min() + np.float32(margin))
@@ -296,12 +291,9 @@ class MarkerMoments:
     A limb's image has nearly the moments of their projection, which is linear in them.
     """
 
-    centroid: Array
-    """(N, A, 3) of the markers' volumes, then the keypoints, relative to the hips' midpoint [m]."""
-    second_moment: Array
-    """(N, M, 3, 3) the markers' second central moments [m²]."""
-    points: Array
-    """(N, P, 3) the body's points relative to the hips' midpoint [m]."""
+    centroid: Array  # (N, A, 3) of markers' volumes, then keypoints, from the hips' midpoint [m]
+    second_moment: Array  # (N, M, 3, 3) the markers' second central moments [m²]
+    points: Array  # (N, P, 3) the body's points relative to the hips' midpoint [m]
 
 
 def marker_moments(body: Body, evidence: MatchEvidence, posture: Posture) -> MarkerMoments:

@@ -26,18 +26,12 @@ TRUNK_POINTS = [index for index, name in enumerate(HUMAN.point_names) if limb_of
 class PartFeatures:
     """Features of the N parts of a pool, or of all stances, for some evidence."""
 
-    observed: IndexArray
-    """(A,) which of the evidence's markers and keypoints lie on this part; markers first."""
-    place: SingleArray
-    """(N, A, 3) where they are in the frame of what the part hangs on [m]."""
-    second_moment: SingleArray
-    """(N, M, 6) second moments of the markers among them [m²], see `ENTRIES`."""
-    points: SingleArray
-    """(N, Q, 3) elbow and wrist or knee and ankle; of stances the body's points without those [m]."""
-    soles: SingleArray
-    """(N, 2, 3) heel and tip of a leg's foot; none else [m]."""
-    cost: SingleArray
-    """(N,) how unusual each is."""
+    observed: IndexArray  # (A,) which of the evidence's markers and keypoints lie on this part; markers first
+    place: SingleArray  # (N, A, 3) where they are in the frame of what the part hangs on [m]
+    second_moment: SingleArray  # (N, M, 6) second moments of the markers among them [m²], see `ENTRIES`
+    points: SingleArray  # (N, Q, 3) elbow and wrist, knee and ankle; of stances all others [m]
+    soles: SingleArray  # (N, 2, 3) heel and tip of a leg's foot; none else [m]
+    cost: SingleArray  # (N,) how unusual each is
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,22 +39,14 @@ class StanceFeatures:
     """S stances, T torsos in H headings: torso s // H in heading s % H."""
 
     features: PartFeatures
-    pelvis: SingleArray
-    """(S, 3, 3) turn of the pelvis in the world."""
-    chest: SingleArray
-    """(S, 3, 3) turn of the chest."""
-    chest_place: SingleArray
-    """(S, 3) origin of the chest's frame from the hips [m], in the world's axes."""
-    heading_rad: Array
-    """(H,)."""
-    limbs: dict[str, PartFeatures]
-    """Features of each limb's parts."""
-    limb_cost: dict[str, SingleArray]
-    """(T, L) how unusual each part of a limb is with each torso."""
-    legs_together: SingleArray
-    """(L, L) how unusual a left and a right leg are together."""
-    ankle_height_m: float
-    """Height of the ankles over flat soles."""
+    pelvis: SingleArray  # (S, 3, 3) turn of the pelvis in the world
+    chest: SingleArray  # (S, 3, 3) turn of the chest
+    chest_place: SingleArray  # (S, 3) origin of the chest's frame from the hips [m], in the world's axes
+    heading_rad: Array  # (H,)
+    limbs: dict[str, PartFeatures]  # features of each limb's parts
+    limb_cost: dict[str, SingleArray]  # (T, L) how unusual each part of a limb is with each torso
+    legs_together: SingleArray  # (L, L) how unusual a left and a right leg are together
+    ankle_height_m: float  # height of the ankles over flat soles
 
     def frame_of(self, limb: str, stance: IndexArray) -> tuple[SingleArray, SingleArray]:
         """Turn (N, 3, 3) and place (N, 3) from the hips of what a limb hangs on."""
@@ -120,15 +106,7 @@ def composed_postures(
     limbs: IndexArray,
     hips: Array | SingleArray,
 ) -> Posture:
-    """Postures put together from stances and limbs.
-
-    Args:
-        pools: All parts.
-        stances: Their stances.
-        stance: (N,) which stances.
-        limbs: (N, 4) parts of the limbs, in the order of `LIMBS`.
-        hips: (N, 3) places of the hips in the world [m].
-    """
+    """Postures of stances (N,) with limbs (N, 4), in the order of `LIMBS`, and hips at places (N, 3) [m]."""
     parts = {limb: limbs[:, column] for column, limb in enumerate(LIMBS)}
     heading = stances.heading_rad[stance % HEADINGS]
     return pools.composed(stance // HEADINGS, parts, heading, np.asarray(hips, dtype=float))

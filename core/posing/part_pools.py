@@ -17,6 +17,7 @@ from ..body.human import HUMAN, LIMBS
 from ..body.kinematics import Body
 from ..body.mirror import mirrored
 from ..body.posture import Posture, yawed_at
+from ..body.skeleton import Skeleton
 from ..prior.library import Library
 from .known_motions import KnownMotions, known_motions
 
@@ -34,27 +35,12 @@ POINTS = {
     LEG: ("knee.L", "ankle.L"),
 }
 """Principal points by which parts are compared; of the left side where there are two."""
-KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}
-"""Parts of libraries whose points are nearer than this on average look the same: below what performers differ
-by, and as fine as a clip of a few seconds can be searched."""
-MOST_KNOWN = {TORSO: 30, ARM: 130, LEG: 110}
-"""Parts taken from libraries at most."""
-SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}
-"""Samples of the range of motion keep this far from one another and from known parts."""
+KNOWN_M = {TORSO: 0.05, ARM: 0.09, LEG: 0.07}  # libraries' parts nearer than this look the same
+MOST_KNOWN = {TORSO: 30, ARM: 130, LEG: 110}  # parts taken from libraries at most
+SAMPLED_M = {TORSO: 0.10, ARM: 0.20, LEG: 0.16}  # distance of samples from one another and from known parts
 MOST_SAMPLED = {TORSO: 18, ARM: 90, LEG: 70}
-SAMPLES = 4000
-RANGE_SHARE = 0.8
-"""Share of a joint's range that is sampled: its ends are for single moments."""
-UNUSUAL_M = 0.15
-"""Distance from the nearest known part that is as usual as the known part."""
-UNUSUAL_DEGREES = 3.0
-"""Of the Student's t by which parts farther off are rarer: a prior must forgive."""
-KERNEL_M = 0.08
-"""Distance within which parts go with the same other parts: what performers differ by."""
-TOGETHER_SHARE = 0.5
-"""Weight of which parts libraries show together; the rest is for any other combination."""
-MOST_TOGETHER = 20.0
-"""Largest factor by which legs are likelier together than by themselves."""
+UNUSUAL_DEGREES = 3.0  # of the Student's t by which parts farther off are rarer: a prior must forgive
+TOGETHER_SHARE = 0.5  # weight of which parts libraries show together; the rest is for any other combination
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,15 +48,11 @@ class PartPool:
     """N parts of one kind."""
 
     kind: str
-    posture: Posture
-    """(N,) postures of the take's body whose part it is; of limbs the left one. Torsos face -Y, hips at 0."""
-    cost: Array
-    """(N,) negative log of how usual each is, 0 for a known one."""
-    source: IndexArray
-    """(N,) the posture among all libraries' that is nearest."""
+    posture: Posture  # (N,) that have the part, the left one of limbs; torsos face -Y, hips at 0
+    cost: Array  # (N,) negative log of how usual each is, 0 for a known one
+    source: IndexArray  # (N,) the posture among all libraries' that is nearest
 
     def __len__(self) -> int:
-        """Number of parts N."""
         return len(self.cost)
 
 
@@ -82,24 +64,14 @@ class PartPools:
     torsos: PartPool
     arms: PartPool
     legs: PartPool
-    motions: KnownMotions
-    """What the parts are of, see `PartPool.source`."""
-    limb_cost: Mapping[str, Array]
-    """(T, L) negative log of how usual each part of a limb is with each torso, by limb."""
-    legs_together: Array
-    """(L, L) the same of two legs, left and right, beyond what either is by itself."""
+    motions: KnownMotions  # what the parts are of, see `PartPool.source`
+    limb_cost: Mapping[str, Array]  # (T, L) -log of how usual limbs are with torsos
+    legs_together: Array  # (L, L) the same of two legs, left and right, beyond what either is by itself
 
     def composed(
         self, torso: IndexArray, limbs: dict[str, IndexArray], heading_rad: Array, hips: Array
     ) -> Posture:
-        """Postures put together.
-
-        Args:
-            torso: (N,) indices of torsos.
-            limbs: (N,) indices of limbs, by `arm.L` and so on.
-            heading_rad: (N,) turn of the whole about the vertical.
-            hips: (N, 3) places of the hips [m].
-        """
+        """Postures of torsos (N,) and limbs (N,), turned by headings (N,), the hips at (N, 3) [m]."""
         chosen = self.torsos.posture[torso]
         rotations, angles = np.array(chosen.rotations), np.array(chosen.angles)
         for limb, index in limbs.items():
@@ -121,9 +93,13 @@ def part_columns(kind: str, side: str = "") -> tuple[list[int], list[int]]:
     return balls, hinges
 
 
+def part_dofs(skeleton: Skeleton, kind: str, side: str = "") -> list[int]:
+    """Degrees of freedom of a part."""
+    balls, hinges = part_columns(kind, side)
+    return [*map(int, skeleton.ball_dofs[balls].ravel()), *map(int, skeleton.hinge_dofs[hinges])]
+
+
 _KEPT: OrderedDict[tuple[object, ...], Any] = OrderedDict()
-MOST_KEPT = 8
-"""What is learned from libraries is kept for so many questions about other performers."""
 
 
 def part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
@@ -141,7 +117,8 @@ def kept(
     key = (kind, *sorted(body.actor.segments_m.items()), *map(hash, shapes), *named)
     if key not in _KEPT:
         _KEPT[key] = learn()
-        while len(_KEPT) > MOST_KEPT:
+        # What is learned from libraries is kept for so many questions about other performers.
+        while len(_KEPT) > 8:
             _KEPT.popitem(last=False)
     found: Learned = _KEPT[key]
     return found
@@ -169,7 +146,8 @@ def _part_pools(libraries: Sequence[Library], body: Body) -> PartPools:
     both = seen["leg.L"] @ seen["leg.R"].T / len(names)
     apart = np.outer(both.sum(axis=1), both.sum(axis=0))
     ratio = both / np.maximum(apart, 1e-12)
-    usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, MOST_TOGETHER))
+    # Largest factor by which legs are likelier together than by themselves.
+    usual = -np.log(1.0 - TOGETHER_SHARE + TOGETHER_SHARE * np.minimum(ratio, 20.0))
     return PartPools(body, torsos, arms, legs, motions, limb_cost, usual)
 
 
@@ -177,7 +155,8 @@ def _nearness(body: Body, pool: PartPool, known: Posture) -> Array:
     """(N, S) nearness of each part to that of each of S known postures."""
     points, parts = (part_points(body, pool.kind, each) for each in (known, pool.posture))
     apart = np.array([_distance(points, each) for each in parts])
-    return np.asarray(np.exp(-0.5 * (apart / KERNEL_M) ** 2) + 1e-9)
+    # Distance within which parts go with the same other parts: what performers differ by.
+    return np.asarray(np.exp(-0.5 * (apart / 0.08) ** 2) + 1e-9)
 
 
 def part_points(body: Body, kind: str, posture: Posture) -> Array:
@@ -206,7 +185,8 @@ def _samples(random: np.random.Generator) -> Posture:
     limits[free] = 0.0
     limits[3:5] = np.radians([(-25.0, 70.0), (-25.0, 25.0)])  # pelvis forward and sideways
     lower, upper = limits.T
-    share = 0.5 + RANGE_SHARE * (random.random((SAMPLES, len(limits))) - 0.5)
+    # Share of a joint's range that is sampled: its ends are for single moments.
+    share = 0.5 + 0.8 * (random.random((4000, len(limits))) - 0.5)
     return Posture.from_vector(HUMAN, lower + share * (upper - lower))
 
 
@@ -218,9 +198,8 @@ def _pool(body: Body, kind: str, known: Posture, samples: Posture) -> PartPool:
     nearest = away.argmin(axis=1)
     off = away[np.arange(len(added)), nearest]
     usual = np.sqrt(np.bincount(_nearest(known_points, known_points[chosen]), minlength=len(chosen)))
-    rare = np.median(usual) * (1.0 + (off / UNUSUAL_M) ** 2 / UNUSUAL_DEGREES) ** (
-        -0.5 * (UNUSUAL_DEGREES + 1.0)
-    )
+    # Distance from the nearest known part that is as usual as the known part.
+    rare = np.median(usual) * (1.0 + (off / 0.15) ** 2 / UNUSUAL_DEGREES) ** (-0.5 * (UNUSUAL_DEGREES + 1.0))
     weight = np.concatenate([usual, rare])
     return PartPool(
         kind,

@@ -29,10 +29,7 @@ from .part_features import HEADINGS, StanceFeatures, stance_features
 from .part_pools import PartPools, part_pools
 from .posing_input import PosingInput, posing_input, stretch_of, tempering
 
-CONTRADICTING = 3.0
-"""A marker or keypoint farther off than this many deviations between performers has not been explained."""
-LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8
-"""Shares of the work after which parts are learned, and postures composed."""
+LEARNED_SHARE, COMPOSED_SHARE = 0.05, 0.8  # of the work, after which parts are learned and composed
 
 
 def pose_clip(
@@ -44,7 +41,7 @@ def pose_clip(
     between: tuple[int, int] | None = None,
     frames: Sequence[int] | None = None,
 ) -> Job[FoundPoses]:
-    """Find the postures of a clip that nobody posed.
+    """Find the postures of a clip that nobody posed; there always are some, with a confidence.
 
     Args:
         take: The take; what is posed of it holds, what was found of it earlier is not used.
@@ -52,16 +49,9 @@ def pose_clip(
         libraries: What is known of postures: each limb may come from another one.
         floor_m: Height of the floor in the world [m]; None where it is not known.
         keyframe_count: Number of frames to find keyframes at; 10 per 100 frames where None.
-        between: First and last frame of the clip to look at; those of the two that are posed hold. The whole
-            clip where None.
+        between: First and last frame of the clip to look at; those of the two that are posed hold, and
+            elsewhere the postures are those of the take's keyframes. The whole clip where None.
         frames: Indices of the frames to find keyframes at, instead of `keyframe_count` proposed ones.
-
-    Yields:
-        Progress.
-
-    Returns:
-        The postures; there always are some, with a confidence that says how far to trust them. Between two
-        frames only those are found anew; elsewhere the postures are those of the take's keyframes.
 
     Raises:
         InputError: There is no library, none has a posture, or neither a marker nor a keypoint is seen.
@@ -132,11 +122,7 @@ def _fitting(take: Take, given: PosingInput, composed: Composition) -> Part[Whol
 
 
 def _explained(given: PosingInput, posture: Posture) -> tuple[Array, Array]:
-    """How much postures explain.
-
-    Args:
-        given: The take.
-        posture: (T,) postures of the frames that are looked at.
+    """How much postures (T,) of the frames that are looked at explain.
 
     Returns:
         (T,) mean weight under Student's t of the places of markers and keypoints, 0 where none is seen, and
@@ -163,21 +149,19 @@ def _candidates(
     fitted: Posture,
     explained: Array,
 ) -> tuple[MatchedFrame, ...]:
-    frames = []
-    for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
-        index = int(given.sampled[row])
-        found = composed_candidates(
+    return tuple(
+        composed_candidates(
             pools,
             stances,
             composed.states[row],
             composed.path.posterior[row],
-            index + given.first,
-            fitted[index],
+            int(given.sampled[row]) + given.first,
+            fitted[int(given.sampled[row])],
             int(composed.path.stance[row]) // HEADINGS,
             float(explained[row]),
         )
-        frames.append(found)
-    return tuple(frames)
+        for row in map(int, np.searchsorted(given.sampled, given.keyframes))
+    )
 
 
 def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, tuple[str, ...]]:
@@ -186,7 +170,8 @@ def _contradictions(take: Take, given: PosingInput, off: Array) -> Mapping[int, 
     names = (*markers, *given.evidence.keypoints.names)
     found = {}
     for row in map(int, np.searchsorted(given.sampled, given.keyframes)):
-        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > CONTRADICTING))
+        # Three deviations between performers are no longer explained.
+        wrong = tuple(names[column] for column in np.flatnonzero(np.nan_to_num(off[row]) > 3.0))
         if wrong:
             found[int(given.sampled[row]) + given.first] = wrong
     return found

@@ -1,4 +1,4 @@
-"""A frame that a person has posed, among frames that are composed: its parts are the nearest ones."""
+"""A posed frame among composed ones: its parts are the nearest; and how plausible any body's parts are."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,17 +10,13 @@ from scipy.special import logsumexp
 from ..arrays import Array, BoolArray, IndexArray, SingleArray
 from ..body.human import TRUNK
 from ..body.kinematics import Body, Pose
-from ..body.skeleton import Skeleton
 from ..numerics.robust import multivariate_cost
 from ..prior.library import Library
 from .composed_states import FrameCosts, FrameStates
 from .known_motions import PARTS, KnownPostures, known_postures, part_shapes
 from .match_evidence import FrameLikelihood
 from .part_features import TRUNK_POINTS, StanceFeatures, limb_points
-from .part_pools import JOINTS, TORSO
-
-POINT_STD_M = 0.06
-"""Distance of a posed point from the nearest part's: what pools are rough by, and a person's error."""
+from .part_pools import TORSO, part_dofs
 
 
 class PosedCosts(FrameCosts):
@@ -34,19 +30,15 @@ class PosedCosts(FrameCosts):
         points: Array,
         tempering: float,
     ) -> None:
-        """Hold stances and limbs against a posed frame.
+        """Hold stances and limbs against hips (3,) and points (P, 3) from there of a posed frame [m].
 
-        Args:
-            likelihood: The frame.
-            stances: All stances.
-            hips: (3,) place of the hips [m].
-            points: (P, 3) points from there [m].
-            tempering: What the frame's costs will be multiplied by; a posed frame says its own once.
+        `tempering` is what the frame's costs will be multiplied by; a posed frame says its own once.
         """
         super().__init__(likelihood, stances, None)
         self.hips = np.asarray(hips - likelihood.location, dtype=np.float32)
         self.points = np.asarray(points, dtype=np.float32)
-        self.weight = np.float32(0.5 / POINT_STD_M**2 / tempering)
+        # Distance of a posed point from the nearest part's: what pools are rough by, and a person's error.
+        self.weight = np.float32(0.5 / 0.06**2 / tempering)
 
     def places(
         self, stance: IndexArray, depth_m: SingleArray, limbs: IndexArray | None = None
@@ -76,21 +68,10 @@ class PosedCosts(FrameCosts):
 # --- How plausible a body's parts are by all postures that are known
 
 
-KERNEL_M = 0.05
-"""Width of a kernel, in root mean square distance of a part's points: three fifths of what two performers
-differ by in the same posture, as the likeliest width for one library by the others is 3 to 4 cm and these
-come from one hand."""
-DEGREES = 4.0
-"""Of Student's t, the shape of a kernel: the likeliest for one library by the others, too."""
-DIMENSIONS = 4.0
-"""Degrees of freedom of a part: two directions of a limb's two segments; lean, turn and bend of a trunk."""
-UNUSUAL_SHARE = 0.002
-"""Share of known postures, each by the libraries it is not from, that are more unusual than is called
-plausible."""
-MARGIN = 6.0
-"""Cost by which an unknown motion may be more unusual than that: a part some 40 cm from all known ones."""
-BEYOND_RAD = 0.25
-"""A joint this far beyond its range is contorted, whatever is known."""
+KERNEL_M = 0.05  # three fifths of what performers differ by; libraries predict each other by 3 to 4 cm
+DEGREES = 4.0  # of Student's t, the shape of a kernel: the likeliest for one library by the others, too
+DIMENSIONS = 4.0  # of a part: two directions of two segments; lean, turn and bend of a trunk
+MARGIN = 6.0  # how much more unusual an unknown motion may be: a part 40 cm from all known
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,8 +91,12 @@ class Plausibility:
         """(N, 5) whether each part is where no known posture has anything like it."""
         most = np.array([self.usual[part][1] - self.usual[part][0] + MARGIN for part in PARTS])
         skeleton, vector = pose.posture.skeleton, pose.posture.to_vector()
-        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > BEYOND_RAD
-        parts = [beyond[:, _dofs(skeleton, part)].any(axis=-1) for part in PARTS]
+        # A joint this far beyond its range is contorted, whatever is known.
+        beyond = np.abs(vector - np.clip(vector, *skeleton.limits.T)) > 0.25
+        parts = [
+            beyond[:, part_dofs(skeleton, *part.replace(TRUNK, TORSO).split("."))].any(axis=-1)
+            for part in PARTS
+        ]
         return np.asarray((self.costs(pose) > most) | np.stack(parts, axis=-1))
 
     @cached_property
@@ -124,36 +109,18 @@ class Plausibility:
         for part in PARTS:
             shape = self.known.parts[part]
             cost = _cost(shape, shape, other)
-            median, unusual = np.quantile(cost, [0.5, 1.0 - UNUSUAL_SHARE])
+            median, unusual = np.quantile(cost, [0.5, 0.998])  # two in a thousand are called implausible
             found[part] = (float(median), float(unusual))
         return found
 
 
 def plausibility(body: Body, libraries: Sequence[Library]) -> Plausibility:
-    """The density of the postures of some libraries on a body.
-
-    Raises:
-        InputError: No library has a posture.
-    """
+    """The density of the postures of libraries, one of which has any, on a body."""
     return Plausibility(known_postures(body, libraries))
 
 
-def _dofs(skeleton: Skeleton, part: str) -> IndexArray:
-    """Degrees of freedom of a part."""
-    kind, _, side = part.partition(".")
-    stems = JOINTS[TORSO if part == TRUNK else kind]
-    joints = {f"{stem}.{side}" if side else stem for stem in stems}
-    return np.flatnonzero([name.rpartition(".")[0] in joints for name in skeleton.dof_names])
-
-
 def _cost(shape: Array, known: Array, other: BoolArray | None = None) -> Array:
-    """(N,) negative logarithm of the mean kernel of shapes (N, K) by known ones (M, K).
-
-    Args:
-        shape: The shapes to judge.
-        known: Those in the kernels' middles.
-        other: (N, M) which of them count for which; None for all.
-    """
+    """(N,) negative logarithm of the mean kernel of shapes (N, K) by known ones (M, K), or `other` ones."""
     # |a - b|² = |a|² + |b|² - 2 a·b: one product instead of all differences.
     squared = (shape**2).sum(-1)[:, None] + (known**2).sum(-1) - 2.0 * shape @ known.T
     kernel = -multivariate_cost(np.maximum(squared, 0.0) / KERNEL_M**2, DEGREES, DIMENSIONS)

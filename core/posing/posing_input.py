@@ -22,19 +22,13 @@ from ..take.performer_keypoints import performer_keypoints
 from ..take.take import Take
 from .match_evidence import MatchEvidence
 
-SAMPLES_PER_S = 15.0
-"""Rate at which a clip is sampled: between samples this near a motion's posture is well known."""
-CORRELATION_S = 0.25
-"""Time over which a performer differs from known postures in the same way: frames nearer count less each."""
-
 
 @dataclass(frozen=True, eq=False)
 class PosedFrames:
     """K keyframes that a person posed, in order of time."""
 
     body: Body
-    frames: IndexArray
-    """(K,) indices in the clip."""
+    frames: IndexArray  # (K,) indices in the clip
     postures: tuple[Posture, ...]
 
     @classmethod
@@ -70,20 +64,18 @@ class PosingInput:
     body: Body
     camera: Camera
     evidence: MatchEvidence
-    keyframes: IndexArray
-    """(K,) frames whose posture is asked for."""
+    keyframes: IndexArray  # (K,) frames whose posture is asked for
     posed: PosedFrames
-    keypoints: Keypoints
-    """All the performer's, in the detector's layout."""
-    first: int = 0
-    """Index of the first of these frames in the clip."""
+    keypoints: Keypoints  # all the performer's, in the detector's layout
+    first: int = 0  # index of the first of these frames in the clip
 
     @cached_property
     def sampled(self) -> IndexArray:
         """(T,) the frames that are looked at: evenly spaced ones, the last, and those asked for or posed."""
         time_s = self.evidence.tracks.time_s
         duration = float(time_s[-1] - time_s[0]) / max(len(time_s) - 1, 1)
-        stride = max(1, round(1.0 / SAMPLES_PER_S / duration)) if duration > 0.0 else 1
+        # Rate at which a clip is sampled: between samples this near a motion's posture is well known.
+        stride = max(1, round(1.0 / 15.0 / duration)) if duration > 0.0 else 1
         even = np.arange(0, len(time_s), stride)
         every = np.concatenate([even, [len(time_s) - 1], self.keyframes, self.posed.frames])
         return np.unique(every).astype(np.intp)
@@ -96,16 +88,15 @@ class PosingInput:
 
 def tempering(time_s: Array) -> float:
     """Weight of each of several frames at some times (T,): what makes one doubtful makes its neighbors so."""
-    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
+    # Time over which a performer differs from known postures in the same way: frames nearer count less
+    # each.
+    return min(1.0, float(np.median(np.diff(time_s))) / 0.25)
 
 
 def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None) -> PosingInput:
-    """Gather what a take has to find its poses by; pictures are not asked.
+    """Gather what a take has to find its poses by; pictures are not asked, nor what was found earlier.
 
-    Args:
-        take: The take; what was found of it earlier is not used.
-        reading: The clip as `read_footage` has read it.
-        keyframe_count: Number of frames to ask for; 10 per 100 frames where None.
+    `keyframe_count` is the number of frames to ask for; 10 per 100 frames where None.
 
     Raises:
         InputError: Neither a marker nor a keypoint is seen.
@@ -129,11 +120,7 @@ def posing_input(take: Take, reading: Reading, keyframe_count: int | None = None
 
 
 def check_followed(take: Take) -> None:
-    """Refuse a take that has nothing to find postures by.
-
-    Raises:
-        InputError: It has neither markers nor keypoints.
-    """
+    """Refuse a take that has neither markers nor keypoints by an InputError."""
     if not (take.markers or take.keypoints):
         raise InputError(
             f"{take.file}: the take has neither markers nor keypoints, without which no posture can be "

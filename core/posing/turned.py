@@ -19,23 +19,17 @@ from ..body.posture import Posture, facing_rad, headings_rad, yaw_rotation, yawe
 from ..footage.camera import Camera
 from ..prior.keyframes import Keyframe
 from ..take.take import Take
-from .drag import Pull, SightLine, pulled
+from .inverse_kinematics import Pull, SightLine, pulled
 from .limb_chain import limb_chain, sight_lines, strain_of, ways_in_sight
 
-SAME_SIDE_RAD = np.pi / 4.0
-"""Of the four directions, the nearest to a heading is at most this far away."""
-STRAIGHT_ABOVE_M = 1e-6
-"""A camera nearer than this [m] to the vertical through the performer is in no direction from there."""
-HEAD_M, HEAD_DEPTH_M = 0.02, 0.3
-"""How near the head comes to where it was seen, and to the depth it has on the turned neck."""
+HEAD_M, HEAD_DEPTH_M = 0.02, 0.3  # how near the head comes to its sight, and to its turned depth
 
 
 class Facing(Enum):
     """Where the performer faces, seen from the camera."""
 
     CAMERA = "camera"
-    LEFT = "left"
-    """To the left of the picture."""
+    LEFT = "left"  # to the left of the picture
     RIGHT = "right"
     AWAY = "away"
 
@@ -43,12 +37,9 @@ class Facing(Enum):
 class Sides(Enum):
     """What becomes of left and right when the performer is turned."""
 
-    STAY = "stay"
-    """Each arm and leg stays where it is in the picture; the trunk turns between them."""
-    EXCHANGE = "exchange"
-    """The left arm takes the right one's place in the picture, and so the legs: the outline stays."""
-    TURN = "turn"
-    """Everything turns with the trunk, as on a turntable."""
+    STAY = "stay"  # each arm and leg stays where it is in the picture; the trunk turns between them
+    EXCHANGE = "exchange"  # left limbs take the right ones' place in the picture: the outline stays
+    TURN = "turn"  # everything turns with the trunk, as on a turntable
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,21 +48,15 @@ class Turned:
 
     posture: Posture
     sides: Sides
-    strain: float
-    """How implausible its limbs are, as in `LimbInSight.strain`."""
+    strain: float  # how implausible its limbs are, as in `LimbInSight.strain`
 
 
 def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
-    """The heading with which a performer at a place (3,) faces one way, as `body/heading` counts it [rad].
-
-    Args:
-        camera: The camera in this frame, as one that stands still.
-        place: The performer's place [m].
-        facing: Where to.
-    """
+    """Heading [rad] of a performer at a place (3,) [m] who faces one way, by the frame's own camera."""
     rotation, eye = camera.pose()
     toward = facing_rad(eye - place)
-    if np.hypot(*(eye - place)[:2]) < STRAIGHT_ABOVE_M:
+    # A camera nearer than this [m] to the vertical through the performer is in no direction from there.
+    if np.hypot(*(eye - place)[:2]) < 1e-6:
         toward = facing_rad(-rotation[:, 1])  # to the lower edge of the picture
     # The performer's left is +X where they face -Y: toward the camera, that is to the right of the picture.
     steps = {Facing.CAMERA: 0.0, Facing.RIGHT: 1.0, Facing.AWAY: 2.0, Facing.LEFT: -1.0}
@@ -80,21 +65,13 @@ def facing_heading_rad(camera: Camera, place: Array, facing: Facing) -> float:
 
 def facing_of(posture: Posture, camera: Camera) -> Facing:
     """The one of the four ways that is nearest to where a single posture faces."""
-    heading = float(headings_rad(_batch(posture))[0])
+    heading = float(headings_rad(posture))
     away = {f: _apart_rad(facing_heading_rad(camera, posture.translation, f), heading) for f in Facing}
     return min(away, key=lambda facing: away[facing])
 
 
 def turned(body: Body, posture: Posture, camera: Camera, facing: Facing, sides: Sides) -> Turned:
-    """A single posture turned about the vertical through its hips, which stay where they are.
-
-    Args:
-        body: The actor's body.
-        posture: The posture.
-        camera: The camera in this frame, as one that stands still.
-        facing: Where to.
-        sides: What becomes of left and right.
-    """
+    """A single posture turned about the vertical through its hips, by the frame's own camera."""
     goal = facing_heading_rad(camera, posture.translation, facing)
     if sides is Sides.TURN:
         along = sum(strain_of(posture, limb_chain(body.skeleton, name)) for name in LIMBS)
@@ -132,7 +109,7 @@ def _changed(posture: Posture, base: Posture, dofs: IndexArray) -> float:
 
 
 def _at_heading(posture: Posture, heading_rad: float) -> Posture:
-    turn = heading_rad - float(headings_rad(_batch(posture))[0])
+    turn = heading_rad - float(headings_rad(posture))
     return yawed_in_place(posture, np.array([turn]))[0]
 
 
@@ -148,14 +125,9 @@ def _exchanged(posture: Posture, camera: Camera, heading_rad: float) -> Posture:
     # A reflection across a vertical plane is the one across x = 0, turned by twice the angle between them.
     rotation[0] = yaw_rotation(2.0 * depth) @ rotation[0]
     reflected = Posture(posture.skeleton, posture.translation, rotation, image.angles)
-    faces = float(headings_rad(_batch(reflected))[0])
-    return (
-        reflected if _apart_rad(faces, heading_rad) <= SAME_SIDE_RAD else _at_heading(reflected, heading_rad)
-    )
-
-
-def _batch(posture: Posture) -> Posture:
-    return Posture.stack([posture])
+    faces = float(headings_rad(reflected))
+    # Of the four directions, the nearest to a heading is at most an eighth of a turn away.
+    return reflected if _apart_rad(faces, heading_rad) <= np.pi / 4.0 else _at_heading(reflected, heading_rad)
 
 
 def _apart_rad(first: float, second: float) -> float:
@@ -176,8 +148,7 @@ class Section:
 
     first: int
     last: int
-    changed: tuple[int, ...]
-    """Found keyframes that are posed anew, in order."""
+    changed: tuple[int, ...]  # found keyframes that are posed anew, in order
 
 
 def section_around(time_s: Array, corrected: int, keyframes: Collection[Keyframe]) -> Section:

@@ -11,10 +11,7 @@ from ..arrays import Array, BoolArray
 from ..footage.keypoints.keypoints import FACE
 from .confidence import misfits
 
-PREFIX = "keypoint_"
-"""Of the names of the arrays in a cache."""
-USUALLY = 0.5
-"""Share of the frames in which a part is seen that is missed in the others."""
+PREFIX = "keypoint_"  # of the names of the arrays in a cache
 PARTS = {
     **{name.partition(".")[0]: "head" for name in (*FACE, "crown")},
     **dict.fromkeys(("index", "thumb", "pinky"), "wrist"),
@@ -36,24 +33,15 @@ def part_of(name: str) -> str:
 class ComparedKeypoints:
     """N keypoints in F frames; NaN where there is none."""
 
-    names: tuple[str, ...]
-    """(N,) the body point each shows."""
-    sources: tuple[str, ...]
-    """(N,) what saw each."""
-    seen: Array
-    """(F, N, 2) where each was seen [px]; left and right are exchanged back where they were swapped."""
-    predicted: Array
-    """(F, N, 2) where the motion puts it [px]."""
-    confidence: Array
-    """(F, N) of its source, 1 for what it is sure of, 0 where not seen."""
-    distance_px: Array
-    """(F, N) between the two; NaN where not compared."""
-    expected_px: Array
-    """(F, N) standard deviation of each coordinate of that distance; infinite for what is left out."""
-    thrown_out: BoolArray
-    """(F, N) seen, but not believed."""
-    swapped: BoolArray
-    """(F, N) seen on the other side of the body by its source."""
+    names: tuple[str, ...]  # (N,) the body point each shows
+    sources: tuple[str, ...]  # (N,) what saw each
+    seen: Array  # (F, N, 2) where each was seen [px], left and right exchanged back if swapped
+    predicted: Array  # (F, N, 2) where the motion puts it [px]
+    confidence: Array  # (F, N) of its source, 1 for what it is sure of, 0 where not seen
+    distance_px: Array  # (F, N) between the two; NaN where not compared
+    expected_px: Array  # (F, N) std of each coordinate of that distance; infinite for what is left out
+    thrown_out: BoolArray  # (F, N) seen, but not believed
+    swapped: BoolArray  # (F, N) seen on the other side of the body by its source
 
     @classmethod
     def none(cls, frames: int) -> "ComparedKeypoints":
@@ -92,7 +80,8 @@ class ComparedKeypoints:
         if not best:
             return np.zeros((len(self.confidence), 0))
         quality = np.stack(best, axis=1)
-        seldom = (quality > 0.0).mean(axis=0) < USUALLY
+        # Share of the frames in which a part is seen that is missed in the others.
+        seldom = (quality > 0.0).mean(axis=0) < 0.5
         return np.where(seldom & (quality == 0.0), 1.0, quality)
 
     def _columns(self) -> dict[str, list[int]]:
@@ -112,11 +101,7 @@ class ComparedKeypoints:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]], frames: int) -> "ComparedKeypoints":
-        """Restore them from the arrays of `to_arrays`; none from arrays of before there were keypoints.
-
-        Raises:
-            KeyError: An array is missing.
-        """
+        """Restore them; none from arrays of before there were keypoints. KeyError: an array is missing."""
         if PREFIX + "names" not in arrays:
             return cls.none(frames)
         numbers = ("seen", "predicted", "confidence", "distance_px", "expected_px")

@@ -18,24 +18,20 @@ from scipy.special import gammainc
 
 from ..arrays import Array
 
-TOLERANCE_SHARE = 0.025
-"""Tolerance as a share of the performer's stature: four to five centimeters for an adult."""
-UNSEEN_SHARE = 0.2
-"""Error in what is not seen, as a share of the distance that the footage moved a point: about the value that
-takes with truth have with few keyframes."""
-ROWS = 2
-"""Components of a centroid's distance."""
+TOLERANCE_SHARE = 0.025  # of the performer's stature: four to five centimeters for an adult
 
 
 def expected_covariance(point_covariance: Array, moved_m: Array, misfit: Array) -> Array:
-    """Expected covariance of the points' errors, (F, P, 3, 3) [m²].
+    """Expected covariance (F, P, 3, 3) of the points' errors [m²].
 
     Args:
         point_covariance: (F, P, 3, 3) the estimate's own [m²]; NaN where unknown.
         moved_m: (F, P) distance of each point from the interpolated keyframes [m].
         misfit: (F, E) of every piece of evidence, as `misfits` gives it of markers; NaN where not compared.
     """
-    unseen = np.eye(3) * (UNSEEN_SHARE * moved_m)[..., None, None] ** 2 / 3.0
+    # Error in what is not seen, as a share of the distance that the footage moved a point: about the value
+    # that takes with truth have with few keyframes.
+    unseen = np.eye(3) * (0.2 * moved_m)[..., None, None] ** 2 / 3.0
     return np.asarray((point_covariance + unseen) * _birge_ratio(misfit)[:, None, None, None])
 
 
@@ -48,13 +44,11 @@ def confidence(covariance: Array, tolerance_m: float) -> Array:
 
 
 def misfits(distance_px: Array, expected_px: Array) -> Array:
-    """Reduced squared distances (F, M): 1 on average where the noise is as assumed.
+    """Reduced squared distances (F, M): 1 on average where the noise is as assumed; NaN where not compared.
 
-    Args:
-        distance_px: (F, M) between the predicted and observed centroids; NaN where not compared.
-        expected_px: (F, M) standard deviation of each coordinate.
+    `expected_px` is the standard deviation of each of a centroid's two coordinates.
     """
-    return np.asarray((distance_px / expected_px) ** 2 / ROWS)
+    return np.asarray((distance_px / expected_px) ** 2 / 2)
 
 
 def _birge_ratio(misfit: Array) -> Array:

@@ -1,7 +1,4 @@
-"""The contours of a motion in the pictures, part by part: which show, and which lie beside their edges.
-
-They judge a motion where no marker does.
-"""
+"""Evidence of each frame of a motion: markers, keypoints, and contours, which judge where no marker does."""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
@@ -22,22 +19,17 @@ from ..take.evidence_kinds import UsedEvidence, UsedKeypoints
 from .compared_keypoints import ComparedKeypoints
 from .weak_frames import FrameEvidence
 
-SELDOM = 0.25
-"""Share of a part's contour below which it seldom shows: the trunk's behind the arms."""
+SELDOM = 0.25  # share of a part's contour below which it seldom shows: the trunk's behind the arms
 
 
 @dataclass(frozen=True, eq=False)
 class ContourSight:
     """The O parts of the body in F frames, without hands and feet."""
 
-    parts: tuple[str, ...]
-    """(O,) their segments."""
-    quality: Array
-    """(F, O) share of a part's contour near which an edge was found, of what usually is."""
-    misfit: Array
-    """(F, O) reduced squared distance from these edges; NaN where none was found."""
-    lines: Array
-    """(F, L, S, 2) contour lines of all parts, hands and feet included, as the motion predicts them [px]."""
+    parts: tuple[str, ...]  # (O,) their segments
+    quality: Array  # (F, O) share of a part's contour near which an edge was found, of what usually is
+    misfit: Array  # (F, O) reduced squared distance from these edges; NaN where none was found
+    lines: Array  # (F, L, S, 2) contour lines of all parts as the motion predicts them [px]
 
     @classmethod
     def none(cls, frames: int) -> "ContourSight":
@@ -46,14 +38,7 @@ class ContourSight:
 
 
 def contour_sight(reconstruction: Reconstruction) -> Generator[float, None, ContourSight]:
-    """Look for the edges near a motion's contours; yields the fraction done.
-
-    Args:
-        reconstruction: The result of `reconstruct`.
-
-    Returns:
-        None of them where markers judge the motion, or where no contour was followed.
-    """
+    """Edges near a motion's contours; none where markers judge the motion, or no contour was followed."""
     motion, solution = reconstruction.motion, reconstruction.solution
     frame = np.arange(len(motion.time_s))
     if reconstruction.tracks.names or solution is None or solution.contours is None:
@@ -113,22 +98,13 @@ ENDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 class MarkerSight:
     """M markers in F frames."""
 
-    segments: tuple[str, ...]
-    """(M,) the segment of each."""
-    quality: Array
-    """(F, M) of its regions, 0 where hidden."""
-    misfit: Array
-    """(F, M) as in `confidence`; NaN where not compared."""
+    segments: tuple[str, ...]  # (M,) the segment of each
+    quality: Array  # (F, M) of its regions, 0 where hidden
+    misfit: Array  # (F, M) as in `confidence`; NaN where not compared
 
 
 def believed_misfits(markers: Array, contours: ContourSight, keypoints: ComparedKeypoints) -> Array:
-    """Misfits (F, M + O + K) of markers, contours, and the body points whose keypoints are believed.
-
-    Args:
-        markers: (F, M) misfits; NaN where not compared.
-        contours: Those of O parts.
-        keypoints: Those of K body points.
-    """
+    """Misfits (F, M + O + K) of markers, contours, and the body points whose keypoints are believed."""
     believed = np.where(keypoints.thrown_out, np.nan, keypoints.misfit)
     return np.concatenate([markers, contours.misfit, keypoints.by_part(believed)], axis=1)
 
@@ -141,16 +117,7 @@ def frame_evidence(
     contours: ContourSight,
     keypoints: ComparedKeypoints,
 ) -> FrameEvidence:
-    """Evidence of F frames.
-
-    Args:
-        squared_error: (F,) as in `FrameEvidence`, like the next two.
-        confidence: (F,).
-        speed: (F,).
-        markers: Those of M markers.
-        contours: Those of O parts.
-        keypoints: Those of K body points.
-    """
+    """Evidence of F frames, of M markers, O contours and K body points."""
     segments = (*markers.segments, *contours.parts)
     covered = np.concatenate([markers.quality, contours.quality], axis=1)
     points, by_point = keypoints.parts(), keypoints.quality()
@@ -181,9 +148,6 @@ def compare_keypoints(reconstruction: Reconstruction) -> ComparedKeypoints:
     """The performer's keypoints beside the motion's, with what the estimate made of them.
 
     A method that does not follow keypoints is compared with them as if they were where they usually are.
-
-    Args:
-        reconstruction: The result of `reconstruct`.
     """
     if not reconstruction.keypoints.names:
         return ComparedKeypoints.none(len(reconstruction.motion.time_s))
@@ -219,10 +183,7 @@ def used_evidence(reconstruction: Reconstruction) -> UsedEvidence:
     if method != "map" or solution is None:
         return UsedEvidence(markers if method == "ekf" else ())
     return UsedEvidence(
-        markers,
-        _used_keypoints(reconstruction),
-        _uses_hints(solution),
-        solution.contours is not None,
+        markers, _used_keypoints(reconstruction), _uses_hints(solution), solution.contours is not None
     )
 
 

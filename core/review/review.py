@@ -30,16 +30,10 @@ from .weak_frames import Reason, WeakFrame, find_weak_frames
 __all__ = ["Reason", "Review", "WeakFrame", "review"]
 
 STAGE = "Judging the motion"
-CHUNK_FRAMES = 100
-"""So few that a job can be canceled within some hundredths of a second."""
-WRONG_SHARE = 0.1
-"""Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong."""
+CHUNK_FRAMES = 100  # so few that a job can be canceled within some hundredths of a second
 NAMES = ("marker_names", "point_names")
 KINDS: Mapping[str, type] = MappingProxyType(
-    {
-        **dict.fromkeys(NAMES, np.str_),
-        **dict.fromkeys(("observed", "predicted", "contours"), np.float32),
-    }
+    {**dict.fromkeys(NAMES, np.str_), **dict.fromkeys(("observed", "predicted", "contours"), np.float32)}
 )
 """Kinds of arrays in a cache that numpy would not choose: large ones are only drawn, in single precision."""
 
@@ -48,38 +42,23 @@ KINDS: Mapping[str, type] = MappingProxyType(
 class Review:
     """Review data of a motion of F frames, M markers and 13 points; NaN where there is none."""
 
-    frames: Array
-    """(F,) scene frames, fractional for variable frame rate."""
-    size: tuple[int, int]
-    """Width and height of the picture [px]."""
+    frames: Array  # (F,) scene frames, fractional for variable frame rate
+    size: tuple[int, int]  # width and height of the picture [px]
     marker_names: tuple[str, ...]
     point_names: tuple[str, ...]
-    observed: Array
-    """(F, M, K, 2) closed outline of each region seen [px]: the even ellipse of equal moments."""
-    predicted: Array
-    """(F, M, K, 2) the same of each marker's visible part as the motion predicts it [px]."""
-    points: Array
-    """(F, 13, 3) principal points in the world [m]."""
-    image_points: Array
-    """(F, 13, 2) the same in the picture, through the calibrated lens [px]."""
-    sigma_m: Array
-    """(F, 13) square root of the trace of each point's covariance [m]; NaN for a method without."""
-    reprojection_px: Array
-    """(F, M) distance between the predicted and observed centroids [px]; NaN where not compared."""
-    nearness: Array
-    """(F,) degree to which a keyframe is near, 0 to 1."""
-    speed: Array
-    """(F,) V_sum [px per frame]."""
-    confidence: Array
-    """(F,) from 0 to 1; NaN for a method without uncertainty."""
-    keyframe_indices: IndexArray
-    """(K,) frame indices of the keyframes."""
-    weak_frames: tuple[WeakFrame, ...]
-    """Frames worth another keyframe, the worst first."""
-    contours: Array
-    """(F, L, S, 2) predicted contour lines of the body [px], where no marker shows how the motion fits."""
-    keypoints: ComparedKeypoints
-    """Of the performer, N of them; none in a review that was kept before there were any."""
+    observed: Array  # (F, M, K, 2) closed outline of each region seen [px]: the even ellipse of equal moments
+    predicted: Array  # (F, M, K, 2) the same of each marker's visible part as the motion predicts it [px]
+    points: Array  # (F, 13, 3) principal points in the world [m]
+    image_points: Array  # (F, 13, 2) the same in the picture, through the calibrated lens [px]
+    sigma_m: Array  # (F, 13) root of the trace of each point's covariance [m]; NaN without
+    reprojection_px: Array  # (F, M) predicted from observed centroids [px]; NaN where not compared
+    nearness: Array  # (F,) degree to which a keyframe is near, 0 to 1
+    speed: Array  # (F,) V_sum [px per frame]
+    confidence: Array  # (F,) from 0 to 1; NaN for a method without uncertainty
+    keyframe_indices: IndexArray  # (K,) frame indices of the keyframes
+    weak_frames: tuple[WeakFrame, ...]  # frames worth another keyframe, the worst first
+    contours: Array  # (F, L, S, 2) predicted contour lines [px], where no marker shows the fit
+    keypoints: ComparedKeypoints  # N of the performer; none in a review kept before there were any
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields as plain arrays for `from_arrays`; none needs pickling."""
@@ -100,7 +79,7 @@ class Review:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Review":
-        """Restore a review from the arrays of `to_arrays`, or of a version that knew no keypoints.
+        """Restore a review, also of a version that knew no keypoints.
 
         Raises:
             KeyError: An array is missing.
@@ -142,19 +121,7 @@ def _weak_frames(arrays: Mapping[str, NDArray[Any]]) -> tuple[WeakFrame, ...]:
 
 
 def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> Job[Review]:
-    """Review a reconstruction.
-
-    Args:
-        take: The take.
-        reconstruction: The result of `reconstruct`.
-        scene_frames: (F,) scene frame of each frame of the clip.
-
-    Yields:
-        Progress.
-
-    Returns:
-        The review.
-    """
+    """Review a reconstruction; `scene_frames` (F,) are those of the clip's frames."""
     motion, tracks, model = reconstruction.motion, reconstruction.tracks, reconstruction.model
     frame = np.arange(tracks.frame_count)
     pose = take.body.pose(motion.posture)
@@ -168,7 +135,8 @@ def review(take: Take, reconstruction: Reconstruction, scene_frames: Array) -> J
     believed_misfit = believed_misfits(misfit, contours, keypoints)
     expected = expected_covariance(motion.point_covariance, moved, believed_misfit)
     believed = confidence(expected, TOLERANCE_SHARE * take.body.actor.stature_m)
-    wrong = WRONG_SHARE * take.body.actor.stature_m
+    # Largest error that counts, as a share of the performer's stature: beyond it a point is simply wrong.
+    wrong = 0.1 * take.body.actor.stature_m
     squared = np.minimum(np.trace(expected, axis1=-2, axis2=-1), wrong**2).mean(axis=1)
     index = np.array(motion.keyframe_indices, dtype=np.intp)
     evidence = frame_evidence(

@@ -21,11 +21,6 @@ from ..files.records import Record
 from ..files.safe_path import NumberArray
 from ..footage.camera import Camera
 
-STANDING_M = 0.004
-"""An ankle whose true position moves less than this in a frame stands."""
-NORMAL_95 = 1.96
-"""Half-width of a normal distribution's 95 % interval, in standard deviations."""
-
 
 @dataclass(frozen=True)
 class Score:
@@ -33,20 +28,13 @@ class Score:
 
     frames: int
     keyframes: int
-    mpjpe: float
-    """Mean over free frames and 13 points of the distance to the true point."""
-    mpjpe_all: float
-    """The same over all frames."""
-    rooted: float
-    """Like `mpjpe`, after both are moved so that the hips' midpoints coincide."""
-    depth: float
-    """Mean absolute error along the line from the camera to the true point, free frames."""
-    image: float
-    """Mean error across that line, free frames."""
-    worst_p95: float
-    """95th percentile of the points' errors, free frames."""
-    jitter: float
-    """Mean length of the error's second difference, per frame²."""
+    mpjpe: float  # mean over free frames and 13 points of the distance to the true point
+    mpjpe_all: float  # the same over all frames
+    rooted: float  # like `mpjpe`, after both are moved so that the hips' midpoints coincide
+    depth: float  # mean absolute error along the line from the camera to the true point, free frames
+    image: float  # mean error across that line, free frames
+    worst_p95: float  # 95th percentile of the points' errors, free frames
+    jitter: float  # mean length of the error's second difference, per frame²
     skate: float | None
     """Mean horizontal travel per frame of ankles that truly stand; None where none ever stands."""
     coverage95: float | None
@@ -64,11 +52,11 @@ def score_points(
     camera: Camera,
     sigma_m: Array | None = None,
 ) -> Score:
-    """Score points against the truth.
+    """Score points (F, 13, 3) against true ones [m].
 
     Args:
-        points: (F, 13, 3) estimated points in the world [m].
-        truth: (F, 13, 3) true points [m].
+        points: The motion's.
+        truth: The true ones.
         keyframe_indices: Frames, from 0, that were given as keyframes.
         camera: The camera whose lines of sight split the error.
         sigma_m: (F, 13) square root of the trace of each point's covariance [m].
@@ -88,7 +76,8 @@ def score_points(
     hips = [HUMAN.point_names.index(name) for name in ("hip.L", "hip.R")]
     rooted = np.linalg.norm(error - error[:, hips].mean(axis=1, keepdims=True), axis=-1)
     bend = np.linalg.norm(np.diff(error, n=2, axis=0), axis=-1)
-    covered = None if sigma_m is None else float(np.mean(distance <= NORMAL_95 * sigma_m))
+    # Half-width of a normal distribution's 95 % interval, in standard deviations.
+    covered = None if sigma_m is None else float(np.mean(distance <= 1.96 * sigma_m))
     return Score(
         frames=len(truth),
         keyframes=int(np.sum(~free)),
@@ -126,15 +115,7 @@ class TruthFile(Record):
 
 
 def read_truth(path: Path, frame_start: int, frame_count: int) -> Array:
-    """Read a take's `truth.json` for the clip's frames.
-
-    Args:
-        path: The file: `frames`, and `points` by name with one [x, y, z] a frame.
-        frame_start: Scene frame of the clip's first frame.
-        frame_count: Frames of the clip, F.
-
-    Returns:
-        (F, 13, 3) true points [m].
+    """(F, 13, 3) true points [m] of a take's `truth.json` for the clip's frames.
 
     Raises:
         InputError: The file is unusable or lacks a frame of the clip.
@@ -160,6 +141,7 @@ def _along_and_across(error: Array, truth: Array, camera: Camera) -> tuple[Array
 
 def _skate(points: Array, truth: Array) -> float | None:
     ankles = [HUMAN.point_names.index(name) for name in ("ankle.L", "ankle.R")]
-    stands = np.linalg.norm(np.diff(truth[:, ankles], axis=0), axis=-1) < STANDING_M
+    # An ankle whose true position moves less than this in a frame stands.
+    stands = np.linalg.norm(np.diff(truth[:, ankles], axis=0), axis=-1) < 0.004
     travel = np.linalg.norm(np.diff(points[:, ankles, :2], axis=0), axis=-1)
     return 1e3 * float(travel[stands].mean()) if stands.any() else None

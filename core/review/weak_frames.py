@@ -14,80 +14,50 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, BoolArray, IndexArray
 
-WEAK_CONFIDENCE = 0.75
-"""Frames of a higher confidence need no keyframe."""
-FRAMES_PER_NAMED = 20
-"""Frames of the clip for each one that is named."""
-NEAREST_FRAMES = 4
-"""Least distance of a named frame from a keyframe [frames]."""
-LEAST_WORTH = 0.2
-"""Least worth of a named frame, as a share of the worst one's."""
-MOST_CANDIDATES = 400
-"""Largest number of frames tried in one gap, evenly spread."""
+WEAK_CONFIDENCE = 0.75  # frames of a higher confidence need no keyframe
+FRAMES_PER_NAMED = 20  # frames of the clip for each one that is named
+NEAREST_FRAMES = 4  # least distance of a named frame from a keyframe [frames]
 HIDDEN_QUALITY = 0.3
-NOTICEABLE_HIDDEN = 0.4
-"""Share of the frames around a weak one in which a marker is hidden, ..."""
-NOTICEABLE_MISFIT = 2.0
-"""... misfit, as in `confidence` (of which the root counts, as it is squared), ..."""
-NOTICEABLE_SPEED = 1.5
-"""... speed in the clip's median speeds, ..."""
-NOTICEABLE_DISTANCE = 0.6
-"""... and distance to the nearest keyframe in mean gaps, that make a reason; the greatest counts."""
+NOTICEABLE_HIDDEN = 0.4  # share of the frames around a weak one in which a marker is hidden,
+NOTICEABLE_MISFIT = 2.0  # misfit, as in `confidence`, of which the root counts as it is squared,
+NOTICEABLE_SPEED = 1.5  # speed in the clip's median speeds, and
+NOTICEABLE_DISTANCE = 0.6  # distance from keyframes in mean gaps that make a reason; the greatest counts
 
 
 class Reason(StrEnum):
     """Why a frame is worth another keyframe."""
 
-    HIDDEN = "hidden"
-    """A marker, a keypoint or a contour is hidden there."""
-    FAST = "fast"
-    """The performer moves fast there."""
-    FAR = "far"
-    """The next keyframe is far."""
-    FOOTAGE = "footage"
-    """A marker, a keypoint or a contour is not where the motion puts it."""
+    HIDDEN = "hidden"  # a marker, a keypoint or a contour is hidden there
+    FAST = "fast"  # the performer moves fast there
+    FAR = "far"  # the next keyframe is far
+    FOOTAGE = "footage"  # a marker, a keypoint or a contour is not where the motion puts it
 
 
 @dataclass(frozen=True)
 class WeakFrame:
     """A frame worth another keyframe."""
 
-    index: int
-    """Index in the clip, from 0."""
+    index: int  # index in the clip, from 0
     reason: Reason
-    strength: float
-    """Worth of a keyframe there, relative to the worst frame's: 0 to 1."""
-    marker: int | None = None
-    """The marker that is hidden or misplaced, where one is the reason."""
-    point: str | None = None
-    """The body point whose keypoints are hidden or misplaced, or the segment whose contour is."""
+    strength: float  # worth of a keyframe there, relative to the worst frame's: 0 to 1
+    marker: int | None = None  # the marker that is hidden or misplaced, where one is the reason
+    point: str | None = None  # the body point whose keypoints, or segment whose contour, is the reason
 
 
 @dataclass(frozen=True, eq=False)
 class FrameEvidence:
     """Errors, confidence and observations of F frames: of M markers and K points or segments of the body."""
 
-    squared_error: Array
-    """(F,) expected squared error of a frame, in any unit."""
-    confidence: Array
-    """(F,) 0 to 1; NaN where unknown, which counts as weak."""
-    quality: Array
-    """(F, M + K) quality of regions, contours and keypoints, 0 where hidden."""
-    misfit: Array
-    """(F, M + K) as in `confidence`; NaN where not compared."""
-    speed: Array
-    """(F,) V_sum."""
-    points: tuple[str, ...] = ()
-    """(K,) the points and segments of the last columns."""
+    squared_error: Array  # (F,) expected squared error of a frame, in any unit
+    confidence: Array  # (F,) 0 to 1; NaN where unknown, which counts as weak
+    quality: Array  # (F, M + K) quality of regions, contours and keypoints, 0 where hidden
+    misfit: Array  # (F, M + K) as in `confidence`; NaN where not compared
+    speed: Array  # (F,) V_sum
+    points: tuple[str, ...] = ()  # (K,) the points and segments of the last columns
 
 
 def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[WeakFrame, ...]:
-    """Find the frames worth another keyframe, the worst first.
-
-    Args:
-        evidence: Of the F frames.
-        keyframes: (K,) increasing indices, K ≥ 1.
-    """
+    """Find the frames worth another keyframe, the worst first; `keyframes` are rising, at least one."""
     count = len(evidence.squared_error)
     posed = [int(index) for index in np.asarray(keyframes)]
     weak = ~(evidence.confidence >= WEAK_CONFIDENCE)
@@ -98,7 +68,8 @@ def find_weak_frames(evidence: FrameEvidence, keyframes: ArrayLike) -> tuple[Wea
     while gaps and len(found) < max(1, count // FRAMES_PER_NAMED):
         best = max(gaps)
         worth, index, first, last = best
-        if worth <= (LEAST_WORTH * found[0][0] if found else 0.0):
+        # Least worth of a named frame, as a share of the worst one's.
+        if worth <= (0.2 * found[0][0] if found else 0.0):
             break
         found.append((worth, index))
         frame, distance = _gap(first, last, count)
@@ -122,7 +93,8 @@ def _best_in_gap(squared_error: Array, weak: BoolArray, first: int, last: int) -
     candidates = frame[weak[frame] & (distance >= NEAREST_FRAMES)]
     if not len(candidates):
         return 0.0, 0, first, last
-    candidates = candidates[:: -(-len(candidates) // MOST_CANDIDATES)]
+    # Largest number of frames tried in one gap, evenly spread.
+    candidates = candidates[:: -(-len(candidates) // 400)]
     nearer = np.minimum(np.abs(frame - candidates[:, None]), distance)  # (C, N)
     worth = (1.0 - nearer / distance) @ squared_error[frame]
     best = int(worth.argmax())

@@ -21,13 +21,11 @@ def posture_with(**degrees: float) -> Posture:
 
 
 def place(posture: Posture, name: str) -> np.ndarray:
-    """A principal point of a posture."""
     return BODY.points(BODY.pose(posture))[HUMAN.point_names.index(name)]
 
 
 @pytest.mark.parametrize("side", ["L", "R"])
 def test_a_flexed_elbow_brings_the_hand_forward(side: str) -> None:
-    """90 degrees turn the forearm from sideways to -Y, on both sides."""
     bent = posture_with(**{f"elbow__{side}__flexion": 90.0})
     forearm = place(bent, f"wrist.{side}") - place(bent, f"elbow.{side}")
     np.testing.assert_allclose(forearm, [0.0, -BODY.actor.segments_m[f"forearm.{side}"], 0.0], atol=1e-12)
@@ -35,7 +33,6 @@ def test_a_flexed_elbow_brings_the_hand_forward(side: str) -> None:
 
 @pytest.mark.parametrize("side", ["L", "R"])
 def test_a_flexed_knee_brings_the_foot_back(side: str) -> None:
-    """90 degrees turn the shin from down to +Y, on both sides."""
     bent = posture_with(**{f"knee__{side}__flexion": 90.0})
     shin = place(bent, f"ankle.{side}") - place(bent, f"knee.{side}")
     np.testing.assert_allclose(shin, [0.0, BODY.actor.segments_m[f"shin.{side}"], 0.0], atol=1e-12)
@@ -43,14 +40,12 @@ def test_a_flexed_knee_brings_the_foot_back(side: str) -> None:
 
 @pytest.mark.parametrize("side", ["L", "R"])
 def test_a_raised_girdle_lifts_the_shoulder(side: str) -> None:
-    """Elevation is up on both sides, about the neck's root."""
     lifted = place(posture_with(**{f"girdle__{side}__elevation": 20.0}), f"shoulder.{side}")
     rise = 0.5 * BODY.actor.segments_m["shoulder_width"] * np.sin(np.radians(20.0))
     assert lifted[2] - place(Posture.rest(HUMAN), f"shoulder.{side}")[2] == pytest.approx(rise)
 
 
 def test_segments_keep_their_lengths_in_every_posture() -> None:
-    """Bones are rigid."""
     posture = Posture.rest(HUMAN, (20,)).plus(np.random.default_rng(0).normal(0.0, 1.0, (20, 34)))
     points = BODY.points(BODY.pose(posture))
     index = HUMAN.point_names.index
@@ -66,7 +61,6 @@ def test_segments_keep_their_lengths_in_every_posture() -> None:
 
 
 def test_the_root_moves_the_whole_body() -> None:
-    """A turn and a shift of the pelvis are a rigid motion of all points."""
     posture = Posture.rest(HUMAN).plus(np.random.default_rng(1).normal(0.0, 0.5, 34))
     step = np.zeros(34)
     step[:3], step[3:6] = [0.3, -1.0, 0.2], [0.2, 0.5, -0.9]
@@ -78,7 +72,6 @@ def test_the_root_moves_the_whole_body() -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_the_points_jacobian_agrees_with_central_differences_on_the_manifold(seed: int) -> None:
-    """Every point by every degree of freedom."""
     posture = Posture.rest(HUMAN).plus(np.random.default_rng(seed).normal(0.0, 0.7, 34))
     plus, minus = (BODY.points(BODY.pose(posture.plus(s * STEP * np.eye(34)))) for s in (1.0, -1.0))
     numeric = np.moveaxis(plus - minus, 0, -1) / (2.0 * STEP)
@@ -87,7 +80,6 @@ def test_the_points_jacobian_agrees_with_central_differences_on_the_manifold(see
 
 @pytest.mark.parametrize("segment", [segment.name for segment in HUMAN.segments])
 def test_the_jacobian_of_any_place_agrees_with_central_differences(segment: str) -> None:
-    """Also of places that are no principal points, such as the tips of hands and feet."""
     joint = next(s.joint for s in HUMAN.segments if s.name == segment)
     posture, local = Posture.rest(HUMAN).plus(np.full(34, 0.3)), np.array([0.05, -0.1, 0.2])
     plus, minus = (BODY.pose(posture.plus(s * STEP * np.eye(34))).place(joint, local) for s in (1.0, -1.0))
@@ -97,7 +89,6 @@ def test_the_jacobian_of_any_place_agrees_with_central_differences(segment: str)
 
 
 def test_batches_agree_with_single_postures() -> None:
-    """Leading axes are only that."""
     batch = Posture.rest(HUMAN, (2, 3)).plus(np.random.default_rng(3).normal(0.0, 0.5, (2, 3, 34)))
     whole, one = BODY.pose(batch), BODY.pose(batch[1, 2])
     np.testing.assert_allclose(BODY.points(whole)[1, 2], BODY.points(one), atol=1e-14)

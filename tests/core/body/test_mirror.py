@@ -15,7 +15,6 @@ from keymark.core.body.posture import Posture
 
 @given(st.integers(0, 2**32 - 1))
 def test_mirroring_twice_gives_the_very_same_numbers(seed: int) -> None:
-    """To the last bit, also in a batch."""
     posture = Posture.stack([random_posture(seed, 1.2), random_posture(seed + 1)])
     twice = mirrored(mirrored(posture))
     np.testing.assert_array_equal(twice.translation, posture.translation)
@@ -26,7 +25,6 @@ def test_mirroring_twice_gives_the_very_same_numbers(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_points_are_mirrored(seed: int) -> None:
-    """Every point and both soles of the mirrored posture lie where a mirror shows the other side's."""
     lengths = dict(Actor.from_stature(1.75).segments_m) | {"thigh.L": 0.5, "upper_arm.R": 0.25}
     body, opposite = Body(Actor(lengths)), Body(mirrored_actor(Actor(lengths)))
     posture = random_posture(seed, 0.8)
@@ -42,7 +40,6 @@ def test_points_are_mirrored(seed: int) -> None:
 
 
 def test_what_looks_ahead_still_does() -> None:
-    """A flexed left knee becomes a flexed right one; a turn to the left one to the right."""
     vector = np.zeros(34)
     for name, value in {"knee.L.flexion": 0.7, "pelvis.rotation_z": 0.3, "forearm.L.pronation": 0.2}.items():
         vector[HUMAN.dof_names.index(name)] = value

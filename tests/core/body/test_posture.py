@@ -15,7 +15,6 @@ def random_posture(seed: int, batch: tuple[int, ...] = (), spread: float = 0.8) 
 
 
 def assert_same(first: Posture, second: Posture, tolerance: float = 1e-12) -> None:
-    """Both postures are equal as rotations."""
     np.testing.assert_allclose(first.translation, second.translation, atol=tolerance)
     np.testing.assert_allclose(first.rotations, second.rotations, atol=tolerance)
     np.testing.assert_allclose(first.angles, second.angles, atol=tolerance)
@@ -24,7 +23,6 @@ def assert_same(first: Posture, second: Posture, tolerance: float = 1e-12) -> No
 @pytest.mark.parametrize("size", [0.0, 1e-12, 1e-8, 1e-3, 0.5, 1.5, np.pi - 1e-6])
 @pytest.mark.parametrize("seed", range(3))
 def test_minus_finds_the_step_that_plus_took(size: float, seed: int) -> None:
-    """x.plus(δ).minus(x) == δ for every ball's turn below π."""
     start, rng = random_posture(seed), np.random.default_rng(seed + 100)
     step = rng.normal(size=34)
     turns = step[HUMAN.ball_dofs]
@@ -34,13 +32,11 @@ def test_minus_finds_the_step_that_plus_took(size: float, seed: int) -> None:
 
 @given(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1))
 def test_plus_reaches_what_minus_pointed_to(first: int, second: int) -> None:
-    """x.plus(y.minus(x)) == y, whatever the two."""
     start, goal = random_posture(first), random_posture(second)
     assert_same(start.plus(goal.minus(start)), goal, 1e-9)
 
 
 def test_a_zero_step_stays_and_opposite_steps_cancel_along_one_line() -> None:
-    """Going on along the same step adds up; turns about other axes need not."""
     start, step = random_posture(0), np.random.default_rng(1).normal(0.0, 0.4, 34)
     assert_same(start.plus(np.zeros(34)), start)
     assert_same(start.plus(step).plus(-step), start)
@@ -48,7 +44,6 @@ def test_a_zero_step_stays_and_opposite_steps_cancel_along_one_line() -> None:
 
 
 def test_turns_are_taken_in_the_childs_frame() -> None:
-    """R Exp(step), not Exp(step) R."""
     start, turn = random_posture(2), np.array([0.1, -0.4, 0.2])
     step = np.zeros(34)
     step[HUMAN.ball_dofs[3]] = turn
@@ -58,7 +53,6 @@ def test_turns_are_taken_in_the_childs_frame() -> None:
 
 @given(st.integers(0, 2**32 - 1))
 def test_vectors_hold_the_whole_posture(seed: int) -> None:
-    """from_vector(to_vector(x)) == x; rotation vectors are at most π long."""
     posture = random_posture(seed, spread=1.5)
     vector = posture.to_vector()
     assert np.linalg.norm(vector[HUMAN.ball_dofs], axis=-1).max() <= np.pi + 1e-12
@@ -68,7 +62,6 @@ def test_vectors_hold_the_whole_posture(seed: int) -> None:
 @pytest.mark.parametrize("size", [0.0, 1e-8, 0.3, 2.0])
 @pytest.mark.parametrize("seed", range(5))
 def test_plus_jacobian_agrees_with_central_differences(size: float, seed: int) -> None:
-    """How the result's own tangent moves with the step that led to it."""
     start, rng = random_posture(seed), np.random.default_rng(seed)
     delta, step = size * rng.normal(0.0, 0.5, 34), 1e-6
     result = start.plus(delta)
@@ -79,7 +72,6 @@ def test_plus_jacobian_agrees_with_central_differences(size: float, seed: int) -
 
 
 def test_batches_broadcast_and_index() -> None:
-    """One posture takes many steps; a batch is picked like an array; stacking puts it together again."""
     start, steps = random_posture(4), np.random.default_rng(5).normal(0.0, 0.3, (6, 34))
     many = start.plus(steps)
     assert many.batch == (6,)
@@ -90,7 +82,6 @@ def test_batches_broadcast_and_index() -> None:
 
 
 def test_a_posture_cannot_be_changed_behind_its_back() -> None:
-    """Its arrays are its own and read-only."""
     given_place = np.zeros(3)
     posture = Posture(HUMAN, given_place, Posture.rest(HUMAN).rotations, Posture.rest(HUMAN).angles)
     given_place[0] = 5.0

@@ -26,12 +26,10 @@ def plausible_postures(count: int, seed: int) -> Posture:
 
 
 def points_of(posture: Posture, body: Body = BODY) -> np.ndarray:
-    """The thirteen points of postures."""
     return body.points(body.pose(posture))
 
 
 def test_noise_free_points_are_met_to_a_tenth_of_a_millimeter() -> None:
-    """From the geometric guess alone, for 60 postures facing anywhere; a few end near by."""
     targets = points_of(plausible_postures(60, 0))
     fit = fit_posture(BODY, targets)
     np.testing.assert_allclose(fit.residual_m, np.linalg.norm(points_of(fit.posture) - targets, axis=-1))
@@ -42,7 +40,6 @@ def test_noise_free_points_are_met_to_a_tenth_of_a_millimeter() -> None:
 
 
 def test_rest_is_recovered_itself() -> None:
-    """Where the points leave freedom, the neutral posture is taken."""
     rest = Posture.rest(HUMAN, (1,))
     fit = fit_posture(BODY, points_of(rest))
     assert fit.residual_m.max() < 1e-4
@@ -52,7 +49,6 @@ def test_rest_is_recovered_itself() -> None:
 @pytest.mark.parametrize("side", ["L", "R"])
 @pytest.mark.parametrize("joint", ["elbow", "knee"])
 def test_hinges_bend_the_way_joints_do(joint: str, side: str) -> None:
-    """A bend is explained by flexion, not by a turned ball and a broken hinge."""
     vector = np.zeros((1, 34))
     vector[0, HUMAN.dof_names.index(f"{joint}.{side}.flexion")] = 1.2
     fit = fit_posture(BODY, points_of(Posture.from_vector(HUMAN, vector)))
@@ -62,7 +58,6 @@ def test_hinges_bend_the_way_joints_do(joint: str, side: str) -> None:
 
 
 def test_a_start_far_away_does_not_diverge() -> None:
-    """Meters away and half turned round, the fit is never worse than its start and mostly arrives."""
     truth = plausible_postures(20, 1)
     targets = points_of(truth)
     rng = np.random.default_rng(2)
@@ -77,7 +72,6 @@ def test_a_start_far_away_does_not_diverge() -> None:
 
 
 def test_noisy_points_are_met_within_their_noise() -> None:
-    """25 mm of posing error leaves residuals of that size, and no limb is thrown away."""
     rng = np.random.default_rng(3)
     truth = points_of(plausible_postures(30, 4))
     fit = fit_posture(BODY, truth + rng.normal(0.0, 0.025 / 3.0**0.5, truth.shape))
@@ -87,7 +81,6 @@ def test_noisy_points_are_met_within_their_noise() -> None:
 
 
 def test_unknown_points_are_left_out() -> None:
-    """With a start, NaN points bring no pull and a NaN residual; the others are met."""
     truth = plausible_postures(5, 5)
     targets = points_of(truth)
     hidden = [HUMAN.point_names.index(name) for name in ("wrist.L", "ankle.R")]
@@ -101,7 +94,6 @@ def test_unknown_points_are_left_out() -> None:
 
 
 def test_points_no_body_can_reach_still_give_a_finite_posture() -> None:
-    """Another actor's points, or all points in one place, are met as closely as the lengths allow."""
     tall = Body(Actor.from_stature(2.0))
     fit = fit_posture(BODY, points_of(plausible_postures(10, 7), tall))
     assert fit.residual_m.mean() < 0.08
@@ -112,7 +104,6 @@ def test_points_no_body_can_reach_still_give_a_finite_posture() -> None:
 
 @pytest.mark.parametrize("name", ["walk", "reach", "aerobic", "real_balance"])
 def test_keyframes_of_real_takes_are_fitted(take_folder: Callable[[str], Path], name: str) -> None:
-    """Exact keyframes leave a few millimeters, as the true body is not this skeleton; no point is far off."""
     folder = take_folder(name)
     actor = Actor(json.loads((folder / "take.json").read_text())["actor"]["segments_m"])
     keyframes = json.loads((folder / "keyframes.json").read_text())["keyframes"]

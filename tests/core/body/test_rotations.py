@@ -26,7 +26,6 @@ def rotation_vector(axis: tuple[float, ...], angle: float) -> np.ndarray:
 
 
 def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
-    """The sense of rotation is right-handed and columns are the images of the axes."""
     turn = rotations.exponential(np.array([0.0, 0.0, np.pi / 2]))
     np.testing.assert_allclose(turn, [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-15)
 
@@ -34,14 +33,12 @@ def test_a_quarter_turn_about_z_takes_x_to_y() -> None:
 @pytest.mark.parametrize("axis", AXES)
 @pytest.mark.parametrize("angle", ANGLES)
 def test_the_logarithm_undoes_the_exponential(axis: tuple[float, ...], angle: float) -> None:
-    """From nothing to just below half a turn."""
     vector = rotation_vector(axis, angle)
     np.testing.assert_allclose(rotations.logarithm(rotations.exponential(vector)), vector, atol=1e-9)
 
 
 @given(vectors(), vectors())
 def test_rotations_form_a_group(first: np.ndarray, second: np.ndarray) -> None:
-    """Products and transposes of exponentials are rotations, and opposite vectors are inverse."""
     A, B = rotations.exponential(first), rotations.exponential(second)
     np.testing.assert_allclose(A @ B @ (A @ B).T, np.eye(3), atol=1e-12)
     assert np.linalg.det(A @ B) == pytest.approx(1.0)
@@ -50,7 +47,6 @@ def test_rotations_form_a_group(first: np.ndarray, second: np.ndarray) -> None:
 
 @given(vectors(), vectors())
 def test_the_cross_matrix_is_the_cross_product(first: np.ndarray, second: np.ndarray) -> None:
-    """[v]x w = v × w."""
     np.testing.assert_allclose(
         rotations.cross_matrix(first) @ second, np.cross(first, second), rtol=1e-12, atol=1e-15
     )
@@ -59,7 +55,6 @@ def test_the_cross_matrix_is_the_cross_product(first: np.ndarray, second: np.nda
 @pytest.mark.parametrize("axis", AXES)
 @pytest.mark.parametrize("angle", ANGLES)
 def test_the_right_jacobian_agrees_with_central_differences(axis: tuple[float, ...], angle: float) -> None:
-    """Exp(v + dv) = Exp(v) Exp(J_r dv), across the switch to the series."""
     vector, step = rotation_vector(axis, angle), 1e-5
     base = rotations.exponential(vector)
     columns = [
@@ -75,13 +70,11 @@ def test_the_right_jacobian_agrees_with_central_differences(axis: tuple[float, .
 
 @given(vectors(2.0 * np.pi - 0.1))
 def test_the_right_jacobian_and_its_inverse_cancel(vector: np.ndarray) -> None:
-    """For every angle below a whole turn."""
     product = rotations.right_jacobian(vector) @ rotations.right_jacobian_inverse(vector)
     np.testing.assert_allclose(product, np.eye(3), atol=1e-7)
 
 
 def test_batches_agree_with_single_rotations() -> None:
-    """Leading axes are only that."""
     batch = np.random.default_rng(0).normal(size=(2, 5, 3))
     whole, slope = rotations.exponential(batch), rotations.right_jacobian(batch)
     np.testing.assert_allclose(whole[1, 3], rotations.exponential(batch[1, 3]), rtol=1e-14)
@@ -90,7 +83,6 @@ def test_batches_agree_with_single_rotations() -> None:
 
 
 def test_a_hinge_turns_about_its_axis() -> None:
-    """The axis stays, the angle is the angle."""
     axis = np.array([0.0, -1.0, 0.0])
     turns = rotations.hinge(axis, np.array([0.0, 0.3, -2.0]))
     np.testing.assert_allclose(turns @ axis, np.broadcast_to(axis, (3, 3)), atol=1e-15)
@@ -98,7 +90,6 @@ def test_a_hinge_turns_about_its_axis() -> None:
 
 
 def test_quaternions_are_scalar_first() -> None:
-    """A quarter turn about x is (√½, √½, 0, 0); a whole batch keeps its shape and w ≥ 0."""
     half = np.sqrt(0.5)
     turn = rotations.exponential(np.array([np.pi / 2, 0.0, 0.0]))
     np.testing.assert_allclose(rotations.to_quaternions(turn), [half, half, 0.0, 0.0], atol=1e-15)
@@ -109,7 +100,6 @@ def test_quaternions_are_scalar_first() -> None:
 
 
 def test_continuous_quaternions_never_jump_to_the_other_sign() -> None:
-    """Two turns about an axis: neighbors stay near, and each is the same rotation as before."""
     angle = np.linspace(0.0, 4.0 * np.pi, 60)
     raw = rotations.to_quaternions(rotations.hinge(np.array([0.0, 0.6, 0.8]), angle))[:, None]
     smooth = rotations.continuous_quaternions(raw)

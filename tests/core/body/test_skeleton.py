@@ -1,12 +1,16 @@
-"""The default skeleton and the actor's sizes."""
+"""The default skeleton, the actor's sizes, where the feet touch the floor, and the colors of both sides."""
+
+import colorsys
 
 import numpy as np
 import pytest
 from keymark.core.body.actor import REQUIRED, Actor
-from keymark.core.body.human import HUMAN
+from keymark.core.body.body_volume import sole_heights_m, sole_places, standing_posture
+from keymark.core.body.human import HUMAN, LIGHT, SHADED, STRONG, joint_limits_deg, side_of
 from keymark.core.body.kinematics import Body
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
+from keymark.core.report import canvas
 
 BODY = Body(Actor.from_stature(1.75))
 LIMB_POINTS = ("shoulder", "elbow", "wrist", "hip", "knee", "ankle")
@@ -14,14 +18,12 @@ POINTS = ("head", *(f"{name}.{side}" for name in LIMB_POINTS for side in "LR"))
 
 
 def test_the_skeleton_has_the_papers_numbers() -> None:
-    """34 degrees of freedom and 13 principal points (paper, sections 2 and 4)."""
     assert HUMAN.dof_count == 34
     assert len(set(HUMAN.dof_names)) == 34
     assert HUMAN.point_names == POINTS
 
 
 def test_degrees_of_freedom_are_all_counted_once() -> None:
-    """Translation, balls and hinges share the posture vector without gap or overlap."""
     indices = np.concatenate([np.arange(3), HUMAN.ball_dofs.ravel(), HUMAN.hinge_dofs])
     np.testing.assert_array_equal(np.sort(indices), np.arange(34))
     assert HUMAN.deviations.shape == (34,)
@@ -30,14 +32,12 @@ def test_degrees_of_freedom_are_all_counted_once() -> None:
 
 
 def test_parents_come_before_their_children() -> None:
-    """Kinematics runs through the joints once, in order."""
     assert all(joint.parent < index for index, joint in enumerate(HUMAN.joints))
     names = {segment.name for segment in HUMAN.segments}
     assert all(segment.parent is None or segment.parent in names for segment in HUMAN.segments)
 
 
 def test_at_rest_the_performer_stands_in_a_t_facing_minus_y() -> None:
-    """Left is +X, arms stretched sideways, all points in the plane of the hips; the feet point to -Y."""
     pose = BODY.pose(Posture.rest(HUMAN))
     place = dict(zip(HUMAN.point_names, BODY.points(pose), strict=True))
     length = BODY.actor.segments_m
@@ -64,34 +64,23 @@ def mirrored(vector: np.ndarray) -> np.ndarray:
     return result
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_left_and_right_are_mirror_images(seed: int) -> None:
-    """The mirrored posture puts every point of one side where the other side's mirror image was."""
-    vector = np.random.default_rng(seed).normal(0.0, 0.5, 34)
-    vectors = np.stack([vector, mirrored(vector)])
-    first, second = BODY.points(BODY.pose(Posture.from_vector(HUMAN, vectors)))
-    swapped = [POINTS.index(name.translate(str.maketrans("LR", "RL"))) for name in POINTS]
-    np.testing.assert_allclose(second, first[swapped] * [-1.0, 1.0, 1.0], atol=1e-12)
-
-
 def test_limits_and_deviations_are_mirror_images() -> None:
-    """No side is stiffer than the other."""
     np.testing.assert_allclose(np.abs(mirrored(HUMAN.deviations)), HUMAN.deviations)
     lower, upper = mirrored(HUMAN.limits[:, 0]), mirrored(HUMAN.limits[:, 1])
     np.testing.assert_allclose(np.sort(np.stack([lower, upper], -1), axis=-1), HUMAN.limits)
 
 
 def test_joints_are_found_by_name() -> None:
-    """An unknown one is an error."""
     assert HUMAN.joints[HUMAN.joint_index("elbow.R")].name == "elbow.R"
     with pytest.raises(KeyError):
         HUMAN.joint_index("tail")
+    with pytest.raises(KeyError):
+        joint_limits_deg("wrist.L")
     with pytest.raises(KeyError):
         BODY.segment_ends(BODY.pose(Posture.rest(HUMAN)), "tail")
 
 
 def test_average_proportions_follow_the_stature() -> None:
-    """All lengths scale, and the stature is found again from the legs."""
     small, tall = Actor.from_stature(1.2), Actor.from_stature(1.8)
     for name, length in small.segments_m.items():
         assert tall.segments_m[name] == pytest.approx(1.5 * length)
@@ -99,7 +88,6 @@ def test_average_proportions_follow_the_stature() -> None:
 
 
 def test_hands_and_feet_follow_from_the_legs_where_not_given() -> None:
-    """A take gives only what it measured."""
     lengths = {name: value for name, value in Actor.from_stature(1.6).segments_m.items() if name in REQUIRED}
     actor = Actor(lengths)
     assert actor.segments_m["foot.R"] == pytest.approx(0.110 * 1.6)
@@ -107,7 +95,6 @@ def test_hands_and_feet_follow_from_the_legs_where_not_given() -> None:
 
 
 def lengths_with(**changes: object) -> dict[str, object]:
-    """Usable lengths, changed."""
     return {**Actor.from_stature(1.7).segments_m, **changes}
 
 
@@ -124,19 +111,67 @@ def lengths_with(**changes: object) -> dict[str, object]:
     ],
 )
 def test_unusable_lengths_are_refused_in_one_sentence(lengths: dict[str, float], sentence: str) -> None:
-    """The sentence names the field, its value and what would be valid."""
     with pytest.raises(InputError, match=sentence):
         Actor(lengths)
 
 
 @pytest.mark.parametrize("stature", [0.0, 175.0, float("nan"), float("inf")])
 def test_an_impossible_stature_is_refused(stature: float) -> None:
-    """Centimeters taken for meters are caught."""
     with pytest.raises(InputError, match="between 0.5 and 3 m"):
         Actor.from_stature(stature)
 
 
 def test_an_actors_lengths_cannot_be_changed() -> None:
-    """Bodies derived from them would not notice."""
     with pytest.raises(TypeError):
         Actor.from_stature(1.7).segments_m["trunk"] = 1.0  # type: ignore[index]
+
+
+def leaning(degrees: float) -> Posture:
+    """Standing, the left shin leaning backward by some degrees (the foot with it), the knee in its place."""
+    vector = standing_posture(BODY).to_vector()
+    vector[HUMAN.dof_names.index("hip.L.rotation_x")] = np.radians(-degrees)
+    return Posture.from_vector(HUMAN, vector)
+
+
+def test_who_stands_has_both_soles_flat_on_the_floor() -> None:
+    pose = BODY.pose(Posture.stack([standing_posture(BODY)] * 2))
+    places = sole_places(BODY, pose)
+    assert places.shape == (2, 2, 2, 3)
+    np.testing.assert_allclose(places[..., 2], 0.0, atol=1e-12)
+    assert places[0, 0, 0, 0] > 0.0 > places[0, 1, 0, 0]
+    assert (places[..., 0, 1] > places[..., 1, 1] + 0.2).all()
+
+
+@pytest.mark.parametrize(("degrees", "lowest"), [(20.0, 0), (-20.0, 1)])
+def test_a_leg_before_the_body_stands_on_its_heel_and_one_behind_on_its_toes(
+    degrees: float, lowest: int
+) -> None:
+    pose = BODY.pose(leaning(degrees))
+    heights = sole_places(BODY, pose)[0, :, 2]
+    assert heights.argmin() == lowest and abs(np.ptp(heights)) > 0.05
+    assert sole_heights_m(BODY, pose)[0] == heights.min()
+    assert sole_heights_m(BODY, pose)[1] == pytest.approx(0.0, abs=1e-12)
+
+
+SAME_HUE = 0.06
+"""Of the circle of hues; blue and orange are 0.45 apart."""
+
+
+def hue(rgb: tuple[int, int, int]) -> float:
+    return colorsys.rgb_to_hsv(*(level / 255.0 for level in rgb))[0]
+
+
+@pytest.mark.parametrize("side", ["L", "R"])
+def test_a_side_has_one_hue_in_all_its_strengths(side: str) -> None:
+    hues = [hue(strength[side]) for strength in (LIGHT, STRONG, SHADED)]
+    assert max(hues) - min(hues) < SAME_HUE
+    assert (0.5 < hues[0] < 0.7) == (side == "L")
+
+
+def test_reports_have_the_same_colors() -> None:
+    assert canvas.LEFT[::-1] == STRONG["L"] and canvas.RIGHT[::-1] == STRONG["R"]
+
+
+def test_every_segment_and_point_has_a_side() -> None:
+    assert {side_of(segment.name) for segment in HUMAN.segments} == {"L", "R", ""}
+    assert side_of("shoulder.L") == "L" and side_of("head") == "" and side_of("Left.001") == ""

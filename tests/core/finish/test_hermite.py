@@ -9,12 +9,10 @@ NONE = np.zeros(0, dtype=np.intp)
 
 
 def wave() -> np.ndarray:
-    """Two curves over the uneven times."""
     return np.column_stack([np.sin(TIMES / 4.0), np.cos(TIMES / 7.0) + 0.02 * TIMES])
 
 
 def test_a_cubic_needs_two_keys() -> None:
-    """Data that are a cubic are met in every frame, with their slopes at the ends."""
     data = np.polynomial.polynomial.polyval(TIMES, [1.0, -0.3, 0.02, -0.0004])[:, None]
     spline = fit_keys(TIMES, data, np.array([0, 39]), NONE)
     assert spline.evaluate(TIMES, 0, 39) == pytest.approx(data, abs=2e-4)
@@ -23,13 +21,11 @@ def test_a_cubic_needs_two_keys() -> None:
 
 
 def test_every_frame_a_key_meets_the_data() -> None:
-    """Nothing is smoothed where nothing is left out."""
     spline = fit_keys(TIMES, wave(), np.arange(40), NONE)
     assert spline.evaluate(TIMES, 0, 39) == pytest.approx(wave(), abs=1e-9)
 
 
 def test_exact_keys_have_the_datas_values_and_others_may_not() -> None:
-    """Noise at a free key is smoothed; an exact one keeps it."""
     data = wave()
     data[20] += 0.3
     keys = np.array([0, 8, 20, 31, 39])
@@ -39,7 +35,6 @@ def test_exact_keys_have_the_datas_values_and_others_may_not() -> None:
 
 
 def test_fitting_some_keys_anew_leaves_the_others() -> None:
-    """Only the keys named change, and what they show gets nearer to the data."""
     keys = np.array([0, 6, 12, 18, 24, 32, 39])
     start = Spline(keys, wave()[keys], np.zeros((7, 2)))
     fitted = refit(TIMES, wave(), start, 2, 3, NONE)
@@ -51,7 +46,6 @@ def test_fitting_some_keys_anew_leaves_the_others() -> None:
 
 
 def test_a_key_on_the_curve_moves_nothing() -> None:
-    """A further key with the curve's own value and slope leaves every frame where it was."""
     spline = fit_keys(TIMES, wave(), np.array([0, 12, 39]), NONE)
     further = spline.with_keys(TIMES, np.array([5, 27]))
     assert list(further.keys) == [0, 5, 12, 27, 39]

@@ -18,7 +18,6 @@ KEYFRAMES = np.array([0, 17, 32, FRAMES - 1])
 
 @pytest.fixture(scope="module")
 def rig() -> Rig:
-    """The average body's bones."""
     return quaternion_rig()
 
 
@@ -36,12 +35,10 @@ def shown(rig: Rig, reduced: ReducedKeys) -> np.ndarray:
 
 
 def key_count(reduced: ReducedKeys) -> int:
-    """Keys of all bones together."""
     return sum(len(spline.keys) for spline in reduced.splines)
 
 
 def test_the_rig_shows_the_body(rig: Rig) -> None:
-    """All thirteen points are among the joints and ends of the bones, where the body's are."""
     posture = exercise(6)
     places = rig.pose(rig_values(rig, posture)).points
     points = BODY.points(BODY.pose(posture))
@@ -54,7 +51,6 @@ def test_the_rig_shows_the_body(rig: Rig) -> None:
 def test_no_point_is_further_off_than_the_tolerance(
     rig: Rig, values: list[np.ndarray], tolerance_m: float, whole_pose: bool
 ) -> None:
-    """In every frame, ends of hands and feet included; and the tolerance is made use of."""
     reduced = run(reduce_keys(rig, TIMES, values, tolerance_m, KEYFRAMES, whole_pose))
     distance = np.linalg.norm(shown(rig, reduced) - rig.pose(values).points, axis=-1)
     assert 0.4 * tolerance_m < distance.max() <= tolerance_m
@@ -62,7 +58,6 @@ def test_no_point_is_further_off_than_the_tolerance(
 
 
 def test_keyframes_stay_keys_with_their_values(rig: Rig, values: list[np.ndarray]) -> None:
-    """What the animator posed is on every bone's curves, unsmoothed."""
     for whole_pose in (False, True):
         reduced = run(reduce_keys(rig, TIMES, values, 0.01, KEYFRAMES, whole_pose))
         for spline, data in zip(reduced.splines, values, strict=True):
@@ -72,7 +67,6 @@ def test_keyframes_stay_keys_with_their_values(rig: Rig, values: list[np.ndarray
 
 
 def test_fewer_keys_than_at_even_steps(rig: Rig, values: list[np.ndarray]) -> None:
-    """Even steps with as many keys leave the body further off."""
     reduced = run(reduce_keys(rig, TIMES, values, 0.005, np.zeros(0, dtype=np.intp)))
     count = -(-key_count(reduced) // len(rig.bones))
     even = np.unique(np.round(np.linspace(0, FRAMES - 1, count)).astype(np.intp))
@@ -85,7 +79,6 @@ def test_fewer_keys_than_at_even_steps(rig: Rig, values: list[np.ndarray]) -> No
 def test_more_tolerance_needs_fewer_keys_and_poses_share_their_frames(
     rig: Rig, values: list[np.ndarray]
 ) -> None:
-    """Twenty millimeters cost less than five; whole poses key all bones on the same frames."""
     counts = [key_count(run(reduce_keys(rig, TIMES, values, mm / 1e3, KEYFRAMES))) for mm in (5, 10, 20)]
     assert counts[0] > counts[1] > counts[2]
     poses = run(reduce_keys(rig, TIMES, values, 0.01, KEYFRAMES, True))
@@ -93,7 +86,6 @@ def test_more_tolerance_needs_fewer_keys_and_poses_share_their_frames(
 
 
 def test_a_point_can_be_held_more_tightly(rig: Rig, values: list[np.ndarray]) -> None:
-    """A tolerance of its own for one point in some frames is kept, too."""
     names = [bone.name for bone in rig.bones]
     ankle = rig.point_slices[names.index("shin.R")].start + 1
     tolerance = np.full((FRAMES, rig.point_slices[-1].stop), 0.02)
@@ -105,7 +97,6 @@ def test_a_point_can_be_held_more_tightly(rig: Rig, values: list[np.ndarray]) ->
 
 
 def test_a_still_body_needs_its_first_and_last_key(rig: Rig) -> None:
-    """Nothing moves: two keys a bone."""
     still = rig_values(rig, Posture.rest(BODY.skeleton, (FRAMES,)))
     reduced = run(reduce_keys(rig, TIMES, still, 0.005, np.zeros(0, dtype=np.intp)))
     assert {tuple(spline.keys) for spline in reduced.splines} == {(0, FRAMES - 1)}
@@ -113,7 +104,6 @@ def test_a_still_body_needs_its_first_and_last_key(rig: Rig) -> None:
 
 @pytest.mark.parametrize("mode", ["XYZ", "YZX", "ZXY"])
 def test_euler_channels_are_read_in_their_order(mode: str) -> None:
-    """Blender's YZX turns about y first, then z, then x, all fixed axes; channels are stored x, y, z."""
     angles = np.random.default_rng(1).uniform(-1.0, 1.0, (5, 3))
     turn = np.broadcast_to(np.eye(3), (5, 3, 3))
     for letter in mode:
@@ -123,7 +113,6 @@ def test_euler_channels_are_read_in_their_order(mode: str) -> None:
 
 
 def test_axes_and_quaternions_count_by_their_direction() -> None:
-    """Neither needs unit length: Blender brings them to it."""
     axis_angle = np.array([[0.7, 0.0, 3.0, 0.0]])
     quaternion = 2.5 * np.array([[np.cos(0.35), 0.0, np.sin(0.35), 0.0]])
     turn = rotation_matrices(axis_angle, "AXIS_ANGLE")
@@ -132,7 +121,6 @@ def test_axes_and_quaternions_count_by_their_direction() -> None:
 
 
 def test_changing_one_bone_shows_what_showing_all_does(rig: Rig, values: list[np.ndarray]) -> None:
-    """The short way, for some frames and the bones below, agrees with the long way."""
     upper_arm = [bone.name for bone in rig.bones].index("upper_arm.L")
     changed = list(values)
     changed[upper_arm] = values[upper_arm] + 0.05
@@ -145,7 +133,6 @@ def test_changing_one_bone_shows_what_showing_all_does(rig: Rig, values: list[np
 
 
 def test_bones_hang_together() -> None:
-    """Each bone carries itself and what hangs on it."""
     bones = tuple(
         RigBone(name, parent, "XYZ", np.eye(3), np.eye(3), np.zeros(3), np.zeros((1, 3)))
         for name, parent in (("a", -1), ("b", 0), ("c", 1), ("d", 0))
@@ -171,7 +158,6 @@ def control_rig() -> Rig:
 
 @pytest.fixture(scope="module")
 def control_values(control_rig: Rig) -> list[np.ndarray]:
-    """Smooth values of every control."""
     rng = np.random.default_rng(8)
     time = np.linspace(0.0, 1.0, FRAMES)[:, None]
     values = []
@@ -185,7 +171,6 @@ def control_values(control_rig: Rig) -> list[np.ndarray]:
 def test_bones_of_a_control_rig_move_on_what_carries_them(
     control_rig: Rig, control_values: list[np.ndarray]
 ) -> None:
-    """A place follows the parent, a turn the bone that turns it, and locations have axes of their own."""
     pose = control_rig.pose(control_values)
     joints = [pose.points[:, where.start] for where in control_rig.point_slices]
     foot, above = control_values[2], pose.rotation[0]
@@ -200,7 +185,6 @@ def test_bones_of_a_control_rig_move_on_what_carries_them(
 def test_changing_one_control_shows_what_showing_all_does(
     control_rig: Rig, control_values: list[np.ndarray]
 ) -> None:
-    """What one carries and another turns follows either of them."""
     frames = slice(5, 25)
     for control in range(len(control_rig.bones)):
         changed = list(control_values)
@@ -214,7 +198,6 @@ def test_changing_one_control_shows_what_showing_all_does(
 def test_keys_of_controls_stay_within_the_tolerance(
     control_rig: Rig, control_values: list[np.ndarray]
 ) -> None:
-    """Roots, bones with locations and bones turned by another are reduced together."""
     reduced = run(reduce_keys(control_rig, TIMES, control_values, 0.005, np.zeros(0, dtype=np.intp)))
     distance = np.linalg.norm(shown(control_rig, reduced) - control_rig.pose(control_values).points, axis=-1)
     assert 0.001 < distance.max() <= 0.005

@@ -44,7 +44,6 @@ TIME_S = np.arange(60) / FPS
 
 
 def test_resting_feet_stand_still_afterwards() -> None:
-    """Both ankles rest, the left one twice; each stays within a millimeter of one place."""
     before = step_and_stand()
     planted = run(plant_feet(BODY, before, TIME_S))
     after = places(planted.posture)
@@ -56,7 +55,6 @@ def test_resting_feet_stand_still_afterwards() -> None:
 
 
 def test_frames_far_from_a_rest_keep_their_numbers() -> None:
-    """Where neither foot rests nor a correction fades, nothing changes by a bit."""
     leave = np.zeros((60, BODY.skeleton.dof_count))
     leave[:, 0] = 0.03 * np.clip(np.arange(60) - 20, 0, None)
     walking = step_and_stand().plus(leave)
@@ -70,7 +68,6 @@ def test_frames_far_from_a_rest_keep_their_numbers() -> None:
 
 
 def test_the_other_foot_and_the_upper_body_stay() -> None:
-    """Only the legs and, a little, the hips change: a lifted foot goes where it went."""
     before = step_and_stand()
     planted = run(plant_feet(BODY, before, TIME_S))
     moved = np.linalg.norm(places(planted.posture) - places(before), axis=-1)
@@ -83,7 +80,6 @@ def test_the_other_foot_and_the_upper_body_stay() -> None:
 
 
 def test_nothing_jumps() -> None:
-    """The ankles' speed changes from frame to frame no more than by what the rests ask for."""
     before, planted = step_and_stand(), run(plant_feet(BODY, step_and_stand(), TIME_S))
     bend = [
         np.linalg.norm(np.diff(places(posture)[:, ANKLES], n=2, axis=0), axis=-1).max()
@@ -93,7 +89,6 @@ def test_nothing_jumps() -> None:
 
 
 def test_an_unsteady_foot_does_not_rest() -> None:
-    """One that is slow but slides on and on is left alone, unless the animator allows it to stray."""
     slide = np.zeros((60, 2, 3))
     slide[:, :, 0] = 0.08 * TIME_S[:, None]
     assert find_contacts(slide, TIME_S) == ()
@@ -101,7 +96,6 @@ def test_an_unsteady_foot_does_not_rest() -> None:
 
 
 def test_a_foot_held_up_does_not_rest_on_air() -> None:
-    """Half a meter above where it stands a moment later, it does not rest."""
     path = np.zeros((60, 1, 3))
     path[:25, 0, 2] = 0.5
     path[25:31, 0, 2] = np.linspace(0.5, 0.0, 6)
@@ -111,7 +105,6 @@ def test_a_foot_held_up_does_not_rest_on_air() -> None:
 
 
 def test_a_motion_without_a_rest_is_returned_as_it_is() -> None:
-    """Three frames are too few to rest in."""
     posture = step_and_stand()[np.arange(3)]
     planted = run(plant_feet(BODY, posture, TIME_S[:3]))
     assert planted.contacts == ()

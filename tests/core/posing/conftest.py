@@ -8,11 +8,9 @@ from keymark.core.prior.library import Library, read_library
 
 @pytest.fixture(scope="package")
 def walking(repository: Path) -> Library:
-    """The shipped library."""
     return read_library(repository / "presets" / "keyframes" / "walking.json")
 
 
 @pytest.fixture(scope="package")
 def squatting(repository: Path) -> Library:
-    """Another shipped library."""
     return read_library(repository / "presets" / "keyframes" / "squatting_lifting.json")

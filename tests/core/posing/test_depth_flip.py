@@ -53,7 +53,6 @@ def depths(posture: Posture, camera: Camera, limb: str) -> Array:
 @settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int, limb: str) -> None:
-    """Whatever posture and camera; and one part of it lies on the other side in depth."""
     posture, camera = natural_posture(seed), camera_around(seed + 1)
     chain = limb_chain(HUMAN, limb)
     others = np.setdiff1d(np.arange(34), chain.dofs)
@@ -68,7 +67,6 @@ def test_a_flipped_limb_keeps_lengths_limits_and_the_rest_of_the_body(seed: int,
 @settings(max_examples=30)
 @given(SEEDS, st.sampled_from(LIMBS))
 def test_a_flip_within_joint_limits_keeps_the_image(seed: int, limb: str) -> None:
-    """To a small part of a pixel, where the line of sight can be reached at all."""
     posture, camera = natural_posture(seed), camera_around(seed + 1)
     chain = limb_chain(HUMAN, limb)
     lines = sight_lines(BODY, posture, camera, chain)
@@ -97,7 +95,6 @@ def test_flipping_the_same_part_again_comes_back(seed: int, limb: str) -> None:
 
 
 def test_an_arm_held_forward_is_flipped_back_and_stays_in_the_picture() -> None:
-    """The upper arm that points at the camera points away from it, the forearm forward as before."""
     posture = posed(shoulder__L__rotation_y=0.0, shoulder__L__rotation_z=-0.5, elbow__L__flexion=0.4)
     (other,) = flipped(BODY, posture, FRONT, "arm.L", FlippedPart.UPPER)
     before, after = depths(posture, FRONT, "arm.L"), depths(other, FRONT, "arm.L")
@@ -107,7 +104,6 @@ def test_an_arm_held_forward_is_flipped_back_and_stays_in_the_picture() -> None:
 
 
 def test_a_knee_does_not_bend_backwards() -> None:
-    """Of a raised knee seen from the front, a thigh that leans back is no way to have it."""
     posture = posed(hip__L__rotation_x=-1.2, knee__L__flexion=1.3)
     assert depths(posture, FRONT, "leg.L")[0] < -0.2
     for other in flipped(BODY, posture, FRONT, "leg.L"):
@@ -115,13 +111,11 @@ def test_a_knee_does_not_bend_backwards() -> None:
 
 
 def test_a_limb_flat_in_the_picture_has_nothing_to_flip() -> None:
-    """Both places on each line of sight are one."""
     far = camera_at(np.array([0.0, -400.0, 1.4]))
     assert flipped(BODY, Posture.rest(HUMAN), far, "arm.L") == ()
 
 
 def test_a_trunk_that_leans_forward_leans_back() -> None:
-    """Its middle keeps its image, the feet their place, and the hands are seen where they were."""
     posture = posed(waist__rotation_x=0.35)
     first, *_ = flipped(BODY, posture, FRONT, TRUNK)
     before, after = points(posture), points(first)
@@ -137,7 +131,6 @@ def test_a_trunk_that_leans_forward_leans_back() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_trunk_keeps_its_lengths_and_its_middle_in_the_picture(seed: int) -> None:
-    """From any side."""
     posture, camera = natural_posture(seed, 0.4), camera_around(seed)
     joints = [HUMAN.joint_index("waist"), HUMAN.joint_index("neck")]
     waist = HUMAN.ball_dofs[HUMAN.ball_joints.index(joints[0])]
@@ -154,7 +147,6 @@ def test_a_trunk_keeps_its_lengths_and_its_middle_in_the_picture(seed: int) -> N
 
 
 def test_every_part_of_the_body_has_a_name_that_can_be_flipped() -> None:
-    """As the operator finds them by bones; any other is refused."""
     assert FLIPPABLE == ("trunk", "arm.L", "arm.R", "leg.L", "leg.R")
     with pytest.raises(KeyError):
         flipped(BODY, posed(), FRONT, "tail")

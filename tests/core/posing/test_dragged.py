@@ -28,7 +28,6 @@ ACROSS = np.array([0.0, 1.0, 0.0])
 @settings(max_examples=40)
 @given(SEEDS, st.sampled_from([name for name in HUMAN.point_names if name.partition(".")[0] != "hip"]))
 def test_a_joint_goes_where_another_posture_has_it(seed: int, point: str) -> None:
-    """Within a pixel for a place in reach; every segment as long as before."""
     posture, camera = natural_posture(seed, 0.6), camera_around(seed)
     rng = np.random.default_rng(seed)
     part = limb_of(point)
@@ -54,7 +53,6 @@ def _roots(dof: str, part: str) -> bool:
 
 @pytest.mark.parametrize("point", ["wrist.L", "ankle.R", "elbow.R", "knee.L"])
 def test_only_the_limb_moves(point: str) -> None:
-    """All joints of other limbs, and the trunk, stay where they are."""
     posture = standing_posture(BODY)
     place = points(posture)[POINT[point]] + [0.08, 0.0, 0.12]
     result = dragged(BODY, posture, point, place, ACROSS)
@@ -69,7 +67,6 @@ def test_only_the_limb_moves(point: str) -> None:
 
 
 def test_a_wrist_out_of_reach_stretches_the_arm_towards_it() -> None:
-    """The arm does not come off, and nothing else follows."""
     posture = standing_posture(BODY)
     before = points(posture)
     place = before[POINT["shoulder.L"]] + [1.5, 0.0, 0.3]
@@ -83,7 +80,6 @@ def test_a_wrist_out_of_reach_stretches_the_arm_towards_it() -> None:
 
 
 def test_an_elbow_swings_about_a_wrist_that_stays() -> None:
-    """Near enough: the wrist was put where it is before."""
     vector = standing_posture(BODY).to_vector()
     vector[HUMAN.dof_names.index("elbow.L.flexion")] = 1.2
     posture = Posture.from_vector(HUMAN, vector)
@@ -98,7 +94,6 @@ def test_an_elbow_swings_about_a_wrist_that_stays() -> None:
 
 
 def test_joint_limits_hold_a_limb_back() -> None:
-    """A knee is not dragged straight through the hyperextended."""
     posture = standing_posture(BODY)
     before = points(posture)
     place = before[POINT["ankle.L"]] + [0.0, -0.9, 0.6]
@@ -107,7 +102,6 @@ def test_joint_limits_hold_a_limb_back() -> None:
 
 
 def test_what_is_set_beyond_joint_limits_is_not_taken_back() -> None:
-    """Dragging a joint to where it is changes nothing."""
     vector = standing_posture(BODY).to_vector()
     vector[HUMAN.dof_names.index("hip.L.rotation_x")] = 1.2
     posture = Posture.from_vector(HUMAN, vector)
@@ -117,7 +111,6 @@ def test_what_is_set_beyond_joint_limits_is_not_taken_back() -> None:
 
 
 def test_hips_take_the_whole_body_along() -> None:
-    """Every point by the same way."""
     posture = natural_posture(3)
     shift = np.array([0.3, -0.2, 0.1])
     place = points(posture)[POINT["hip.R"]] + shift
@@ -126,7 +119,6 @@ def test_hips_take_the_whole_body_along() -> None:
 
 
 def test_a_shoulder_leans_the_trunk_over_standing_feet() -> None:
-    """The feet stay, and the shoulder is where it was dragged to."""
     posture = standing_posture(BODY)
     before = points(posture)
     place = before[POINT["shoulder.L"]] + [0.15, 0.0, -0.05]
@@ -137,7 +129,6 @@ def test_a_shoulder_leans_the_trunk_over_standing_feet() -> None:
 
 
 def test_pushing_moves_a_wrist_in_depth_and_keeps_its_image() -> None:
-    """By what it was pushed; the elbow makes room."""
     vector = standing_posture(BODY).to_vector()
     vector[HUMAN.dof_names.index("elbow.L.flexion")] = 1.2
     posture = Posture.from_vector(HUMAN, vector)
@@ -149,7 +140,6 @@ def test_pushing_moves_a_wrist_in_depth_and_keeps_its_image() -> None:
 
 
 def test_pushing_an_elbow_goes_as_far_as_the_upper_arm_is_long() -> None:
-    """It turns toward the camera, off its line of sight."""
     posture = standing_posture(BODY, arms_lowered_rad=0.0)
     before = points(posture)[POINT["elbow.L"]]
     after = points(dragged(BODY, posture, "elbow.L", before - 0.2 * ACROSS, ACROSS, pushed=True))
@@ -157,6 +147,5 @@ def test_pushing_an_elbow_goes_as_far_as_the_upper_arm_is_long() -> None:
 
 
 def test_an_unknown_point_is_refused() -> None:
-    """The thirteen principal points can be dragged, no others."""
     with pytest.raises(KeyError):
         dragged(BODY, standing_posture(BODY), "nose", np.zeros(3), ACROSS)

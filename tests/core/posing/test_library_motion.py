@@ -25,14 +25,12 @@ HEADING = np.radians(30.0)
 
 @pytest.fixture(scope="module")
 def waving(repository: Path) -> Library:
-    """A library of another motion."""
     return read_library(repository / "presets" / "keyframes" / "waving.json")
 
 
 def test_libraries_are_ordered_by_their_nearest_postures(
     walking: Library, squatting: Library, waving: Library
 ) -> None:
-    """Whichever way somebody faces and wherever the performer is."""
     walk = performed(walking, HEADING)
     elsewhere = yawed_at(walk, np.full(len(walk.translation), 2.0), walk.translation + 3.0)
     pools = part_pools([waving, squatting, walking], BODY)
@@ -42,7 +40,6 @@ def test_libraries_are_ordered_by_their_nearest_postures(
 
 
 def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, waving: Library) -> None:
-    """The most believed parts are about the truth's; those that face the other way less so."""
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
     given = posing_input(take, reading)
@@ -65,7 +62,6 @@ def test_a_known_motion_makes_the_parts_it_shows_likelier(walking: Library, wavi
 
 
 def test_a_motion_that_fits_badly_is_believed_little(walking: Library, waving: Library) -> None:
-    """How much likelier parts are follows from how sure the match is."""
     truth = performed(walking, HEADING)
     take, reading = filmed(truth, camera())
     given = posing_input(take, reading)

@@ -10,12 +10,7 @@ from keymark.core.body.posture import Posture
 from keymark.core.posing.compose_clip import mean_postures
 from keymark.core.posing.composed_path import ComposedPath
 from keymark.core.posing.composed_states import FrameStates
-from keymark.core.posing.part_features import (
-    HEADINGS,
-    StanceFeatures,
-    composed_postures,
-    stance_features,
-)
+from keymark.core.posing.part_features import HEADINGS, StanceFeatures, composed_postures, stance_features
 from keymark.core.posing.part_pools import PartPools, part_pools
 from keymark.core.posing.posing_input import posing_input
 from keymark.core.prior.library import Library
@@ -27,7 +22,6 @@ Known = tuple[PartPools, StanceFeatures]
 
 @pytest.fixture(scope="module")
 def known(walking: Library) -> Known:
-    """The parts of one library, for markers."""
     pools = part_pools([walking], BODY)
     take, reading = filmed(performed(walking, 0.0), camera())
     return pools, stance_features(pools, posing_input(take, reading).evidence)
@@ -47,7 +41,6 @@ def path_of(known: Known, arms: dict[int, float]) -> tuple[list[FrameStates], Co
 
 
 def mean_of(known: Known, arms: dict[int, float]) -> Posture:
-    """The mean with a left arm of some probabilities."""
     states, path = path_of(known, arms)
     return mean_postures(*known, states, path)
 
@@ -66,7 +59,6 @@ def apart_by(known: Known, least: float, most: float) -> tuple[int, int]:
 
 
 def test_what_is_certain_stays(known: Known) -> None:
-    """A single state with one part of each limb is its own mean."""
     _, path = path_of(known, {4: 1.0})
     pools, stances = known
     exact = composed_postures(pools, stances, path.stance, path.limbs, path.hips)
@@ -74,7 +66,6 @@ def test_what_is_certain_stays(known: Known) -> None:
 
 
 def test_near_parts_are_averaged(known: Known) -> None:
-    """Two arms that differ little, alike in probability: the wrist is between theirs."""
     one, other = apart_by(known, 0.08, 0.12)
     wrist = HUMAN.point_names.index("wrist.L")
     first, second = (points_of(mean_of(known, {part: 1.0})) for part in (one, other))
@@ -86,7 +77,6 @@ def test_near_parts_are_averaged(known: Known) -> None:
 
 
 def test_parts_of_another_kind_do_not_enter(known: Known) -> None:
-    """An arm far from the likeliest one moves it by little, however probable it is."""
     one, other = apart_by(known, 0.45, 0.6)
     wrist = HUMAN.point_names.index("wrist.L")
     alone, both = points_of(mean_of(known, {one: 1.0})), points_of(mean_of(known, {one: 0.51, other: 0.49}))
@@ -94,7 +84,6 @@ def test_parts_of_another_kind_do_not_enter(known: Known) -> None:
 
 
 def test_turns_are_averaged_on_the_manifold(known: Known) -> None:
-    """Two states beside each other in heading: shoulders turn half the way, and stay as far apart."""
     states, path = path_of(known, {0: 1.0})
     both = np.array([STANCE, STANCE + 1])
     twice = states[0].chosen(np.array([0, 0]))

@@ -4,71 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from _performed import BODY, FRAMES, camera, errors_m, filmed, performed
-from keymark.core.body.posture import Posture
+from _performed import FRAMES, NAMES, camera, detected, errors_m, exchanged, filmed, performed, unmarked
 from keymark.core.errors import InputError
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.footage.camera import Camera
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople, mirrored_point
+from keymark.core.footage.keypoints.keypoints import SeenPeople
 from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.library import Library
 from keymark.core.progress import run
-from keymark.core.take.take import Take
-
-NAMES = (
-    "nose", "ear.L", "ear.R",
-    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
-)  # fmt: skip
-MIRRORED = [NAMES.index(mirrored_point(name)) for name in NAMES]
-
-
-def detected(posture: Posture, seen_by: Camera, wrong: float = 0.0) -> People:
-    """What a detector finds: jitter, some points anywhere, and nobody in every ninth frame."""
-    rng = np.random.default_rng(8)
-    frames = np.arange(len(posture.translation))
-    pose = BODY.pose(posture)
-    model = KeypointModel.usual(BODY, seen_by, NAMES)
-    pixel = model.pixels(pose, frames) + rng.normal(0.0, 2.0, (len(frames), len(NAMES), 2))
-    far = rng.random(pixel.shape[:2]) < wrong
-    pixel[far] = rng.uniform(0.0, 480.0, (far.sum(), 2))
-    depth = model.camera.depth(model.world(pose), frames[:, None])
-    depth = depth - depth[:, [NAMES.index("hip.L"), NAMES.index("hip.R")]].mean(axis=1, keepdims=True)
-    hint = np.zeros((*depth.shape, 3))
-    hint[..., 2] = depth + rng.normal(0.0, 0.08, len(NAMES))  # alike in all frames
-    seen = [
-        SeenPeople(pixel[[i]][: 0 if i % 9 == 8 else 1], np.full((1, len(NAMES)), 0.9), hint[[i]])
-        for i in frames
-    ]
-    seen = [
-        replace(one, score=one.score[: len(one.pixel)], hint_m=one.hint_m[: len(one.pixel)]) for one in seen
-    ]
-    return People(NAMES, "test", seen_by.resolution, tuple(seen))
-
-
-def exchanged(people: People, frames: range) -> People:
-    """Left taken for right in some frames."""
-    changed = tuple(
-        SeenPeople(seen.pixel[:, MIRRORED], seen.score[:, MIRRORED], seen.hint_m[:, MIRRORED])
-        if index in frames
-        else seen
-        for index, seen in enumerate(people.frames)
-    )
-    return replace(people, frames=changed)
-
-
-def unmarked(posture: Posture, seen_by: Camera, people: People) -> tuple[Take, Reading]:
-    """The take of a performer who wears anything, with keypoints."""
-    take, reading = filmed(posture, seen_by)
-    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
-    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)
 
 
 @pytest.mark.parametrize("heading_deg", [-100.0, 35.0])
 @pytest.mark.parametrize("hinted", [False, True])
 def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float, hinted: bool) -> None:
-    """By keypoints alone, with and without a guess of their depths: phase, heading and place."""
     truth = performed(walking, np.radians(heading_deg))
     people = detected(truth, camera())
     people = people if hinted else people.without_hints()
@@ -80,7 +27,6 @@ def test_walking_is_found_without_a_marker(walking: Library, heading_deg: float,
 
 
 def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
-    """A fifth of all points anywhere, and left for right for half of the clip."""
     truth = performed(walking, np.radians(35.0))
     people = exchanged(detected(truth, camera(), wrong=0.2), range(10, 35))
     found = run(pose_clip(*unmarked(truth, camera(), people), [walking], floor_m=0.0))
@@ -88,7 +34,6 @@ def test_wrong_points_and_exchanged_sides_do_no_harm(walking: Library) -> None:
 
 
 def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(walking: Library) -> None:
-    """The markers know better; alone, keypoints could not tell a view from behind."""
     truth = performed(walking, np.radians(35.0))
     take, reading = filmed(truth, camera())
     wrong = replace(take, keypoints=(exchanged(detected(truth, camera()), range(FRAMES)),))
@@ -96,7 +41,6 @@ def test_a_detector_whose_left_is_right_throughout_does_no_harm_beside_markers(w
 
 
 def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -> None:
-    """With a trunk's marker alone next to nothing is known of the rest; keypoints add it."""
     truth = performed(walking, np.radians(60.0))
     take, reading = filmed(truth, camera())
     names = ("centroid", "second_moment", "area", "quality", "clipped")
@@ -109,7 +53,6 @@ def test_keypoints_find_the_arms_that_few_markers_leave_open(walking: Library) -
 
 
 def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
-    """To the last digit."""
     truth = performed(walking, 0.6)
     take, reading = filmed(truth, camera())
     blind = detected(truth, camera())
@@ -122,7 +65,6 @@ def test_keypoints_that_are_never_seen_change_nothing(walking: Library) -> None:
 
 
 def test_a_take_with_neither_markers_nor_keypoints_is_refused(walking: Library) -> None:
-    """A sentence says what is missing."""
     truth = performed(walking, 0.6)
     take, reading = unmarked(truth, camera(), detected(truth, camera()))
     with pytest.raises(InputError, match="neither markers nor keypoints"):

@@ -6,25 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from _performed import BODY, FRAMES, camera, filmed, performed
+from _performed import BODY, FRAMES, camera, detected, filmed, performed, unmarked
 from keymark.core.body.posture import Posture
 from keymark.core.errors import InputError
-from keymark.core.evidence.keypoints import KeypointModel
-from keymark.core.footage.keypoints.keypoints import People, SeenPeople
-from keymark.core.footage.reading import Reading
-from keymark.core.footage.region_tracks import RegionTracks
 from keymark.core.posing.found_poses import FoundPoses, with_found
 from keymark.core.posing.pose_clip import pose_clip
 from keymark.core.prior.keyframes import Keyframe
 from keymark.core.prior.library import Library, read_library
 from keymark.core.progress import run
-from keymark.core.take.take import Take
 
 ROOT = Path(__file__).resolve().parents[3]
-NAMES = (
-    "nose",
-    *(f"{joint}.{side}" for joint in ("shoulder", "elbow", "wrist", "hip", "knee", "ankle") for side in "LR"),
-)
 
 
 @cache
@@ -51,25 +42,8 @@ def truth() -> Posture:
     return Posture(skeleton, legs.translation, rotations, angles)
 
 
-def by_keypoints() -> tuple[Take, Reading]:
-    """The same in any clothes, with a detector's keypoints, which jitter."""
-    rng = np.random.default_rng(8)
-    take, reading = filmed(truth(), camera())
-    frames = np.arange(FRAMES)
-    pixel = KeypointModel.usual(BODY, camera(), NAMES).pixels(BODY.pose(truth()), frames)
-    pixel = pixel + rng.normal(0.0, 2.0, pixel.shape)
-    seen = tuple(
-        SeenPeople(pixel[[i]], np.full((1, len(NAMES)), 0.9), np.full((1, len(NAMES), 3), np.nan))
-        for i in frames
-    )
-    people = People(NAMES, "test", camera().resolution, seen)
-    tracks = RegionTracks.unmarked(reading.tracks.time_s, reading.tracks.size)
-    return replace(take, markers=(), keypoints=(people,)), Reading(tracks)
-
-
 @cache
 def found_by_markers() -> FoundPoses:
-    """The poses by five markers."""
     return run(pose_clip(*filmed(truth(), camera()), libraries()))
 
 
@@ -82,21 +56,22 @@ def errors_m(postures: Posture) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_a_motion_of_no_library_is_found_by_five_markers() -> None:
-    """A walk with a waving arm: whole postures of any library would be a waving arm's length off."""
     rooted, absolute = errors_m(found_by_markers().postures)
     assert rooted.mean() < 0.09
     assert absolute.mean() < 0.2
 
 
 def test_and_by_keypoints() -> None:
-    """Nothing but a detector's points, without depths."""
-    rooted, absolute = errors_m(run(pose_clip(*by_keypoints(), libraries())).postures)
+    rooted, absolute = errors_m(
+        run(
+            pose_clip(*unmarked(truth(), camera(), detected(truth(), camera()).without_hints()), libraries())
+        ).postures
+    )
     assert rooted.mean() < 0.08
     assert absolute.mean() < 0.25
 
 
 def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
-    """What a person chooses among differs to the eye."""
     found = found_by_markers()
     assert found.frames[0].index == 0
     assert found.frames[-1].index == FRAMES - 1
@@ -111,7 +86,6 @@ def test_candidates_are_distinct_and_the_chosen_one_is_the_clips() -> None:
 
 
 def test_between_two_posed_frames_only_those_change() -> None:
-    """Two corrected keyframes hold, and what lies between follows them."""
     take, reading = filmed(truth(), camera())
     found = with_found(take, found_by_markers())
     posed = tuple(Keyframe(index, truth()[index]) for index in (12, 37))
@@ -129,7 +103,6 @@ def test_between_two_posed_frames_only_those_change() -> None:
 
 
 def test_what_is_needed_is_said() -> None:
-    """No library, and a take that nothing is seen of."""
     take, reading = filmed(truth(), camera())
     with pytest.raises(InputError, match="at least one is needed"):
         run(pose_clip(take, reading, ()))

@@ -27,7 +27,6 @@ SWAPPED = [POINT[other_side(name)] for name in HUMAN.point_names]
 @pytest.mark.parametrize("facing", Facing)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_performer_faces_as_asked_and_stays_in_place(seed: int, facing: Facing, sides: Sides) -> None:
-    """From anywhere, whatever they do; every segment as long as before."""
     posture, camera = natural_posture(seed, 0.4), camera_around(seed)
     result = turned(BODY, posture, camera, facing, sides)
     assert facing_of(result.posture, camera) is facing
@@ -36,7 +35,6 @@ def test_the_performer_faces_as_asked_and_stays_in_place(seed: int, facing: Faci
 
 
 def test_left_and_right_are_those_of_the_picture() -> None:
-    """One who faces left walks to the left: the toes are left of the heels."""
     left = turned(BODY, standing_posture(BODY), FRONT, Facing.LEFT, Sides.TURN).posture
     ends = BODY.segment_ends(BODY.pose(left), "foot.L")
     heel, toe = (FRONT.project(end)[0] for end in ends)
@@ -44,14 +42,12 @@ def test_left_and_right_are_those_of_the_picture() -> None:
 
 
 def test_a_turntable_turns_everything() -> None:
-    """The posture itself is the same."""
     posture = natural_posture(1)
     result = turned(BODY, posture, FRONT, Facing.AWAY, Sides.TURN).posture
     np.testing.assert_allclose(result.minus(posture)[6:], 0.0, atol=1e-9)
 
 
 def test_exchanged_sides_leave_the_outline() -> None:
-    """From front to back: each joint is seen where that of the other side was, but for perspective."""
     vector = standing_posture(BODY).to_vector()
     for name, value in {
         "hip.L.rotation_x": -0.9,
@@ -67,7 +63,6 @@ def test_exchanged_sides_leave_the_outline() -> None:
 
 
 def test_staying_sides_leave_each_limb_where_it_is_seen() -> None:
-    """Arms apart and lifted, a body turned to the left still reaches for where its hands were seen."""
     posture = standing_posture(BODY, arms_lowered_rad=1.2)
     result = turned(BODY, posture, FRONT, Facing.LEFT, Sides.STAY).posture
     along = turned(BODY, posture, FRONT, Facing.LEFT, Sides.TURN).posture
@@ -77,7 +72,6 @@ def test_staying_sides_leave_each_limb_where_it_is_seen() -> None:
 
 
 def test_a_camera_straight_above_has_directions_too() -> None:
-    """Toward it is toward the lower edge of its picture."""
     matrix = np.eye(4)
     matrix[2, 3] = 5.0
     above = type(FRONT)(35.0, 36.0, (1280, 720), matrix)

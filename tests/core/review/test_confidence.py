@@ -9,7 +9,6 @@ NONE_COMPARED = np.full((1, 2), np.nan)
 
 @pytest.mark.parametrize("scales", [(1.0, 1.0, 1.0), (0.05, 0.05, 1.0), (0.3, 0.6, 1.0)])
 def test_confidence_is_the_share_of_errors_within_the_tolerance(scales: tuple[float, float, float]) -> None:
-    """Drawn errors of that covariance agree, whether they are alike in all directions or not."""
     rng = np.random.default_rng(3)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     half = turn * (0.03 * np.array(scales))
@@ -20,7 +19,6 @@ def test_confidence_is_the_share_of_errors_within_the_tolerance(scales: tuple[fl
 
 
 def test_confidence_falls_with_each_reason_for_doubt() -> None:
-    """A larger covariance, a longer way from the keyframes, most markers elsewhere; not a single one."""
     covariance = np.broadcast_to(0.02**2 * np.eye(3), (1, 13, 3, 3))
     still, moved = np.zeros((1, 13)), np.full((1, 13), 0.2)
     fits, astray, contradicts = (np.array([row]) for row in ([0.1, 0.9, 0.5], [0.1, 90, 0.5], [9, 0.1, 6]))
@@ -36,13 +34,11 @@ def test_confidence_falls_with_each_reason_for_doubt() -> None:
 
 
 def test_without_any_evidence_the_covariance_stays() -> None:
-    """Nothing contradicts the motion where nothing is compared."""
     covariance, still = np.broadcast_to(0.02**2 * np.eye(3), (1, 13, 3, 3)), np.zeros((1, 13))
     assert np.array_equal(expected_covariance(covariance, still, np.zeros((1, 0))), covariance)
 
 
 def test_what_is_certain_is_believed_and_what_is_unknown_is_not_a_number() -> None:
-    """No covariance gives no confidence; one of nothing gives all of it."""
     covariance = np.zeros((2, 13, 3, 3))
     covariance[1] = np.nan
     believed = confidence(covariance, 0.045)
@@ -50,7 +46,6 @@ def test_what_is_certain_is_believed_and_what_is_unknown_is_not_a_number() -> No
 
 
 def test_distances_as_large_as_expected_have_a_misfit_of_one() -> None:
-    """On average, of two normal coordinates."""
     offset = 0.7 * np.random.default_rng(1).normal(size=(50_000, 1, 2))
     misfit = misfits(np.linalg.norm(offset, axis=-1), np.full((50_000, 1), 0.7))
     assert misfit.mean() == pytest.approx(1.0, abs=0.02)

@@ -25,21 +25,18 @@ def of_names(names: tuple[str, ...]) -> ComparedKeypoints:
 def evidence_of(
     segments: tuple[str, ...], quality: np.ndarray, misfit: np.ndarray, keypoints: ComparedKeypoints
 ) -> FrameEvidence:
-    """Of frames that differ in nothing else."""
     alike, markers = np.ones(FRAMES), MarkerSight(segments, quality, misfit)
     return frame_evidence(alike, alike, alike, markers, ContourSight.none(FRAMES), keypoints)
 
 
 @pytest.mark.parametrize("name", BODY_POINTS)
 def test_every_body_point_is_a_part_that_stays_on_its_side(name: str) -> None:
-    """Face and crown are the head, fingers the wrist, heels and toes the ankle."""
     part = part_of(name)
     assert part in BODY_POINTS and part == part_of(part)
     assert part == "head" or part.partition(".")[2] == name.partition(".")[2]
 
 
 def test_points_of_the_face_are_one_witness() -> None:
-    """The median of what is known of them, and the best confidence."""
     keypoints = of_names(("nose", "ear.L", "ear.R", "wrist.L"))
     keypoints.distance_px[:] = [1.0, 2.0, 30.0, 3.0]
     keypoints.distance_px[1, 0], keypoints.distance_px[2, :3] = np.nan, np.nan
@@ -52,7 +49,6 @@ def test_points_of_the_face_are_one_witness() -> None:
 
 
 def test_points_that_are_left_out_all_along_are_missed_by_nobody() -> None:
-    """They are no part, and neither agree nor disagree."""
     keypoints = of_names(("wrist.L", "knee.R"))
     keypoints.expected_px[:, 0], keypoints.confidence[:, 0] = np.inf, 0.0
     assert keypoints.parts() == ("knee.R",) and keypoints.quality().shape == (FRAMES, 1)
@@ -60,7 +56,6 @@ def test_points_that_are_left_out_all_along_are_missed_by_nobody() -> None:
 
 
 def test_points_that_are_seen_in_few_frames_are_not_missed_in_the_others() -> None:
-    """Clicks in single frames; one that is seen in most is hidden in the rest."""
     keypoints = of_names(("wrist.L", "knee.R", "head"))
     keypoints.confidence[1:, 0] = keypoints.confidence[4:, 1] = 0.0
     keypoints.confidence[:, 2] = 0.0
@@ -70,7 +65,6 @@ def test_points_that_are_seen_in_few_frames_are_not_missed_in_the_others() -> No
 
 
 def test_what_is_thrown_out_has_no_say_in_the_confidence() -> None:
-    """Yet it is told where the motion and the keypoint differ."""
     keypoints = made_up_keypoints(FRAMES)
     keypoints.distance_px[1, [0, 2]], keypoints.thrown_out[1, [0, 2]] = 40.0, True
     markers = np.full((FRAMES, 1), 0.5)
@@ -83,7 +77,6 @@ def test_what_is_thrown_out_has_no_say_in_the_confidence() -> None:
 
 
 def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
-    """A sleeve shows the wrist, elbow and wrist together show the sleeve; one end alone does not."""
     names = ("elbow.L", "wrist.L", "knee.R")
     keypoints = of_names(names)
     keypoints.confidence[1, 1] = keypoints.confidence[1:3, 2] = 0.0
@@ -101,7 +94,6 @@ def test_what_a_marker_or_a_keypoint_sees_is_not_hidden() -> None:
 
 
 def test_contours_are_evidence_as_markers_are() -> None:
-    """Their segments come after the markers, before the body points; keypoints may show what they miss."""
     far, nothing = np.full((FRAMES, 2), 7.0), ContourSight.none(FRAMES)
     contours = ContourSight(("forearm.L", "shin.L"), np.zeros((FRAMES, 2)), far, nothing.lines)
     keypoints = of_names(("elbow.L", "wrist.L"))
@@ -115,7 +107,6 @@ def test_contours_are_evidence_as_markers_are() -> None:
 
 
 def test_swapped_flags_and_places_keep_their_kind_in_a_cache() -> None:
-    """Single precision for what is drawn, no objects."""
     keypoints = replace(made_up_keypoints(FRAMES))
     arrays = keypoints.to_arrays()
     assert {array.dtype.kind for array in arrays.values()} == {"U", "f", "b"}

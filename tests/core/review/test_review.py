@@ -37,7 +37,6 @@ def same(first: Review | ComparedKeypoints, second: Review | ComparedKeypoints) 
 
 
 def test_a_review_comes_back_from_its_arrays() -> None:
-    """Names, sizes and reasons too, and with nothing that would need pickling."""
     review = made_up_review()
     arrays = review.to_arrays()
     assert all(array.dtype != object for array in arrays.values())
@@ -48,7 +47,6 @@ def test_a_review_comes_back_from_its_arrays() -> None:
 
 
 def test_a_review_without_weak_frames_comes_back() -> None:
-    """Empty lists keep their kind."""
     arrays = {
         name: value for name, value in made_up_review().to_arrays().items() if not name.startswith("weak")
     }
@@ -59,7 +57,6 @@ def test_a_review_without_weak_frames_comes_back() -> None:
 
 
 def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
-    """The rest is as it was; one that lost a part of its keypoints is no review."""
     arrays = made_up_review().to_arrays()
     new = ("weak_point", "contours")
     old = {name: value for name, value in arrays.items() if name[:9] != "keypoint_" and name not in new}
@@ -73,13 +70,11 @@ def test_a_review_that_was_kept_before_there_were_keypoints_has_none() -> None:
 
 @pytest.fixture(scope="module")
 def take(tmp_path_factory: pytest.TempPathFactory) -> Take:
-    """A small synthetic take."""
     return read_take(write_synthetic_take(tmp_path_factory.mktemp("take"), frames=24, keyframe_every=8))
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: str) -> None:
-    """What was seen lies where it is predicted; only a method with uncertainty is believed in numbers."""
     result = run(reconstruct(take, method))
     seen = run(review(take, result, np.arange(24) + 1.0))
     assert seen.observed.shape[:2] == seen.predicted.shape[:2] == (24, 5)
@@ -95,7 +90,6 @@ def test_a_reconstruction_of_every_method_can_be_reviewed(take: Take, method: st
 
 
 def test_the_motion_that_was_found_is_the_one_that_is_shown(take: Take) -> None:
-    """The distance to the centroids is the estimate's own, and points lie where the camera sees them."""
     result = run(reconstruct(take))
     seen = run(review(take, result, np.arange(24) + 1.0))
     assert seen.reprojection_px == pytest.approx(result.motion.diagnostics["residual_px"], nan_ok=True)
@@ -116,7 +110,6 @@ def keypoints_of(take: Take, motion: Motion, names: tuple[str, ...]) -> Keypoint
 
 @pytest.mark.parametrize("kinds", [("keypoints",), ("contours",), ("markers", "keypoints")])
 def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
-    """Without markers nothing is drawn of them; keypoints lie where the motion puts them."""
     frames = 24
     truth = run(reconstruct(take)).motion
     names = ("wrist.L", "wrist.R", "ankle.L", "ankle.R")
@@ -153,7 +146,6 @@ def test_any_evidence_is_reviewed(take: Take, kinds: tuple[str, ...]) -> None:
 
 
 def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
-    """A motion beside the performer shows fewer edges, farther away, and is believed less."""
     bare = with_evidence(take, ("contours",))
     good = run(reconstruct(bare))
     moved = replace(good.motion, posture=good.motion.posture.plus(ASIDE))
@@ -167,7 +159,6 @@ def test_contours_judge_a_motion_only_where_no_marker_does(take: Take) -> None:
 
 
 def test_few_keyframes_are_told_with_the_frames_that_lack_one(take: Take) -> None:
-    """Between two keyframes at the ends, a frame in the middle is named."""
     few = replace(take, keyframes=(take.keyframes[0], take.keyframes[-1]))
     result = run(reconstruct(few, "interpolation"))
     worst = run(review(few, result, np.arange(24) + 1.0)).weak_frames[0]

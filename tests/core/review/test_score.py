@@ -1,9 +1,5 @@
 """Scores against the truth: by hand where it can be, and against another program where it is there."""
 
-import json
-import subprocess
-import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +7,7 @@ import pytest
 from _synthetic_take import BODY, CAMERA, named, true_postures, write_json
 from keymark.core.errors import InputError
 from keymark.core.footage.camera import Camera
-from keymark.core.prior.keyframes import interpolate
 from keymark.core.review.score import read_truth, score_points
-from keymark.core.take.take_file import read_take
 
 FRAMES = 12
 EYE_ALONG_Y = Camera.from_dict(CAMERA)
@@ -25,14 +19,12 @@ LEFT_ANKLE, RIGHT_ANKLE = (
 
 
 def test_the_truth_scores_zero() -> None:
-    """No error, no jitter, no skating; sigma of any size covers it."""
     score = score_points(TRUTH, TRUTH, [0, 11], EYE_ALONG_Y, np.zeros((FRAMES, 13)))
     assert (score.mpjpe, score.rooted, score.depth, score.image, score.jitter) == (0.0, 0.0, 0.0, 0.0, 0.0)
     assert (score.frames, score.keyframes, score.coverage95) == (FRAMES, 2, 1.0)
 
 
 def test_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
-    """Thirty millimeters to the side: that much in mpjpe, none in rooted; keyframes count in mpjpe_all."""
     points = TRUTH.copy()
     points[1:] += [0.03, 0.0, 0.0]
     score = score_points(points, TRUTH, [0], EYE_ALONG_Y)
@@ -44,7 +36,6 @@ def test_a_shift_of_all_is_an_error_that_rooting_takes_away() -> None:
 
 
 def test_depth_is_along_the_line_of_sight_and_image_across_it() -> None:
-    """Points moved straight away from the camera have a depth error alone."""
     eye = EYE_ALONG_Y.matrix_world[:3, 3]
     sight = (TRUTH - eye) / np.linalg.norm(TRUTH - eye, axis=-1, keepdims=True)
     score = score_points(TRUTH + 0.05 * sight, TRUTH, [0], EYE_ALONG_Y)
@@ -53,7 +44,6 @@ def test_depth_is_along_the_line_of_sight_and_image_across_it() -> None:
 
 
 def test_a_moving_camera_splits_each_frame_from_where_it_is() -> None:
-    """Errors along the moving camera's own lines of sight are depth."""
     poses = np.repeat(EYE_ALONG_Y.matrix_world[None], FRAMES, axis=0)
     poses[:, 0, 3] = np.linspace(-2.0, 2.0, FRAMES)
     moving = Camera.from_dict({**CAMERA, "matrix_world_frames": poses.tolist()})
@@ -64,7 +54,6 @@ def test_a_moving_camera_splits_each_frame_from_where_it_is() -> None:
 
 
 def test_jitter_and_skate_are_per_frame() -> None:
-    """One ankle slides a centimeter each frame while it stands; an error that alternates is jitter."""
     standing = np.repeat(TRUTH[:1], FRAMES, axis=0)
     points = standing.copy()
     points[:, LEFT_ANKLE, 0] += 0.01 * np.arange(FRAMES)
@@ -78,7 +67,6 @@ def test_jitter_and_skate_are_per_frame() -> None:
 
 
 def test_coverage_is_the_share_within_two_sigma() -> None:
-    """Of errors of 30 mm, those with a sigma of 20 mm are covered and those with 10 mm are not."""
     sigma = np.full((FRAMES, 13), 0.020)
     sigma[: FRAMES // 2] = 0.010
     score = score_points(TRUTH + [0.03, 0.0, 0.0], TRUTH, [0], EYE_ALONG_Y, sigma)
@@ -86,7 +74,6 @@ def test_coverage_is_the_share_within_two_sigma() -> None:
 
 
 def test_what_cannot_be_compared_is_refused() -> None:
-    """Other frames than the truth's, or no frame that is free, are one sentence."""
     with pytest.raises(InputError, match="11 frames; the truth has 12"):
         score_points(TRUTH[1:], TRUTH, [0], EYE_ALONG_Y)
     with pytest.raises(InputError, match="every frame is a keyframe"):
@@ -94,7 +81,6 @@ def test_what_cannot_be_compared_is_refused() -> None:
 
 
 def test_a_truth_file_is_read_and_checked(tmp_path: Path) -> None:
-    """Points come as frames by points; a file that lacks a frame or a number is named."""
     path = tmp_path / "truth.json"
     value = {"frames": list(range(5, 5 + FRAMES)), "points": named(np.swapaxes(TRUTH, 0, 1))}
     write_json(path, value)
@@ -105,39 +91,3 @@ def test_a_truth_file_is_read_and_checked(tmp_path: Path) -> None:
     write_json(path, value)
     with pytest.raises(InputError, match=r"truth\.json: points"):
         read_truth(path, 5, FRAMES)
-
-
-@pytest.mark.parametrize("name", ["walk", "aerobic", "real_balance"])
-def test_scores_agree_with_the_shared_program(
-    take_folder: Callable[[str], Path], tmp_path: Path, name: str
-) -> None:
-    """Every number is that of the program beside the takes, for interpolated keyframes of a shared take."""
-    folder = take_folder(name)
-    program = folder.parent.parent / "tools" / "score_motion.py"
-    if not program.is_file():
-        pytest.skip("no shared/tools beside the takes")
-    take = read_take(folder, folder / "keyframes_noisy.json")
-    assert take.frame_count is not None
-    points = take.body.points(take.body.pose(interpolate(take.keyframes, take.frame_count)))
-    sigma = np.random.default_rng(5).uniform(0.0, 0.1, points.shape[:2])
-    motion = {
-        "frame_start": take.frame_start,
-        "points": named(np.swapaxes(points, 0, 1)),
-        "sigma_m": named(sigma.T),
-    }
-    write_json(tmp_path / "motion.json", motion)
-    words = [
-        sys.executable,
-        program,
-        tmp_path / "motion.json",
-        folder,
-        "--keyframes",
-        "keyframes_noisy.json",
-        "--json",
-    ]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    theirs = json.loads(done.stdout)
-    truth = read_truth(folder / "truth.json", take.frame_start, take.frame_count)
-    keyframes = [keyframe.index for keyframe in take.keyframes]
-    ours = score_points(points, truth, keyframes, take.camera, sigma).to_dict()
-    assert {key: theirs[key] for key in ours} == pytest.approx(ours)

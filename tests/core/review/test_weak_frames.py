@@ -27,14 +27,12 @@ def evidence(confidence: float = 0.4) -> FrameEvidence:
 
 
 def test_the_middle_of_the_widest_gap_comes_first_where_nothing_else_differs() -> None:
-    """Because the next keyframe is far."""
     worst = find_weak_frames(evidence(), [0, 20, 40, 100, 120])[0]
     assert worst.index == pytest.approx(70, abs=1)
     assert worst.reason is Reason.FAR and worst.marker is None and worst.strength == 1.0
 
 
 def test_believed_frames_are_not_named() -> None:
-    """And where every frame is believed, none is."""
     assert find_weak_frames(evidence(0.95), [0, 120]) == ()
     known = evidence()
     known.confidence[:60] = 0.95
@@ -42,7 +40,6 @@ def test_believed_frames_are_not_named() -> None:
 
 
 def test_weak_frames_are_few_spread_and_in_order_of_worth() -> None:
-    """However uncertain the whole clip is."""
     noisy = replace(evidence(), squared_error=np.random.default_rng(2).uniform(0.5, 2.0, FRAMES))
     keyframes = [0, 60, 120]
     found = find_weak_frames(noisy, keyframes)
@@ -54,14 +51,12 @@ def test_weak_frames_are_few_spread_and_in_order_of_worth() -> None:
 
 
 def test_a_large_error_outweighs_a_wide_gap() -> None:
-    """Uncertainty and coverage count together."""
     uncertain = evidence()
     uncertain.squared_error[5:16] = 30.0
     assert 5 <= find_weak_frames(uncertain, [0, 20, 120])[0].index <= 15
 
 
 def test_each_reason_is_told_where_it_holds() -> None:
-    """With the marker that is hidden or elsewhere."""
     keyframes = [0, 30, 60, 90, 120]
     told = evidence()
     told.squared_error[:] = 0.01
@@ -79,7 +74,6 @@ def test_each_reason_is_told_where_it_holds() -> None:
 
 
 def test_a_body_point_is_told_where_its_keypoints_are_the_reason() -> None:
-    """The columns after the markers' are body points, named and not numbered."""
     told = replace(evidence(), points=("wrist.L", "knee.R"))
     told.squared_error[:] = 0.01
     for middle in (30, 90):
@@ -92,18 +86,15 @@ def test_a_body_point_is_told_where_its_keypoints_are_the_reason() -> None:
 
 
 def test_frames_without_any_marker_or_keypoint_have_reasons_too() -> None:
-    """A take with contours alone: the next keyframe is far, or the performer fast."""
     none = np.zeros((FRAMES, 0))
     assert find_weak_frames(replace(evidence(), quality=none, misfit=none), [0, 120])[0].reason is Reason.FAR
 
 
 def test_frames_before_the_first_and_after_the_last_keyframe_count() -> None:
-    """There, too, a keyframe helps."""
     found = {frame.index for frame in find_weak_frames(evidence(), [60])}
     assert min(found) < 50 and max(found) > 70
 
 
 def test_a_method_without_uncertainty_is_judged_by_coverage() -> None:
-    """Unknown confidence counts as weak."""
     unknown = replace(evidence(), confidence=np.full(FRAMES, np.nan))
     assert find_weak_frames(unknown, [0, 120])[0].index == pytest.approx(60, abs=1)

@@ -23,7 +23,7 @@ def test_without_a_usual_value_there_is_no_outlier(widths: tuple[int, ...]) -> N
 
 
 def test_longer_and_larger_clips_cost_more() -> None:
-    """And so does finding keyframes, most of all with all libraries."""
+    """And so does finding keyframes, with one library as with all."""
     small = estimate_cost(100, (320, 240), "map", None)
     assert estimate_cost(200, (320, 240), "map", None).seconds > small.seconds
     assert estimate_cost(100, (1920, 1080), "map", None).seconds > small.seconds
@@ -31,5 +31,5 @@ def test_longer_and_larger_clips_cost_more() -> None:
         estimate_cost(100, (320, 240), "map", "walking"),
         estimate_cost(100, (320, 240), "map", "auto"),
     )
-    assert small.seconds < named.seconds < every.seconds
+    assert small.seconds < named.seconds == every.seconds
     assert estimate_cost(200, (320, 240), "map", None).size_bytes > small.size_bytes

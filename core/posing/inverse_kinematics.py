@@ -1,4 +1,4 @@
-"""Lines of sight: where on one a point may lie that hangs on another by a rigid part.
+"""Inverse kinematics by pulls on points, and lines of sight on which a point that is dragged may lie.
 
 A point keeps its image exactly as long as it stays on the line from the camera through it, whatever the lens.
 """
@@ -20,10 +20,8 @@ from ..numerics.robust import Equations, levenberg_marquardt
 class SightLine:
     """A line along which a view looks."""
 
-    origin: Array
-    """(3,) a place on it [m]: the camera's, where it is a camera's."""
-    direction: Array
-    """(3,) unit vector, in which depth increases."""
+    origin: Array  # (3,) a place on it [m]: the camera's, where it is a camera's
+    direction: Array  # (3,) unit vector, in which depth increases
 
     @classmethod
     def to(cls, camera: Camera, place: Array) -> "SightLine":
@@ -44,17 +42,10 @@ class SightLine:
         return float(np.linalg.norm(place - self.nearest(place)))
 
     def at_distance(self, center: Array, radius_m: float) -> Array:
-        """The two places on the line at a distance from a center, in order of depth.
+        """(2, 3) the places on the line at exactly a distance from a center, in order of depth.
 
         Where the line passes the center farther away, both are the place at that distance which is nearest to
         the line.
-
-        Args:
-            center: (3,) [m].
-            radius_m: Distance from it [m].
-
-        Returns:
-            (2, 3) places, exactly at that distance.
         """
         foot = self.nearest(center)
         off = foot - center
@@ -82,27 +73,18 @@ class SightLine:
 # --- Inverse kinematics
 
 
-LIMIT_STD_RAD = 0.02
-"""Standard deviation of what is beyond a joint's limits, as in `body/posture_fit`."""
-STEPS = 40
-CONVERGED = 1e-7
-"""Share by which a step must lower the cost for another to be worth it."""
+LIMIT_STD_RAD = 0.02  # standard deviation of what is beyond a joint's limits, as in `body/posture_fit`
 
 
 @dataclass(frozen=True, eq=False)
 class Pull:
     """A place that a point of the body should come to."""
 
-    point: str
-    """Name of a principal point."""
-    place: Array
-    """(3,) in the world [m]."""
-    std_m: float
-    """Standard deviation of its distance from there [m], ..."""
-    sight: Array | None = None
-    """... across this unit direction (3,), if given, ..."""
-    depth_std_m: float = 0.0
-    """... and along it [m]."""
+    point: str  # name of a principal point
+    place: Array  # (3,) in the world [m]
+    std_m: float  # standard deviation of its distance from there [m], or of that ...
+    sight: Array | None = None  # ... across this unit direction (3,), where given, ...
+    depth_std_m: float = 0.0  # ... and of that along it [m]
 
     @property
     def weights(self) -> Array:
@@ -136,8 +118,8 @@ def pulled(
         np.zeros((1, len(problem.dofs))),
         np.add,
         lambda better, trial, last: np.where(better[:, None], trial, last),
-        STEPS,
-        CONVERGED,
+        40,
+        1e-7,  # share by which a step must lower the cost for another to be worth it
     )
     return problem.moved(step)
 
@@ -146,12 +128,7 @@ class _Problem:
     """Cost of a step of the free joints, with its derivatives."""
 
     def __init__(
-        self,
-        body: Body,
-        posture: Posture,
-        pulls: Sequence[Pull],
-        free: Mapping[str, float],
-        allowed: Posture,
+        self, body: Body, posture: Posture, pulls: Sequence[Pull], free: Mapping[str, float], allowed: Posture
     ) -> None:
         skeleton = body.skeleton
         std = {i: free[joint] for i, joint in enumerate(map(_owner, skeleton.dof_names)) if joint in free}

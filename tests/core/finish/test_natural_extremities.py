@@ -1,15 +1,21 @@
-"""Feet of a motion: flat at rest on any ground, rolled over heel and toes, never below, never leaping."""
+"""Feet of a motion, flat at rest, rolled over heel and toes, never below the ground; and relaxed hands."""
 
 import numpy as np
 import pytest
 from _scene import BODY
-from keymark.core.body.body_volume import sole_places
-from keymark.core.body.kinematics import RIGID, Extremities
+from keymark.core.body.body_volume import sole_places, standing_posture
+from keymark.core.body.kinematics import RIGID, Extremities, segment_ends
 from keymark.core.body.mirror import mirrored, mirrored_actor
 from keymark.core.body.posture import Posture, turned_and_shifted
 from keymark.core.body.rotations import logarithm
 from keymark.core.finish.foot_ground import TOES_DOWN_RAD, TOES_UP_RAD
-from keymark.core.finish.natural_extremities import HANGING_RAD, natural_extremities
+from keymark.core.finish.natural_extremities import (
+    CURL_RAD,
+    DROOP_RAD,
+    HANGING_RAD,
+    THICKNESS_M,
+    natural_extremities,
+)
 
 FPS = 30.0
 NAMES = BODY.skeleton.dof_names
@@ -20,10 +26,7 @@ STAND = (0.0, FLAT_M)
 
 
 def walking(
-    left: np.ndarray,
-    right: np.ndarray,
-    hips_y: np.ndarray | float = 0.0,
-    hips_m: np.ndarray | float = HIPS_M,
+    left: np.ndarray, right: np.ndarray, hips_y: np.ndarray | float = 0.0, hips_m: np.ndarray | float = HIPS_M
 ) -> Posture:
     """Postures whose ankles follow paths (F, 2) of y and height [m], upright, facing -Y."""
     vector = np.zeros((len(left), len(NAMES)))
@@ -51,7 +54,6 @@ def path(frames: int, *legs: tuple[int, int, tuple[float, float], float]) -> np.
 
 
 def still(frames: int) -> np.ndarray:
-    """The path of an ankle that rests at `STAND`."""
     return np.tile(np.array(STAND), (frames, 1))
 
 
@@ -80,7 +82,6 @@ def step() -> Posture:
 
 
 def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
-    """Heel and tip of resting feet are level with the ground, to which rigid ones point."""
     shown, rigid = soles(step), soles(step, RIGID)
     for frames, foot in ((slice(5, 25), 0), (slice(55, 85), 0), (slice(5, 85), 1)):
         assert np.abs(shown[frames, foot, :, 2]).max() < 1e-3
@@ -88,12 +89,10 @@ def test_resting_soles_lie_flat_where_rigid_ones_dip(step: Posture) -> None:
 
 
 def test_no_sole_passes_the_ground_between_rests(step: Posture) -> None:
-    """Through lift, swing and landing as well."""
     assert soles(step)[..., 2].min() > -2e-3
 
 
 def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:
-    """A foot rolls off over its tip, which stays on the ground, and comes down on its heel."""
     heel, tip = np.moveaxis(soles(step)[:, 0, :, 2], 1, 0)
     rising = slice(31, 35)
     assert (tip[rising] < 0.012).all() and heel[34] > tip[34] + 0.02
@@ -101,7 +100,6 @@ def test_the_heel_rises_first_and_lands_first(step: Posture) -> None:
 
 
 def test_a_step_has_a_height_of_its_own() -> None:
-    """Stepping onto something, the foot lies flat on top of it and does not pass it."""
     height = 0.17
     left = path(90, (30, 55, (-0.4, FLAT_M + height), 0.1))
     shown = soles(walking(left, still(90), np.linspace(0.0, -0.15, 90)))
@@ -111,7 +109,6 @@ def test_a_step_has_a_height_of_its_own() -> None:
 
 
 def test_who_rises_on_the_toes_keeps_them_on_the_ground() -> None:
-    """An ankle that rests higher than it did at the same place stands on its toes: there is no step."""
     left = path(220, (40, 55, (0.0, FLAT_M + 0.07), 0.0), (170, 185, STAND, 0.0))
     heel, tip = np.moveaxis(soles(walking(left, still(220)))[:, 0, :, 2], 1, 0)
     held = slice(95, 130)
@@ -120,13 +117,11 @@ def test_who_rises_on_the_toes_keeps_them_on_the_ground() -> None:
 
 
 def test_a_foot_high_above_the_ground_hangs() -> None:
-    """Its toes are down against the shin, by the bend of a relaxed ankle."""
     left = path(90, (20, 40, (-0.25, 0.65), 0.0))
     np.testing.assert_allclose(flexion(walking(left, still(90)))[60:85], HANGING_RAD, atol=1e-4)
 
 
 def test_a_resting_foot_keeps_its_heading_while_the_shin_turns() -> None:
-    """The shin's turning above it, as estimates have it, does not turn the sole."""
     posture = walking(still(60), still(60))
     step = np.zeros((60, len(NAMES)))
     step[:, NAMES.index("shin.L.axial")] = np.radians(12.0) * np.sin(np.linspace(0.0, 6.0, 60))
@@ -138,7 +133,6 @@ def test_a_resting_foot_keeps_its_heading_while_the_shin_turns() -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
-    """Noise in the postures makes feet turn little faster than their shins do."""
     noise = np.random.default_rng(seed).normal(0.0, 0.003, (90, len(NAMES)))
     noisy = step.plus(noise)
     for side in ("L", "R"):
@@ -154,7 +148,6 @@ def test_noise_does_not_make_feet_tremble(step: Posture, seed: int) -> None:
 
 
 def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture) -> None:
-    """Turned, shifted and raised with the ground, the feet are turned alike."""
     elsewhere = turned_and_shifted(step, 2.5, np.array([1.0, -2.0, 0.7]))
     for name, turn in natural_extremities(BODY, step, times(step)).turns.items():
         np.testing.assert_allclose(
@@ -163,7 +156,6 @@ def test_where_the_performer_stands_and_faces_makes_no_difference(step: Posture)
 
 
 def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
-    """Left and right exchange, and with them the signs of rolls and headings."""
     lean = np.zeros((90, len(NAMES)))
     lean[:, NAMES.index("hip.L.rotation_y")], lean[:, NAMES.index("hip.R.rotation_z")] = 0.15, 0.2
     leaning = step.plus(lean)
@@ -177,7 +169,6 @@ def test_the_mirror_image_has_mirrored_feet(step: Posture) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_any_motion_keeps_the_ankles_range(seed: int) -> None:
-    """Tumbling included, flexion stays within a joint's range, and every turn is a rotation."""
     rng = np.random.default_rng(seed)
     low, high = BODY.skeleton.limits.T
     ends = [rng.uniform(np.maximum(low, -1.5), np.minimum(high, 1.5)) for _ in range(2)]
@@ -194,13 +185,11 @@ def test_any_motion_keeps_the_ankles_range(seed: int) -> None:
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_few_frames_are_enough(count: int) -> None:
-    """A single posture has feet too."""
     posture = walking(still(count), still(count))
     assert np.isfinite(soles(posture)).all()
 
 
 def test_every_stair_is_a_floor_of_its_own() -> None:
-    """Each foot lies flat on its own step while the other one passes it."""
     rise, run = 0.17, 0.28
     left = path(110, (10, 26, (-run, FLAT_M + rise), 0.08), (46, 62, (-3 * run, FLAT_M + 3 * rise), 0.08))
     right = path(
@@ -211,3 +200,57 @@ def test_every_stair_is_a_floor_of_its_own() -> None:
     shown = soles(walking(left, right, -2.8 * run * climbed, hips))
     for frames, foot, steps in ((slice(29, 43), 0, 1), (slice(47, 61), 1, 2), (slice(66, 105), 0, 3)):
         assert np.abs(shown[frames, foot, :, 2] - steps * rise).max() < 3e-3
+
+
+FRAMES = 12
+TIME_S = np.arange(FRAMES) / 30.0
+
+
+def posed(**angles: float) -> Posture:
+    """A held posture: T pose but for some degrees of freedom, named with `_` for `.`."""
+    vector = np.zeros((FRAMES, len(NAMES)))
+    vector[:, 2] = 0.95
+    for name, value in angles.items():
+        vector[:, NAMES.index(name.replace("__", "."))] = value
+    return Posture.from_vector(BODY.skeleton, vector)
+
+
+def bend(posture: Posture, side: str) -> float:
+    """How far the hand is bent toward its palm [rad]."""
+    turn = natural_extremities(BODY, posture, TIME_S).turns[f"hand.{side}"]
+    return float(logarithm(turn)[FRAMES // 2, 1]) * (1.0 if side == "L" else -1.0)
+
+
+@pytest.mark.parametrize(
+    ("pronation", "expected"),
+    [(0.0, CURL_RAD + DROOP_RAD), (np.pi, CURL_RAD - DROOP_RAD)],
+    ids=["palm down", "palm up"],
+)
+def test_a_level_hand_droops(pronation: float, expected: float) -> None:
+    for side in ("L", "R"):
+        shown = posed(**{f"forearm__{side}__pronation": pronation})
+        assert bend(shown, side) == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_hanging_hand_is_bent_toward_its_palm_only() -> None:
+    arms_down = Posture.stack([standing_posture(BODY, arms_lowered_rad=np.pi / 2)] * FRAMES)
+    turns = natural_extremities(BODY, arms_down, TIME_S).turns
+    for side in ("L", "R"):
+        assert np.abs(logarithm(turns[f"hand.{side}"])[:, 2]).max() < DROOP_RAD
+        assert bend(arms_down, side) == pytest.approx(CURL_RAD, abs=0.2 * DROOP_RAD)
+
+
+def test_fingers_do_not_pass_the_ground() -> None:
+    vector = np.tile(standing_posture(BODY, arms_lowered_rad=np.pi / 2).to_vector(), (60, 1))
+    vector[:, NAMES.index("pelvis.rotation_x")] = np.linspace(0.0, 1.9, 60)
+    for side in ("L", "R"):
+        vector[:, NAMES.index(f"hip.{side}.rotation_x")] = -np.linspace(0.0, 1.9, 60)
+        vector[:, NAMES.index(f"shoulder.{side}.rotation_z")] = 0.0
+    posture = Posture.from_vector(BODY.skeleton, vector)
+    pose, time_s = BODY.pose(posture), np.arange(60) / 30.0
+    natural = natural_extremities(BODY, posture, time_s)
+    wrist, tip = segment_ends(BODY, pose, natural, "hand.L")
+    _, rigid = segment_ends(BODY, pose, natural.without(["hand.L"]), "hand.L")
+    assert wrist[-1, 2] < 0.5 * BODY.actor.segments_m["hand.L"] or rigid[-1, 2] > 0.0
+    assert tip[:, 2].min() > min(rigid[:, 2].min(), 0.0)
+    assert tip[:, 2].min() > -THICKNESS_M
