@@ -35,7 +35,6 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Use the height in the panel."""
         take = find_take(context.scene)
         if take is not None:
             self.stature = take.stature

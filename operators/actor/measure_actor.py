@@ -50,7 +50,6 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for two clicks on the footage."""
         take = active_take(context.scene)
         self.stature = take.stature
         if not footage_is_shown(self, context, take):
@@ -63,7 +62,6 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the clicks, or cancel; the view can be moved and zoomed meanwhile."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         if event.type == "MOUSEMOVE":
@@ -92,7 +90,6 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         redraw_footage(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore the cursor and the status bar; Blender calls this as well."""
         show(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             redraw_footage(context)

@@ -88,8 +88,7 @@ def _action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
 # --- A take's actor in its scene
 
 
-SYMMETRY_TOLERANCE_M = 5e-4
-"""Left and right count as equally long within this."""
+SYMMETRY_TOLERANCE_M = 5e-4  # Left and right count as equally long within this
 
 
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:

@@ -56,15 +56,11 @@ def mark_motion_asset(
     refresh_asset_browsers(context)
 
 
-# --- Finish a reconstructed motion
-
-
 @dataclass(frozen=True, eq=False)
 class FinishedTake:
     """A finished motion of a take."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     finished: "Finished"
 
 
@@ -77,7 +73,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        """Read the motion and finish it, with the options at the start of the job."""
         from ..bridge.finish_motion import FinishOptions, finish_motion
 
         take = active_take(scene)
@@ -93,7 +88,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         return FinishedTake(identifier, (yield from job))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        """Write the final Action and assign it to the actor."""
         take, finished = take_by_identifier(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:
@@ -115,9 +109,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         )
 
 
-# --- Mark a take's motion as an asset
-
-
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
 
@@ -127,15 +118,11 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Mark the Action, with the details in the panel."""
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
         mark_motion_asset(context, take, action, action)
         warn_if_outdated(self, take)
         self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
-
-
-# --- Write a take's motion for another program
 
 
 class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
@@ -159,11 +146,9 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The chosen format's own tooltip."""
         return FORMATS[properties.format].description
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file."""
         folder = "//" if bpy.data.filepath else ""
         name = bpy.path.clean_name(active_take(context.scene).name)
         self.filepath = bpy.path.abspath(folder + name + FORMATS[self.format].suffix)
@@ -171,14 +156,12 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Give the file's name the suffix of the format."""
         path = bpy.path.ensure_ext(self.filepath, FORMATS[self.format].suffix)
         changed = path != self.filepath
         self.filepath = path
         return changed
 
     def run(self, context: bpy.types.Context) -> None:
-        """Write the file."""
         from ..bridge.actor_lengths import read_body
         from ..bridge.final_motion import motion_frames
 

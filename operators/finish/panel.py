@@ -17,17 +17,14 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How many keys the final Action has."""
         done = take.finish.action is not None
         return f"{take.finish.keys_after} keys" if done else ""
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        """Whether the motion is newer than the final Action."""
         return bool(take.finish.outdated)
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the button, the options, and the result."""
         take, column = active_take(context.scene), self.column()
         settings = take.finish
         row = column.row()
@@ -87,7 +84,6 @@ class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
     bl_label = "Asset"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the details of the asset, and the button."""
         settings, column = active_take(context.scene).finish, self.column()
         for name in ("catalog", "tags", "author", "license", "description"):
             column.prop(settings, name)
@@ -100,7 +96,6 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
     bl_label = "Export"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw a button for each format; one that this Blender cannot write is gray, with the reason."""
         column = self.column()
         for kind, listed in FORMATS.items():
             missing = listed.missing()
@@ -117,7 +112,6 @@ class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
     bl_label = "Keyframe Library"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button, and its purpose."""
         column = self.column()
         lines = column.column(align=True)
         lines.scale_y = 0.85

@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fit import CameraFit
 
 
-FEWEST = 2
-"""Moments without which nothing is told."""
+FEWEST = 2  # Moments without which nothing is told
 
 
 def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
@@ -93,13 +92,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     )
 
     _drawing: Any = None
-    _upright: Any = None
-    """Body height, and moments in which keypoints show somebody of that height upright."""
+    _upright: Any = None  # Body height, and moments in which keypoints show somebody of that height upright
     _place: tuple[int, int] = (0, 0)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Describe the button by the lines it begins with."""
         if properties.kind == HEIGHT:
             return (
                 "Find the camera from the performer: click on the floor between the feet, then on the "
@@ -109,7 +106,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for lines, beginning with those that were drawn before."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -125,7 +121,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Draw and drag lines until Enter; Esc forgets them."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         self._place = event.mouse_x, event.mouse_y
@@ -150,7 +145,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Let the mouse begin, move or end a line."""
         drawing, view = self._drawing, self._view(context)
         if view is None:
             return {"PASS_THROUGH"} if event.type == "MOUSEMOVE" else {"RUNNING_MODAL"}
@@ -170,7 +164,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _find(self, context: bpy.types.Context) -> None:
-        """Find the camera anew, show it, and ask for the next line."""
         drawing = self._drawing
         drawing.fit = None
         try:
@@ -201,7 +194,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return done
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
         show(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             context.window.cursor_modal_restore()
@@ -234,7 +226,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return fit_take(take, evidence) if lines or len(evidence.uprights) else None
 
     def _view(self, context: bpy.types.Context) -> FootageView | None:
-        """The view of the footage under the mouse."""
         return view_of_footage_under(context, active_take(context.scene), *self._place)
 
     def _pixel(self, view: FootageView) -> Pixel:
@@ -243,12 +234,10 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return float(x), float(y)
 
     def _distance(self, view: FootageView) -> Any:
-        """Return the function that gives the distance of a pixel from the mouse."""
         scale = NEAR_PX * _scale(bpy.context)
         return lambda pixel: _apart(view, pixel, self._pixel(view)) / scale
 
     def _distance_of_line(self, context: bpy.types.Context) -> Any:
-        """Return the function that gives the distance of a line from the mouse."""
         view = self._view(context)
         if view is None:
             return lambda line: np.inf

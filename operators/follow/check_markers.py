@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 class Checked:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     styles: "tuple[MarkerStyle, ...]"
     ignored: "tuple[IgnoredRegion, ...]"
     check: "MarkerCheck"
@@ -40,14 +39,12 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     requirements = (footage, markers, picked_color, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Checked]":
-        """Return the job that finds the markers in sampled frames."""
         take = active_take(scene)
         source, identifier, styles = footage_of(scene, take), take.identifier, picked_styles(take)
         ignored = ignored_regions(take)
         return Checked(identifier, styles, ignored, (yield from find_markers(source, styles, ignored)))
 
     def finish(self, scene: bpy.types.Scene, result: Checked) -> None:
-        """Store the readouts, and report their warnings."""
         take = take_by_identifier(scene, result.take)
         check_unchanged((picked_styles(take), ignored_regions(take)), (result.styles, result.ignored))
         warnings = write_readouts(take, result.styles, result.check)

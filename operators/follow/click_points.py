@@ -81,7 +81,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for clicks on the footage, beginning with the point that is chosen in the panel."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -89,17 +88,14 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return self.wait_for_clicks(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take clicks until Enter, or a click beside the footage; Esc takes all of them back."""
         return self.take_event(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        """The point that is chosen in the panel."""
         point = active_take(context.scene).follow.clicked_point
         title = f"Click on: {point_title(point)}"
         return FootageRequest(title, side_of(point)), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
-        """Set the point, and ask for the next one; the same points may be clicked on in other frames."""
         take = active_take(context.scene)
         set_click(take, take.follow.clicked_point, pixel)
         _choose_next(take)
@@ -107,7 +103,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def go_on(self, context: bpy.types.Context) -> None:
-        """Choose the next point that has no click in this frame."""
         _choose_next(active_take(context.scene))
 
     def go_back(self, context: bpy.types.Context) -> None:
@@ -127,7 +122,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and clicks; Blender calls this as well."""
         if self._before is not None:
             follow = active_take(context.scene).follow
             follow.clicked_point, clicks = self._before
@@ -168,9 +162,6 @@ def _choose_next(take: bpy.types.PropertyGroup) -> None:
     take.follow.clicked_point = next((point for point in order if point not in done), order[0])
 
 
-# --- Remove points that were clicked on in the current frame
-
-
 class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     """Remove this point in this frame, or all points that were clicked on in this frame"""
 
@@ -184,7 +175,6 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Remove them; those of other frames stay."""
         take = active_take(context.scene)
         here = clip_frame(take)
         points = [self.point] if self.point else clicked_here(take)
@@ -194,9 +184,6 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         redraw_footage(context)
         return None
-
-
-# --- Click on the performer where a detector sees several people
 
 
 class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
@@ -215,7 +202,6 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage."""
         if not footage_is_shown(self, context, active_take(context.scene)):
             return {"CANCELLED"}
         context.window.cursor_modal_set("CROSSHAIR")
@@ -224,7 +210,6 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take one click."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
@@ -237,7 +222,6 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
         if context.window is not None:
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)

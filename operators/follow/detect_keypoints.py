@@ -20,18 +20,15 @@ if TYPE_CHECKING:
 
 
 KEYPOINT_FILE = "keypoints.json"
-MOST_TRIED = 1000
-"""Numbers that are tried for a name that is free."""
+MOST_TRIED = 1000  # Numbers that are tried for a name that is free
 
 
 @dataclass(frozen=True, eq=False)
 class Detected:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
-    output: Path
-    """The file to write."""
+    take: str  # The take's identifier
+    output: Path  # The file to write
     people: "People"
     fps: float
     frame_start: int
@@ -46,7 +43,6 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     requirements = (footage, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
-        """Return the job that looks at every frame."""
         from ...core.footage.pose_network import PoseNetwork
         from ...core.footage.pose_tracking import find_people
         from ...core.take.clip_check import LONGEST_FRAMES, open_footage
@@ -59,7 +55,6 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         return Detected(identifier, output, people, clip.fps, first)
 
     def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
-        """Write the keypoints beside the clip, and add them to the take."""
         from ...core.footage.keypoints.keypoint_file import write_keypoints
 
         take = take_by_identifier(scene, result.take)

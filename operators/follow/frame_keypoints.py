@@ -28,15 +28,11 @@ MOST_FILES = 12
 class KeypointReading:
     """A file of keypoints as it is on disk."""
 
-    people: People | None
-    """Everyone in it, frame by frame of the file; None where it cannot be read."""
-    problem: str = ""
-    """Why it cannot be read, for people."""
+    people: People | None  # Everyone in it, frame by frame of the file; None where it cannot be read
+    problem: str = ""  # Why it cannot be read, for people
     is_missing: bool = False
-    has_changed: bool = False
-    """Whether it has been written since it was loaded."""
-    has_hints: bool = False
-    """Whether it guesses depths."""
+    has_changed: bool = False  # Whether it has been written since it was loaded
+    has_hints: bool = False  # Whether it guesses depths
 
 
 _readings: LruCache[KeypointReading] = LruCache(MOST_FILES)
@@ -79,17 +75,12 @@ Seen = list[tuple[str, tuple[float, float], float]]
 class FrameKeypoints:
     """What one source sees in a frame: H people with N body points each."""
 
-    source: str
-    """Name of the detector; `clicks` and `tracks` for what a person clicked on or tracked."""
-    names: tuple[str, ...]
-    """(N,) the body points; those of clicks and tracks are the ones seen here."""
-    pixel: Array
-    """(H, N, 2) [px] of the footage as it is, NaN where a point is not seen."""
-    score: Array
-    """(H, N) confidence, 0 to 1; 0 where not seen."""
+    source: str  # Name of the detector; `clicks` and `tracks` for what a person clicked on or tracked
+    names: tuple[str, ...]  # (N,) the body points; those of clicks and tracks are the ones seen here
+    pixel: Array  # (H, N, 2) [px] of the footage as it is, NaN where a point is not seen
+    score: Array  # (H, N) confidence, 0 to 1; 0 where not seen
 
-    is_tracked: bool = False
-    """Whether they are motion tracks of the clip."""
+    is_tracked: bool = False  # Whether they are motion tracks of the clip
 
     @property
     def seen_count(self) -> int:

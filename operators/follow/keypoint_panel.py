@@ -31,7 +31,6 @@ class KEYMARK_UL_keypoint_files(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one file."""
         take = active_take(context.scene)
         reading = keypoint_reading(take, item)
         row = layout.row(align=True)
@@ -59,7 +58,6 @@ class KEYMARK_UL_tracks(bpy.types.UIList):
         active_data: bpy.types.AnyType,
         active_property: str,
     ) -> None:
-        """Draw one track: its name, and the menu of body points."""
         take = active_take(context.scene)
         point = point_of(take, data.name, item.name)
         row = layout.split(factor=0.45)
@@ -77,14 +75,12 @@ class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
     def filter_items(
         self, context: bpy.types.Context, data: bpy.types.AnyType, name: str
     ) -> tuple[list[int], list[int]]:
-        """Show those of the current frame."""
         here = clip_frame(active_take(context.scene))
         return [self.bitflag_filter_item if each.frame == here else 0 for each in getattr(data, name)], []
 
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one point, and the button that removes it."""
         row = layout.row(align=True)
         row.label(text=point_title(item.point), icon="DOT")
         row.operator("keymark.remove_clicks", text="", icon="X", emboss=False).point = item.point
@@ -96,15 +92,12 @@ class Keypoints:
     layout: bpy.types.UILayout
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw the switch."""
         draw_switch(self.layout, context, "use_keypoints")
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draw what is seen in this frame."""
         draw_readout(self.layout, keypoints_label(active_take(context.scene)))
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the files, and the points by hand."""
         take, layout = active_take(context.scene), self.layout
         layout.active = take.follow.use_keypoints
         _draw_files(layout, context, take)
@@ -118,15 +111,12 @@ class Tracks:
     layout: bpy.types.UILayout
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw the switch."""
         draw_switch(self.layout, context, "use_tracks")
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draw what is seen in this frame."""
         draw_readout(self.layout, tracks_label(active_take(context.scene)))
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the tracks of each tracking object that has any."""
         take, layout = active_take(context.scene), self.layout
         layout.active = take.follow.use_tracks
         objects = [each for each in take.clip.tracking.objects if len(each.tracks)] if take.clip else []
@@ -154,15 +144,12 @@ class Contours:
     layout: bpy.types.UILayout
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw the switch."""
         draw_switch(self.layout, context, "use_contours")
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draw whether they can be followed."""
         draw_readout(self.layout, contours_label(active_take(context.scene)))
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw why they can or cannot be followed."""
         take, layout = active_take(context.scene), self.layout
         layout.active = take.follow.use_contours
         if take.camera is None:

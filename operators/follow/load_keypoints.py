@@ -45,7 +45,6 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, beginning beside the clip, unless a file was dropped or is loaded again."""
         if self.filepath:
             return self.execute(context)
         clip = active_take(context.scene).clip
@@ -101,9 +100,6 @@ def _whole(path: Path) -> Path:
     return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
-# --- Remove a file of keypoints from a take
-
-
 class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     """Remove the chosen keypoints from the take; their file stays on disk"""
 
@@ -113,7 +109,6 @@ class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     requirements = (keypoint_files, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove them; those before become the chosen ones."""
         follow = active_take(context.scene).follow
         index = min(follow.active_file, len(follow.files) - 1)
         follow.files.remove(index)

@@ -34,9 +34,6 @@ def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.Prop
     return marker
 
 
-# --- Remove a colored marker
-
-
 class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
     """Remove the active marker"""
 
@@ -46,16 +43,12 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
     requirements = (markers,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the marker; the one before it becomes active."""
         take = active_take(context.scene)
         index = min(take.active_marker, len(take.markers) - 1)
         if take.markers[index].is_picked:
             clear_readouts(take)
         take.markers.remove(index)
         take.active_marker = max(0, index - 1)
-
-
-# --- Show or hide the masks of the markers' colors
 
 
 class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
@@ -67,7 +60,6 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
     requirements = (footage, markers, picked_color, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Toggle the masks; markers that were not checked in this session are checked first."""
         manager = context.window_manager
         if not manager.keymark_show_masks:
             if preview_of(active_take(context.scene)) is None:
@@ -89,9 +81,6 @@ def _check_markers() -> None:
         raise InputError(str(error).removeprefix("Error: ").strip()) from error
 
 
-# --- Add a colored marker
-
-
 class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
     """Add a marker on the next body part that usually wears one"""
 
@@ -100,7 +89,6 @@ class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Add the marker and make it the active one."""
         take = ensure_take(context.scene)
         segment = next_segment(take)
         if segment is None:
@@ -108,9 +96,6 @@ class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         append_marker(take, segment)
         return None
-
-
-# --- Add the five usual markers
 
 
 class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
@@ -121,7 +106,6 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Add the missing ones; the first of them becomes the active marker."""
         take = ensure_take(context.scene)
         marked = {marker.segment for marker in take.markers}
         missing = [segment for segment in USUAL_SEGMENTS if segment not in marked]

@@ -31,7 +31,6 @@ class KEYMARK_PT_follow(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """What is followed, beside the contours."""
         follow = take.follow
         used = (
             ("Markers", follow.use_markers and len(take.markers)),
@@ -40,7 +39,6 @@ class KEYMARK_PT_follow(StepPanel, bpy.types.Panel):
         return ", ".join(name for name, is_used in used if is_used)
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw what to begin with, until there is something."""
         _draw_hint(self.body, context)
 
 
@@ -54,11 +52,9 @@ class KEYMARK_PT_clip_follow(bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a take."""
         return find_take(context.scene) is not None
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the same, or that the editor shows something else."""
         if context.space_data.clip != active_take(context.scene).clip:
             self.layout.label(text="The editor shows another clip", icon="INFO")
         _draw_hint(self.layout, context)
@@ -78,8 +74,7 @@ def _draw_hint(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 IGNORING = ("keymark.ignore_region", "keymark.ignore_still_areas")
 SWATCH_UNITS, NARROW_SWATCH_UNITS = 1.6, 0.8
 """Width of a marker's color in the list, which leaves a narrow sidebar to the names."""
-LABEL_SHARE = 0.4
-"""Share of the width that Blender gives to the labels of its two columns."""
+LABEL_SHARE = 0.4  # Share of the width that Blender gives to the labels of its two columns
 
 
 class KEYMARK_UL_markers(RowList, bpy.types.UIList):
@@ -88,7 +83,6 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one marker: color, name, status, and the eyedropper that picks this one alone."""
         row = layout.row(align=True)
         swatch = row.row()
         roomy = is_roomy(context)
@@ -117,7 +111,6 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one region."""
         row = layout.row(align=True)
         row.prop(item, "name", text="", emboss=False, icon="BRUSH_DATA" if len(item.stroke) else "MESH_PLANE")
         status = row.row()
@@ -132,15 +125,12 @@ class Markers:
     layout: bpy.types.UILayout
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw the switch."""
         draw_switch(self.layout, context, "use_markers")
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draw what is seen in this frame."""
         draw_readout(self.layout, markers_label(active_take(context.scene)))
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list and the active marker."""
         self.layout.active = active_take(context.scene).follow.use_markers
         draw_markers(self.layout, context)
 

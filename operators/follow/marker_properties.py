@@ -183,7 +183,6 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
 
     @property
     def is_picked(self) -> bool:
-        """Whether the marker has a color."""
         return bool(self.is_property_set("color"))
 
     def has_readout(self, take: bpy.types.PropertyGroup) -> bool:

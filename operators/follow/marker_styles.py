@@ -38,8 +38,7 @@ def request_for(segment: str) -> FootageRequest:
 
 FULL_SCALE = 255
 
-Rgb = tuple[int, int, int]
-"""Red, green, blue in 0 to 255."""
+Rgb = tuple[int, int, int]  # Red, green, blue in 0 to 255
 
 
 def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
@@ -129,8 +128,7 @@ MOST_CLIPS = 2
 """Clips whose sampled frames are cached, some megabytes each, so that another color is checked at once."""
 SAMPLING_SHARE = 0.7
 
-_samples: "dict[str, ClipSamples]" = {}
-"""By the digest of the clip's file, the least recently used first."""
+_samples: "dict[str, ClipSamples]" = {}  # By the digest of the clip's file, the least recently used first
 
 
 def find_markers(
@@ -211,21 +209,15 @@ def some_ignored(context: bpy.types.Context) -> str | None:
     return None if take and len(take.ignored_regions) else "No region of the picture is left out"
 
 
-# --- The job of operators that leave regions of the picture out
-
-
 @dataclass(frozen=True, eq=False)
 class LeftOut:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
-    before: "tuple[IgnoredRegion, ...]"
-    """What was ignored before."""
+    take: str  # The take's identifier
+    before: "tuple[IgnoredRegion, ...]"  # What was ignored before
     more: "tuple[IgnoredRegion, ...]"
     styles: "tuple[MarkerStyle, ...]"
-    check: "MarkerCheck | None"
-    """None where no marker has a color yet."""
+    check: "MarkerCheck | None"  # None where no marker has a color yet
 
 
 def leave_out(scene: bpy.types.Scene, more: "tuple[IgnoredRegion, ...]") -> "Job[LeftOut]":

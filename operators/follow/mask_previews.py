@@ -30,14 +30,11 @@ MOST_PREVIEWS = 4
 class ColorMask:
     """Mask of one color in a frame."""
 
-    label: str
-    """Name of the marker, or names of all markers of this color."""
-    color: tuple[float, float, float]
-    """The marker's color in sRGB, 0 to 1."""
+    label: str  # Name of the marker, or names of all markers of this color
+    color: tuple[float, float, float]  # The marker's color in sRGB, 0 to 1
     coverage: SingleArray
     """(rows, columns) share of each pixel that has the color, 0 to 1, at the resolution of segmentation."""
-    outlines: list[Array]
-    """Closed outlines (N, 2) in footage pixels, the longest first."""
+    outlines: list[Array]  # Closed outlines (N, 2) in footage pixels, the longest first
 
 
 @dataclass(eq=False)
@@ -48,8 +45,7 @@ class Preview:
     labels: tuple[str, ...]
     colors: tuple[tuple[float, float, float], ...]
     reader: "FrameReader | None" = None
-    time_s: float | None = None
-    """Time of the masks' frame, from the clip's first [s]."""
+    time_s: float | None = None  # Time of the masks' frame, from the clip's first [s]
     masks: tuple[ColorMask, ...] = field(default=())
 
 

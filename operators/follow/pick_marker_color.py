@@ -34,10 +34,8 @@ if TYPE_CHECKING:
 class Picked:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
-    marker: str
-    """Name of the marker that is given the color."""
+    take: str  # The take's identifier
+    marker: str  # Name of the marker that is given the color
     color: Rgb
     styles: "tuple[MarkerStyle, ...]"
     ignored: "tuple[IgnoredRegion, ...]"
@@ -69,7 +67,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     """Whether masks were shown before the eyedropper; None in a script, which shows none."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -82,7 +79,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage, then run the job that it starts."""
         if self._job is not None:
             return super().modal(context, event)
         if cancel_click(self, context, event):
@@ -108,7 +104,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and masks, and close the job; Blender calls this as well."""
         stop_asking(context)
         if self._masks_before is not None:
             show_masks(context, self._masks_before)
@@ -129,7 +124,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return Picked(identifier, name, color, styles, ignored, check)
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        """Give the marker its color, and store the readouts of all markers."""
         take = take_by_identifier(scene, result.take)
         styles = styles_with_colors(take, {result.marker: result.color})
         check_unchanged((styles, ignored_regions(take)), (result.styles, result.ignored))
@@ -148,7 +142,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         )
 
     def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
-        """The marker whose color is picked."""
         row = int(take.active_marker) if self.row < 0 else self.row
         return take.markers[min(row, len(take.markers) - 1)]
 

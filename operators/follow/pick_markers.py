@@ -41,10 +41,8 @@ KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: D
 class Picked:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
-    colors: dict[str, Rgb]
-    """The new colors by the markers' names."""
+    take: str  # The take's identifier
+    colors: dict[str, Rgb]  # The new colors by the markers' names
     styles: "tuple[MarkerStyle, ...]"
     ignored: "tuple[IgnoredRegion, ...]"
     check: "MarkerCheck"
@@ -66,12 +64,10 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    _masks_before: bool | None = None
-    """Whether masks were shown before; None in a script."""
+    _masks_before: bool | None = None  # Whether masks were shown before; None in a script
     _asked: Any = ()
     """Names and segments of the markers that are asked for, in order; Blender would evaluate a type."""
-    _here: int = 0
-    """Which of them is asked for now."""
+    _here: int = 0  # Which of them is asked for now
     _colors: Any = None
     """Picked colors by the markers' names, in the order of the clicks; None in a script. The scene stays as
     it was until all are picked: going to another frame is a step of undo."""
@@ -93,7 +89,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return self.wait_for_clicks(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take one click after the other, then look for all markers."""
         if self._job is not None:
             return super().modal(context, event)
         if event.type == "TIMER":
@@ -102,12 +97,10 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return self.take_event(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        """The next marker."""
         keys = KEYS.format(number=len(self._colors) + 1, count=len(self._asked))
         return request_for(self._asked[self._here][1]), keys
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
-        """Take the marker's color from the pixel; the last click ends it."""
         from ..bridge.footage_color import footage_color
 
         name = self._asked[self._here][0]
@@ -124,13 +117,11 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def go_on(self, context: bpy.types.Context) -> None:
-        """Ask for the next marker that was not clicked on."""
         count = len(self._asked)
         after = [(self._here + step) % count for step in range(1, count + 1)]
         self._here = next((one for one in after if self._asked[one][0] not in self._colors), self._here)
 
     def go_back(self, context: bpy.types.Context) -> None:
-        """Take the last click back, and ask for its marker once more."""
         if not self._colors:
             return
         name, _ = self._colors.popitem()
@@ -158,7 +149,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore masks, and close the job; Blender calls this as well."""
         self._stop_looking()
         end_picked()
         stop_asking(context)
@@ -167,7 +157,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         super().cancel(context)
 
     def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
-        """Return the job that looks for the markers in their new colors."""
         from ..bridge.footage_color import footage_color
 
         take = active_take(scene)
@@ -182,7 +171,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         return Picked(identifier, dict(colors), styles, ignored, check)
 
     def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        """Give the markers their colors, and store the readouts of all."""
         take = take_by_identifier(scene, result.take)
         now = styles_with_colors(take, result.colors), ignored_regions(take)
         check_unchanged(now, (result.styles, result.ignored))
@@ -198,7 +186,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         self.report({"INFO"}, f"{len(result.colors)} markers are picked")
 
     def _begin_to_look(self, context: bpy.types.Context) -> None:
-        """Begin to look for the colors picked so far."""
         self._stop_looking()
         take = active_take(context.scene)
         styles = styles_with_colors(take, self._colors)

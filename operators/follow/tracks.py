@@ -80,9 +80,6 @@ def point_title(point: str) -> str:
     return segment_title(point)
 
 
-# --- Assign a motion track of the clip to the body point that it follows
-
-
 class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
     """Choose the body point that this motion track follows; tracks that are named after one need no choice"""
 

@@ -9,15 +9,11 @@ from bpy.app import timers
 
 from ..shell.takes import find_take
 
-MARGIN_PX = 12.0
-"""Margin between the picture and the panels around it."""
-LEAST_SHARE = 0.3
-"""Least free share of a viewport; with less, the picture fills the whole viewport."""
-ZOOMS = (-30.0, 600.0)
-"""Blender's limits."""
+MARGIN_PX = 12.0  # Margin between the picture and the panels around it
+LEAST_SHARE = 0.3  # Least free share of a viewport; with less, the picture fills the whole viewport
+ZOOMS = (-30.0, 600.0)  # Blender's limits
 
-Box = tuple[float, float, float, float]
-"""Left, bottom, right, top [px]."""
+Box = tuple[float, float, float, float]  # Left, bottom, right, top [px]
 View = tuple[float, float, float]
 """Zoom and offset of a camera view, as Blender keeps them in single precision."""
 
@@ -134,11 +130,9 @@ def look_through(space: bpy.types.SpaceView3D, scene: bpy.types.Scene, camera: b
 # --- A viewport keeps the footage beside its sidebar
 
 
-SAME = 1e-4
-"""Difference within which views are one; Blender keeps them in single precision."""
+SAME = 1e-4  # Difference within which views are one; Blender keeps them in single precision
 
-_fitted: dict[int, View] = {}
-"""The view that was fitted last, by the pointer of an area."""
+_fitted: dict[int, View] = {}  # The view that was fitted last, by the pointer of an area
 
 
 def keep_beside_sidebar(context: bpy.types.Context) -> None:

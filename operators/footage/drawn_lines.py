@@ -16,15 +16,11 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fit import CameraFit
 
 VERTICAL, LEVEL, ACROSS, HEIGHT = KINDS = ("VERTICAL", "LEVEL", "ACROSS", "HEIGHT")
-PAIR = 2
-"""Lines of a kind after which the next kind is asked for."""
-NEAR_PX = 12.0
-"""Distance in the region within which an end is taken [px at a UI scale of 1]."""
-CLICKED_PX = 6.0
-"""Length below which a line is not drawn yet: its other end follows at the next click."""
+PAIR = 2  # Lines of a kind after which the next kind is asked for
+NEAR_PX = 12.0  # Distance in the region within which an end is taken [px at a UI scale of 1]
+CLICKED_PX = 6.0  # Length below which a line is not drawn yet: its other end follows at the next click
 
-LOWEST_M, TALLEST_M = 0.5, 3.0
-"""Limits of a performer's height."""
+LOWEST_M, TALLEST_M = 0.5, 3.0  # Limits of a performer's height
 
 Pixel = tuple[float, float]
 
@@ -34,35 +30,24 @@ class DrawnLine:
     """A line over the footage."""
 
     kind: str
-    ends: list[Pixel]
-    """Both ends [px of the footage]."""
-    frame: int
-    """Scene frame in which it was drawn."""
-    length: float = 0.0
-    """Known length [m]; 0 for the performer's height."""
+    ends: list[Pixel]  # Both ends [px of the footage]
+    frame: int  # Scene frame in which it was drawn
+    length: float = 0.0  # Known length [m]; 0 for the performer's height
 
 
 @dataclass
 class Drawing:
     """The lines of a running tool."""
 
-    kind: str
-    """Kind of the next line."""
-    stays: bool
-    """Whether the kind stays the same after each line."""
+    kind: str  # Kind of the next line
+    stays: bool  # Whether the kind stays the same after each line
     lines: list[DrawnLine] = field(default_factory=list)
-    held: tuple[int, int] | None = None
-    """Index of the line whose end follows the mouse, and of that end."""
-    last: int | None = None
-    """Index of the line that was drawn or moved last."""
-    typed: str = ""
-    """Digits of a length that is being typed."""
-    fit: "CameraFit | None" = None
-    """What the lines say of the camera; None before there is any."""
-    stature_m: float = 0.0
-    """The performer's height [m]."""
-    of_performer: bool = False
-    """Whether a length that is typed is the performer's height."""
+    held: tuple[int, int] | None = None  # Index of the line whose end follows the mouse, and of that end
+    last: int | None = None  # Index of the line that was drawn or moved last
+    typed: str = ""  # Digits of a length that is being typed
+    fit: "CameraFit | None" = None  # What the lines say of the camera; None before there is any
+    stature_m: float = 0.0  # The performer's height [m]
+    of_performer: bool = False  # Whether a length that is typed is the performer's height
 
     def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
         """Take the end of a line that is near, or begin a new line.
@@ -90,7 +75,6 @@ class Drawing:
         self.last = self.held[0]
 
     def move(self, pixel: Pixel) -> None:
-        """Let the held end follow the mouse."""
         if self.held is not None:
             number, which = self.held
             self.lines[number].ends[which] = pixel
@@ -114,7 +98,6 @@ class Drawing:
         return True
 
     def next_kind(self) -> None:
-        """Choose the next kind of line."""
         self.kind, self.stays = KINDS[(KINDS.index(self.kind) + 1) % len(KINDS)], True
 
     def remove(self, near: Callable[[DrawnLine], float]) -> None:
@@ -155,7 +138,6 @@ class Drawing:
 
     @property
     def complete(self) -> list[DrawnLine]:
-        """The lines with two ends apart."""
         return [line for line in self.lines if line.ends[0] != line.ends[1]]
 
 

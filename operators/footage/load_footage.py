@@ -49,7 +49,6 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Put the clip behind the take's camera."""
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:
@@ -84,7 +83,6 @@ class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
     requirements = (guessed_lens,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Clear the guess in every take with this camera."""
         camera = active_take(context.scene).camera
         for take in context.scene.keymark.takes:
             if take.camera == camera:
@@ -109,7 +107,6 @@ class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
     requirements = (guessed_placement,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Clear the guess in every take with this camera."""
         confirm_placement(active_take(context.scene))
 
 
@@ -171,7 +168,6 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         return self.execute(context)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Load the clip and put it behind the camera."""
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
@@ -199,9 +195,6 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
             )
 
 
-# --- Relocate a clip whose file was moved
-
-
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     """Choose where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
 
@@ -220,7 +213,6 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, beginning at the clip's old path."""
         self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}

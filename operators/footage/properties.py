@@ -8,8 +8,7 @@ from ..bridge.camera_placement import fixed_reason, read_placement, write_placem
 from ..shell.base_operator import capitalized
 from ..shell.takes import NO_GUESS, find_take
 
-DECIMALS = 5
-"""Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0."""
+DECIMALS = 5  # Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0
 
 
 def still_camera(context: bpy.types.Context) -> str | None:
@@ -62,9 +61,6 @@ def _change(take: bpy.types.PropertyGroup, **change: float) -> None:
         write_placement(take.camera, replace(read_placement(take.camera), **change))
         confirm_placement(take)
         take.camera_findings = ""
-
-
-# --- Properties of a take's footage
 
 
 class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):

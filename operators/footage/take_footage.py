@@ -13,13 +13,11 @@ from ..shell.results import clear_review
 from ..shell.takes import NO_GUESS, as_numbers, find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
 
-GENERIC_STEM = "clip"
-"""File name, without its extension, of the clip in every saved take's folder."""
+GENERIC_STEM = "clip"  # File name, without its extension, of the clip in every saved take's folder
 SAMPLED_FRAMES = 90
 """Frames whose times are checked for a variable rate; a phone's rate varies from the start."""
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
-IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
-"""Extensions of the files that footage is loaded from."""
+IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")  # Extensions of the files that footage is loaded from
 
 
 def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> None:

@@ -35,7 +35,6 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the direction."""
         if properties.only_doubtful:
             return (
                 "Go to the most doubtful found keyframe: first those in which something that is seen "
@@ -47,7 +46,6 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         return "Go to the previous found keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Choose it in the list, which goes there."""
         take = active_take(context.scene)
         invalidate_keyed_frames()
         wanted = self._doubtful(take) if self.only_doubtful else self._in_order(context.scene, take)
@@ -75,9 +73,6 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         return next((place for place in reversed(places) if frames[place] < now - 1e-3), places[-1])
 
 
-# --- Accept a found keyframe as the animator's own
-
-
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     """Count this frame as posed by you: it is trusted as much, and finding again leaves it alone"""
 
@@ -87,7 +82,6 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Turn its keys into the animator's."""
         from ..bridge.keyframes import take_over
 
         take = active_take(context.scene)
@@ -111,9 +105,6 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         return None
 
 
-# --- Remove a found keyframe
-
-
 class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     """Remove this found keyframe and its keys; a pose of your own at its frame stays"""
 
@@ -123,7 +114,6 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the next in the list is chosen."""
         from ..bridge.keyframes import remove_keyframes
 
         scene = context.scene
@@ -139,9 +129,6 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         matching.matches.remove(removed)
         matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
         self.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
-
-
-# --- Remove all found keyframes that the animator has not decided on
 
 
 class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
@@ -166,9 +153,6 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
         return None
 
 
-# --- Replace the posture of a found keyframe by another candidate
-
-
 class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
     """Key this posture instead; what is keyed at the frame is replaced"""
 
@@ -186,7 +170,6 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
         if matching is None or matching.shown_match >= len(matching.matches):
@@ -198,7 +181,6 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         return f"{said}. Key this posture instead; what is keyed at the frame is replaced"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Key the candidate, and go to its frame."""
         from .match_edits import key_candidate
 
         take = active_take(context.scene)

@@ -95,7 +95,6 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         return next(text for name, _, text in DIRECTIONS if name == properties.direction)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
@@ -167,12 +166,10 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         said = next(text for name, _, text in FACINGS if name == properties.facing)
         return f"{said}, at the same place; the pose is fitted to the footage again"
 
     def run(self, context: bpy.types.Context) -> None:
-        """Turn the pose, fit it, and set the likeliest."""
         from ...core.posing.turned import Facing, Sides, facing_of, turned
 
         take, scene = active_take(context.scene), context.scene
@@ -249,7 +246,6 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Flip the parts, and say which of several ways they are shown in."""
         take, scene = active_take(context.scene), context.scene
         limbs = selected_limbs(take) if self.limb == SELECTED else [self.limb]
         if not limbs:

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from ..bridge.scene_frames import Pose
 
 
-PRECISE = 0.1
-"""Share of the mouse's way that counts with Shift held, as in Blender's own transforms."""
+PRECISE = 0.1  # Share of the mouse's way that counts with Shift held, as in Blender's own transforms
 
 
 @dataclass
@@ -34,21 +33,15 @@ class JointDrag:
 
     joint: str
     view: WorldInRegion
-    start: Array
-    """(3,) where the joint was [m]."""
-    position: Array
-    """(2,) where the view showed it [px]."""
+    start: Array  # (3,) where the joint was [m]
+    position: Array  # (2,) where the view showed it [px]
     body: "Body"
-    posture: "Posture"
-    """The posture at the beginning."""
-    pose: "Pose"
-    """The channels of the actor's bones at the beginning, to restore them."""
-    mouse: tuple[int, int]
-    """Where the mouse was last, in the window [px]."""
+    posture: "Posture"  # The posture at the beginning
+    pose: "Pose"  # The channels of the actor's bones at the beginning, to restore them
+    mouse: tuple[int, int]  # Where the mouse was last, in the window [px]
     moved: Array = field(default_factory=lambda: np.zeros(2))
     """How far it has been dragged across the view [px]."""
-    depth_m: float = 0.0
-    """How far it has been pushed away from the viewer [m]."""
+    depth_m: float = 0.0  # How far it has been pushed away from the viewer [m]
 
     def follow(self, event: bpy.types.Event) -> None:
         """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
@@ -63,12 +56,10 @@ class JointDrag:
 
     @property
     def has_moved(self) -> bool:
-        """Whether the joint was dragged anywhere."""
         return bool(self.moved.any()) or self.depth_m != 0.0
 
     @property
     def pushed(self) -> bool:
-        """Whether it was dragged in depth."""
         return self.depth_m != 0.0
 
     @property
@@ -81,9 +72,6 @@ class JointDrag:
         """(3,) where the joint is dragged to [m]."""
         across = self.view.place(self.position + self.moved, self.start)
         return np.asarray(across + self.depth_m * self.sight)
-
-
-# --- Move a joint of the actor to a place, as dragging does
 
 
 class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
@@ -114,7 +102,6 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Set the pose, and the keyframe of this frame if there is one."""
         from ...core.posing.dragged import dragged
 
         take = active_take(context.scene)
@@ -128,8 +115,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
 # --- Drag the actor's joints in a 3D view
 
 
-GRAB_PX = 18.0
-"""Distance of the mouse from a joint below which a press takes hold of it."""
+GRAB_PX = 18.0  # Distance of the mouse from a joint below which a press takes hold of it
 ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
 VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
 """Keys that change the view: depth is corrected from the side."""
@@ -151,17 +137,14 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     bl_label = "Drag Joints"
     bl_options = {"REGISTER"}  # each drag is a step of undo of its own
 
-    _drag: Any = None
-    """The running drag; Blender would evaluate a type named here."""
+    _drag: Any = None  # The running drag; Blender would evaluate a type named here
     _handles: Any = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is an actor, and no job runs."""
         return all_met(cls, context, actor, idle, not_dragging)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the joints, and wait for the mouse."""
         self._handles = handles.Handles()
         handles.show(self._handles)
         context.window_manager.modal_handler_add(self)
@@ -173,7 +156,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         return {"CANCELLED"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Hover, drag, or end."""
         take = find_take(context.scene)
         if take is None or actor(context) is not None:
             self.cancel(context)
@@ -220,7 +202,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         view: WorldInRegion | None,
         event: bpy.types.Event,
     ) -> None:
-        """Mark the joint under the mouse."""
         hovered = None if view is None else nearest_joint(take, view, event.mouse_x, event.mouse_y)
         if hovered == self._handles.hovered:
             return
@@ -234,7 +215,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         redraw_editors(context, "VIEW_3D")
 
     def _begin(self, take: bpy.types.PropertyGroup, view: WorldInRegion, event: bpy.types.Event) -> None:
-        """Take hold of the joint under the mouse."""
         joint = self._handles.hovered
         if joint is None:
             return
@@ -276,7 +256,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _restore(self, context: bpy.types.Context) -> None:
-        """Give the actor the pose from before the drag."""
         drag, self._drag = self._drag, None
         take = find_take(context.scene) if context.scene is not None else None
         if drag is not None and take is not None and take.armature is not None:

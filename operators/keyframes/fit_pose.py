@@ -32,9 +32,6 @@ def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequenc
         add_candidate(offered, each.posture, each.name, each.mirrored, each.confidence)
 
 
-# --- Pose the actor as another of the poses that the current frame may show
-
-
 class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
     """Pose the actor like this; nothing is keyed until you store it"""
 
@@ -49,7 +46,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the pose's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
@@ -58,7 +54,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         return f"{said}. Pose the actor like this; nothing is keyed until you store it"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Set the pose."""
         from ..bridge.keyframes import candidate_posture
         from ..bridge.pose import write_posture
 
@@ -80,9 +75,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
             note_contradictions(take, frame, ())
         offered.chosen = self.candidate
         return None
-
-
-# --- Fit the actor's pose to the markers and keypoints of the current frame
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
@@ -121,7 +113,6 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         return finished
 
     def run(self, context: bpy.types.Context) -> None:
-        """Fit the pose, set it, offer the others that the frame may show, and say what contradicts."""
         from ..bridge.pose import write_posture
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
         from ..library.registry_files import all_libraries

@@ -9,8 +9,7 @@ from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
-SURE = 0.8
-"""Confidence above which a found keyframe is ticked."""
+SURE = 0.8  # Confidence above which a found keyframe is ticked
 FRAME_UNITS = 1.6
 STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
 """Icon and words of what is no found keyframe any more."""
@@ -22,7 +21,6 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one, or that it is posed or has no key any more."""
         take = active_take(context.scene)
         state = state_of(take, item)
         row = layout.row(align=True)
@@ -63,7 +61,6 @@ class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw how sure they are, the list, the candidates, and what finding assumes."""
         take, column = active_take(context.scene), self.column()
         matching = take.matching
         if len(matching.matches):

@@ -25,24 +25,19 @@ from .scene_clip import SceneClip
 class Proposals:
     """Frames proposed for keyframes, and what they were chosen by."""
 
-    indices: tuple[int, ...]
-    """Of frames of the clip, in order."""
-    speed: Array
-    """(F,) the performer's speed in the footage [px per frame]."""
+    indices: tuple[int, ...]  # Of frames of the clip, in order
+    speed: Array  # (F,) the performer's speed in the footage [px per frame]
 
 
 @dataclass(frozen=True, eq=False)
 class FoundResult:
     """What a job found in a take's footage, for the scene."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     clip: SceneClip
     found: FoundPoses
-    keyframes: tuple[Keyframe, ...]
-    """The found keyframes, in order."""
-    proposals: Proposals | None = None
-    """Where no frames were proposed before."""
+    keyframes: tuple[Keyframe, ...]  # The found keyframes, in order
+    proposals: Proposals | None = None  # Where no frames were proposed before
 
     def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
         """Key what was found beside what is decided, in place of what was found earlier; returns the take.

@@ -28,7 +28,6 @@ class KEYMARK_PT_keyframes_correct(TakePanel, bpy.types.Panel):
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the operators; the button that flips names what is selected."""
         take, column = active_take(context.scene), self.column()
         running = job_is_running(context, DRAGGING)
         column.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
@@ -53,8 +52,7 @@ def _flipped(take: bpy.types.PropertyGroup) -> str:
 # --- The panels of step 4
 
 
-PROMINENT = 1.6
-"""Height of the button that does the step's whole work."""
+PROMINENT = 1.6  # Height of the button that does the step's whole work
 
 
 class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
@@ -65,11 +63,9 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How many keyframes there are."""
         return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
         everything = column.column()
         everything.scale_y = PROMINENT
@@ -163,7 +159,6 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
     bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw number and button of the proposals, and the Action."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "keyframe_count")
         _draw_propose(column, context)

@@ -42,7 +42,6 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the floor from the panel."""
         matching = active_take(context.scene).matching
         self.floor, self.floor_height = matching.floor, matching.floor_height
         return super().invoke(context, event)
@@ -73,7 +72,6 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
 
     def finish(self, scene: bpy.types.Scene, result: "FoundResult") -> None:
-        """Key what was found, go to the most doubtful frame, and say how many there are."""
         take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.clip.notes:

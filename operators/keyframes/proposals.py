@@ -22,23 +22,18 @@ if TYPE_CHECKING:
     from ...core.progress import Job
 
 
-READ = 0.9
-"""Share of the job at which the clip is read."""
+READ = 0.9  # Share of the job at which the clip is read
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     reading: "Reading"
-    frames: tuple[int, ...]
-    """Proposed scene frames."""
-    speed: "Array"
-    """(F,) the speed in the footage that they were chosen by [px per frame], ..."""
-    scene_frames: "Array"
-    """... at scene frames (F,)."""
+    frames: tuple[int, ...]  # Proposed scene frames
+    speed: "Array"  # (F,) the speed in the footage that they were chosen by [px per frame], ..
+    scene_frames: "Array"  # ... at scene frames (F,).
     note: str
     """What the speed was made from where neither markers nor keypoints tell it, for people; else empty."""
 
@@ -77,7 +72,6 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
-        """Store the proposals with the take, and cache the reading for the reconstruction."""
         take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
         keep_speed(take, result.scene_frames, result.speed)
@@ -121,7 +115,6 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
         if properties.direction == "NEXT":
@@ -129,7 +122,6 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         return "Go to the previous proposed keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Go to the frame; if there is none, stay and report it."""
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)

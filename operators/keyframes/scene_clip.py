@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from ...core.take.take import Take
 
 
-TIMES = 0.1
-"""Share of the work at which the clip's times are read."""
+TIMES = 0.1  # Share of the work at which the clip's times are read
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,10 +28,8 @@ class SceneClip:
     take: "Take"
     """With the keyframes that the animator posed or chose the candidate of; others are found anew."""
     reading: "Reading"
-    frames: Array
-    """(F,) scene frames."""
-    notes: tuple[str, ...]
-    """Sentences for the animator."""
+    frames: Array  # (F,) scene frames
+    notes: tuple[str, ...]  # Sentences for the animator
 
 
 def read_known_take(

@@ -43,9 +43,6 @@ def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> int:
     return improve_neighbors(context, take, frame)
 
 
-# --- Store the actor's pose as a keyframe
-
-
 class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     """Key the actor's whole pose at the current frame in the keyframe Action, and show that Action"""
 
@@ -55,7 +52,6 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
     requirements = (actor, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Key the pose; report how far it goes beyond the skeleton, if it does."""
         from ..bridge.actor_lengths import read_body
         from ..bridge.keyframes import NOTICEABLE_M
         from ..bridge.pose import read_posture

@@ -6,8 +6,7 @@ import bpy
 
 from ..shell.results import EXTENSION
 
-OWN = "libraries"
-"""Name of the folder."""
+OWN = "libraries"  # Name of the folder
 
 
 def own_folder() -> Path:

@@ -38,7 +38,6 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped."""
         return self.execute(context) if self.filepath else browse(self, context)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -88,9 +87,6 @@ def _unregister_import_library() -> None:
     bpy.utils.unregister_class(KEYMARK_OT_import_library)
 
 
-# --- Refresh the registry of keyframe libraries
-
-
 class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     """Read the folder of your libraries again, after other programs have changed its files"""
 
@@ -100,13 +96,9 @@ class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     requirements = (idle,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Read the folders."""
         refresh()
         count = len(context.window_manager.keymark_shelf.libraries)
         self.report({"INFO"}, f"{count} keyframe libraries are at hand")
-
-
-# --- Bring a library into this file as pose assets
 
 
 class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):

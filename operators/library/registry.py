@@ -13,8 +13,7 @@ from bpy.app import timers
 from ..shell.takes import redraw_sidebars
 from . import library_files as user_folder
 
-SOON_S = 0.1
-"""Delay before the folders are read, so that the panel is drawn first."""
+SOON_S = 0.1  # Delay before the folders are read, so that the panel is drawn first
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""

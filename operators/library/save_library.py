@@ -85,7 +85,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, named as the library is."""
         self.library = self.library or chosen_identifier(context)
         name = self.library if self.source == "LIBRARY" else identifier_from(self._title(context))
         folder = "//" if bpy.data.filepath else ""
@@ -94,7 +93,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Give the file's name the suffix of the format."""
         stem = self.filepath
         for suffix in SUFFIXES.values():
             stem = stem.removesuffix(suffix)
@@ -104,7 +102,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return changed
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the choices beside the file browser."""
         column = self.layout.column()
         column.prop(self, "format", expand=True)
         column.prop(self, "source")
@@ -113,7 +110,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
                 column.prop(self, name)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Write the file."""
         from ..bridge.assets.catalogs import asset_root
         from ..bridge.library.library_file import write_library_file
 
@@ -196,7 +192,6 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for title and author."""
         take = active_take(context.scene)
         if not self.title:
             self.title = take.name
@@ -205,7 +200,6 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the dialog."""
         layout = self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("title", "author", "license"):

@@ -22,8 +22,7 @@ from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
 """Handlers before which the preview is undone: files must not hold it, and these events move data blocks."""
-SWEEPS = 9
-"""Steps in which the actor goes through the frames of a preview."""
+SWEEPS = 9  # Steps in which the actor goes through the frames of a preview
 
 
 class LivePreview:
@@ -100,17 +99,12 @@ def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
     raise InputError("the actor or the scene that the job was about has been removed meanwhile; run it again")
 
 
-# --- The result of a reconstruction, and how it is written into the scene
-
-
 @dataclass(frozen=True, eq=False)
 class ReconstructionResult:
     """The result of a reconstruction, for the scene."""
 
-    take: str
-    """The take's identifier."""
-    frames: Array
-    """(F,) scene frames."""
+    take: str  # The take's identifier
+    frames: Array  # (F,) scene frames
     reconstruction: Reconstruction
     review: Review
     notes: tuple[str, ...]

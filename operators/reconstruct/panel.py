@@ -14,7 +14,6 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     step = "reconstruct"
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the button or the running job, the method, and the switch between keyframes and motion."""
         take, column = active_take(context.scene), self.column()
         row = column.row()
         row.scale_y = 1.4
@@ -48,16 +47,13 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There are notes."""
         take = find_take(context.scene)
         return super().poll(context) and take is not None and len(take.notes) > 0
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw an icon, so that notes are noticed in the closed panel."""
         self.layout.label(text="", icon="INFO")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw each note, broken into lines as wide as the sidebar."""
         column = self.layout.column()
         for note in active_take(context.scene).notes:
             draw_sentence(column, context, note.text)

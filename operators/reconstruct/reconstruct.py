@@ -66,12 +66,10 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
-        """Show the preview on the actor."""
         if self.preview is not None and progress.preview is not None:
             self.preview.show(progress.preview)
 
     def unwatch(self) -> None:
-        """Restore actor and scene."""
         if self.preview is not None:
             self.preview.end()
             self.preview = None
@@ -132,7 +130,6 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Assign the Action."""
         settings = active_take(context.scene)
         action = {
             "KEYFRAMES": settings.keyframe_action,

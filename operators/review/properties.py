@@ -42,7 +42,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     )
 
     def go_to(self, scene: bpy.types.Scene) -> None:
-        """Go to this frame in the scene."""
         whole = int(self.frame // 1.0)
         scene.frame_set(whole, subframe=self.frame - whole)
 

@@ -35,7 +35,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the direction."""
         return {
             "CHOSEN": "Go to the frame that is chosen in the list",
             "NEXT": "Go to the next frame of the list; the worst comes first",
@@ -43,7 +42,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
         }[properties.direction]
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Go there; at the end of the list, stay and say so."""
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
         # At first, the worst frame itself is the next one.
@@ -59,9 +57,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         review.active_weak_frame = wanted  # which goes there
         return None
-
-
-# --- Take the reconstructed pose as a keyframe, so that the animator only corrects it
 
 
 class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):

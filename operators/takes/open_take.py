@@ -37,7 +37,6 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, unless a file was dropped."""
         if self.filepath:
             return self.execute(context)
         return browse(self, context)
@@ -114,7 +113,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """What the chosen example shows, and where its clip lies."""
         if not properties.is_property_set("example"):
             return cls.__doc__ or ""
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
@@ -122,7 +120,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         return f"{shown}.\n{kept}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask which example, and for the folder of a copy."""
         if not self.properties.is_property_set("example"):
             context.window_manager.popup_menu(_draw_examples, title=self.bl_label)
             return {"CANCELLED"}  # each entry is a step of its own
@@ -132,7 +129,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw which example, beside the folder's picker and in Adjust Last Operation."""
         self.layout.prop(self, "example", text="")
 
     def run(self, context: bpy.types.Context) -> None:
@@ -185,13 +181,11 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
     filepath: bpy.props.StringProperty(name="File Path", subtype="FILE_PATH", options={"SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Invoke the file's operator, which may show a dialog."""
         with reported(self):
             return self._delegate("INVOKE_DEFAULT")
         return {"CANCELLED"}
 
     def run(self, context: bpy.types.Context) -> set[str]:
-        """Run the file's operator."""
         return self._delegate("EXEC_DEFAULT")
 
     def _delegate(self, execution_context: str) -> set[str]:
@@ -244,7 +238,6 @@ class KEYMARK_FH_footage(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Over editors that show footage."""
         return _over_an_editor(context)
 
 
@@ -258,7 +251,6 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Over editors that show footage or assets."""
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 

@@ -95,7 +95,6 @@ class KEYMARK_UL_takes(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one take."""
         row = layout.row(align=True)
         done = item.motion_action is not None
         row.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
@@ -109,7 +108,6 @@ class KEYMARK_MT_add_take(bpy.types.Menu):
     bl_label = "Add Take"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw them: the same clip, another clip, a take from disk."""
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
         layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
@@ -124,7 +122,6 @@ class KEYMARK_MT_take_specials(bpy.types.Menu):
     bl_label = "Take Specials"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw removal with all data, and the guide."""
         layout = self.layout
         entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
         entry.delete_data = True
@@ -141,7 +138,6 @@ class KEYMARK_PT_guide(bpy.types.Panel):
     bl_ui_units_x = 16
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the steps."""
         column = self.layout.column(align=True)
         for icon, text in STEPS:
             column.label(text=text, icon=icon, translate=False)
@@ -153,7 +149,6 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     bl_label = "Keymark"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the takes, and the running job or the next step."""
         registry.refresh_if_empty()
         keep_beside_sidebar(context)
         layout, take = self.layout, find_take(context.scene)

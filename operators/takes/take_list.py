@@ -64,7 +64,6 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the take; the one before it becomes active."""
         settings = context.scene.keymark
         active = active_take(context.scene)
         index = next(i for i, each in enumerate(settings.takes) if each == active)
@@ -98,9 +97,6 @@ def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
             yield value
 
 
-# --- Save the active take as a folder, to convert it elsewhere
-
-
 class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
 
@@ -117,12 +113,10 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def run(self, context: bpy.types.Context) -> None:
-        """Read the take from the scene and write the folder."""
         from ...core.shoot.discovery import check_hides_no_take
         from ...core.take.evidence import evidence_of
         from ...core.take.take_file import write_take

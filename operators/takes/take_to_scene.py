@@ -36,12 +36,9 @@ class OpenedTake:
     """A take read from disk, checked against its clip."""
 
     take: Take
-    time_s: Array
-    """(F,) time of each frame [s]."""
-    kinds: tuple[str, ...]
-    """The kinds of evidence that it is held against; it may have more."""
-    notes: tuple[str, ...]
-    """Sentences to report."""
+    time_s: Array  # (F,) time of each frame [s]
+    kinds: tuple[str, ...]  # The kinds of evidence that it is held against; it may have more
+    notes: tuple[str, ...]  # Sentences to report
 
 
 def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
