@@ -106,9 +106,4 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_build_actor,
-        KEYMARK_OT_apply_lengths,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_build_actor, KEYMARK_OT_apply_lengths))

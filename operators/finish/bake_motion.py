@@ -182,9 +182,5 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_bake_motion,
-        KEYMARK_OT_mark_asset,
-        KEYMARK_OT_export_motion,
-    )
+    (KEYMARK_OT_bake_motion, KEYMARK_OT_mark_asset, KEYMARK_OT_export_motion)
 )

@@ -157,9 +157,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             drawing.press(pixel, context.scene.frame_current, self._distance(view))
         elif event.value == "RELEASE":
             drawing.move(pixel)
-            drawing.release(
-                lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)),
-            )
+            drawing.release(lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)))
         self._find(context)
         return {"RUNNING_MODAL"}
 

@@ -263,9 +263,5 @@ def nearest_point(
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_click_point,
-        KEYMARK_OT_remove_clicks,
-        KEYMARK_OT_click_performer,
-    )
+    (KEYMARK_OT_click_point, KEYMARK_OT_remove_clicks, KEYMARK_OT_click_performer)
 )

@@ -274,9 +274,5 @@ class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_ignore_region,
-        KEYMARK_OT_ignore_still_areas,
-        KEYMARK_OT_remove_ignored_region,
-    )
+    (KEYMARK_OT_ignore_region, KEYMARK_OT_ignore_still_areas, KEYMARK_OT_remove_ignored_region)
 )

@@ -117,8 +117,5 @@ class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_load_keypoints,
-        KEYMARK_OT_remove_keypoints,
-    )
+    (KEYMARK_OT_load_keypoints, KEYMARK_OT_remove_keypoints)
 )

@@ -120,10 +120,5 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_remove_marker,
-        KEYMARK_OT_show_masks,
-        KEYMARK_OT_add_marker,
-        KEYMARK_OT_add_usual_markers,
-    )
+    (KEYMARK_OT_remove_marker, KEYMARK_OT_show_masks, KEYMARK_OT_add_marker, KEYMARK_OT_add_usual_markers)
 )

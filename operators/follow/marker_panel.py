@@ -218,11 +218,7 @@ def _draw_marker(
     if not marker.has_readout(take):
         return
     readout = layout.column(align=True)
-    _row(
-        readout,
-        "Found In",
-        f"{marker.found} of {marker.sampled} frames",
-    )
+    _row(readout, "Found In", f"{marker.found} of {marker.sampled} frames")
     _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
     _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():

@@ -164,8 +164,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         name="Area", description="Area that the marker usually covers, in pixels of the footage"
     )
     area_share: bpy.props.FloatProperty(
-        name="Share of the Picture",
-        description="Share of the picture that the marker usually covers",
+        name="Share of the Picture", description="Share of the picture that the marker usually covers"
     )
     distinctness: bpy.props.FloatProperty(
         name="Distinctness",
@@ -206,10 +205,7 @@ def _unregister_properties() -> None:
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PG_stroke_point,
-        KEYMARK_PG_ignored_region,
-    )
+    (KEYMARK_PG_stroke_point, KEYMARK_PG_ignored_region)
 )
 
 

@@ -36,10 +36,7 @@ def fitting_view(
     view = area.spaces.active.region_3d
     if region is None or view is None or min(region.width, region.height) < 2:
         return None
-    size = (
-        render.resolution_x * render.pixel_aspect_x,
-        render.resolution_y * render.pixel_aspect_y,
-    )
+    size = (render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y)
     picture = picture_at_factor_one((region.width, region.height), size, camera.sensor_fit)
     zoom, offset = camera_view((region.width, region.height), free_box(area, region), picture)
     return zoom, *offset
@@ -105,10 +102,7 @@ def camera_view(
     zoom = min(max((2.0 * sqrt(factor) - sqrt(2.0)) * 50.0, ZOOMS[0]), ZOOMS[1])
     factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
     away = (0.5 * (region_size[0] - left - right), 0.5 * (region_size[1] - bottom - top))
-    return zoom, (
-        away[0] / (2.0 * factor * region_size[0]),
-        away[1] / (2.0 * factor * region_size[1]),
-    )
+    return zoom, (away[0] / (2.0 * factor * region_size[0]), away[1] / (2.0 * factor * region_size[1]))
 
 
 def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3D]:

@@ -73,15 +73,10 @@ class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
         name="Contents", description="Digest of the clip's file", options={"HIDDEN"}
     )
     rate: bpy.props.FloatProperty(
-        name="Rate",
-        description="Frames per second of the clip on the timeline",
-        min=0.0,
-        options={"HIDDEN"},
+        name="Rate", description="Frames per second of the clip on the timeline", min=0.0, options={"HIDDEN"}
     )
     variable_rate: bpy.props.BoolProperty(
-        name="Variable Rate",
-        description="The clip's frames are unevenly spaced in time",
-        options={"HIDDEN"},
+        name="Variable Rate", description="The clip's frames are unevenly spaced in time", options={"HIDDEN"}
     )
 
 

@@ -279,9 +279,5 @@ def _said(limb: str, number: int, count: int) -> str:
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_copy_neighbor,
-        KEYMARK_OT_turn_performer,
-        KEYMARK_OT_flip_depth,
-    )
+    (KEYMARK_OT_copy_neighbor, KEYMARK_OT_turn_performer, KEYMARK_OT_flip_depth)
 )

@@ -296,9 +296,4 @@ def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = Fals
     context.workspace.status_text_set(words)
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_move_joint,
-        KEYMARK_OT_drag_joints,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint, KEYMARK_OT_drag_joints))

@@ -177,9 +177,4 @@ def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object)
         bpy.ops.object.mode_set(mode="POSE")
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_show_offered,
-        KEYMARK_OT_fit_pose,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_offered, KEYMARK_OT_fit_pose))

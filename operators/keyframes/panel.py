@@ -167,9 +167,5 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PT_keyframes,
-        KEYMARK_PT_keyframes_proposals,
-        KEYMARK_PT_keyframes_correct,
-    )
+    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_proposals, KEYMARK_PT_keyframes_correct)
 )

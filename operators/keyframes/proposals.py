@@ -146,8 +146,5 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_propose_keyframes,
-        KEYMARK_OT_jump_to_proposal,
-    )
+    (KEYMARK_OT_propose_keyframes, KEYMARK_OT_jump_to_proposal)
 )

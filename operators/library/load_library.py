@@ -134,10 +134,7 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_refresh_shelf,
-        KEYMARK_OT_edit_library,
-    )
+    (KEYMARK_OT_refresh_shelf, KEYMARK_OT_edit_library)
 )
 
 

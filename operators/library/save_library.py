@@ -64,9 +64,7 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
     title: bpy.props.StringProperty(
-        name="Title",
-        description="Title of a new library; by default the take's name",
-        options={"SKIP_SAVE"},
+        name="Title", description="Title of a new library; by default the take's name", options={"SKIP_SAVE"}
     )
     author: bpy.props.StringProperty(name="Author", description="Author of a new library")
     license: bpy.props.StringProperty(
@@ -234,8 +232,5 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_export_library,
-        KEYMARK_OT_learn_library,
-    )
+    (KEYMARK_OT_export_library, KEYMARK_OT_learn_library)
 )

@@ -117,11 +117,7 @@ class ReconstructionResult:
         """
         take = take_by_identifier(scene, self.take)
         take.motion_action = write_motion(
-            actor_of(take),
-            self.reconstruction.motion,
-            take.motion_action,
-            take.keyframe_action,
-            self.frames,
+            actor_of(take), self.reconstruction.motion, take.motion_action, take.keyframe_action, self.frames
         )
         take.motion_action.use_fake_user = True
         reconstructed_again(take)

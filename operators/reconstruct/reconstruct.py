@@ -145,9 +145,4 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
         return None
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_reconstruct,
-        KEYMARK_OT_show_action,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct, KEYMARK_OT_show_action))

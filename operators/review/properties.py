@@ -6,13 +6,7 @@ REASONS = (
     ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
     ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    (
-        "FOOTAGE",
-        "Off Footage",
-        "A marker or a keypoint is not where the motion puts it",
-        "TRACKER",
-        3,
-    ),
+    ("FOOTAGE", "Off Footage", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
 )
 
 

@@ -150,9 +150,5 @@ def look_from_side(
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_jump_to_weak_frame,
-        KEYMARK_OT_pose_from_motion,
-        KEYMARK_OT_look_from_side,
-    )
+    (KEYMARK_OT_jump_to_weak_frame, KEYMARK_OT_pose_from_motion, KEYMARK_OT_look_from_side)
 )

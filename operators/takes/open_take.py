@@ -255,12 +255,7 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_open_example,
-        KEYMARK_OT_open_dropped,
-        KEYMARK_FH_footage,
-        KEYMARK_FH_take,
-    )
+    (KEYMARK_OT_open_example, KEYMARK_OT_open_dropped, KEYMARK_FH_footage, KEYMARK_FH_take)
 )
 
 

@@ -191,9 +191,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     follow: bpy.props.PointerProperty(type=KEYMARK_PG_follow)
     keyframe_action: bpy.props.PointerProperty(
-        name="Keyframes",
-        description="The Action that holds the keyframes you pose",
-        type=bpy.types.Action,
+        name="Keyframes", description="The Action that holds the keyframes you pose", type=bpy.types.Action
     )
     keyframe_count: bpy.props.IntProperty(
         name="Count",
@@ -210,9 +208,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )
     motion_action: bpy.props.PointerProperty(
-        name="Motion",
-        description="The Action that holds the reconstructed motion",
-        type=bpy.types.Action,
+        name="Motion", description="The Action that holds the reconstructed motion", type=bpy.types.Action
     )
     live_preview: bpy.props.BoolProperty(
         name="Live Preview",
@@ -275,11 +271,7 @@ def _unregister_scene_properties() -> None:
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PG_proposal,
-        KEYMARK_PG_note,
-        KEYMARK_PG_take,
-    )
+    (KEYMARK_PG_proposal, KEYMARK_PG_note, KEYMARK_PG_take)
 )
 
 

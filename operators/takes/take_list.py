@@ -146,9 +146,5 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_add_performer,
-        KEYMARK_OT_remove_take,
-        KEYMARK_OT_save_take,
-    )
+    (KEYMARK_OT_add_performer, KEYMARK_OT_remove_take, KEYMARK_OT_save_take)
 )

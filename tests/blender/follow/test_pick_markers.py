@@ -81,10 +81,7 @@ def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> 
     ("made", "sentence"),
     [
         ([], "Clicks is empty"),
-        (
-            [{"name": "tail", "loc": (50.0, 50.0), "time": 1.0}],
-            "No marker is called 'tail'",
-        ),
+        ([{"name": "tail", "loc": (50.0, 50.0), "time": 1.0}], "No marker is called 'tail'"),
         ([{"name": "trunk", "loc": (-4.0, 3.0), "time": 1.0}], "lies outside the footage"),
         ([{"name": "trunk", "loc": (50.0, 50.0), "time": 400.0}], "no frame at scene frame 400"),
     ],

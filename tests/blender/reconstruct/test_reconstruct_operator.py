@@ -191,14 +191,8 @@ def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.Property
     take.keyframe_action = bpy.data.actions.new("Elsewhere")
     for frame, said in (
         (40, None),
-        (
-            41,
-            r"0 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside",
-        ),
-        (
-            3,
-            r"1 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside",
-        ),
+        (41, r"0 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside"),
+        (3, r"1 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside"),
     ):
         bpy.context.scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()
