@@ -1,4 +1,4 @@
-"""Build the performer's armature from a body height."""
+"""Build the performer's armature from a body height, and give it the lengths in the panel."""
 
 import bpy
 
@@ -71,9 +71,6 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now")
         else:
             self.report({"INFO"}, "The actor stands at the world's origin")
-
-
-# --- Give the actor the lengths in the panel
 
 
 def any_actor(context: bpy.types.Context) -> str | None:

@@ -82,11 +82,9 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
         return self.execute(context)
 
     def _ask(self, context: bpy.types.Context) -> None:
-        if self._clicks.head is None:
-            wanted = "Click on the top of the head   |   Esc: Cancel"
-        else:
-            wanted = "Now click on the floor between the feet   |   Esc: Cancel"
-        context.workspace.status_text_set(wanted)
+        first = self._clicks.head is None
+        wanted = "Click on the top of the head" if first else "Now click on the floor between the feet"
+        context.workspace.status_text_set(f"{wanted}   |   Esc: Cancel")
         redraw_footage(context)
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -118,11 +116,8 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
             )
             give_notices(take, "actor", "lengths", (warn(self, sentence),))
         else:
-            self.report(
-                {"INFO"},
-                f"The performer stands {measured.distance_m:.2f} m from the camera; unseen lengths are "
-                "average",
-            )
+            distance = f"The performer stands {measured.distance_m:.2f} m from the camera"
+            self.report({"INFO"}, f"{distance}; unseen lengths are average")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_measure_actor,))

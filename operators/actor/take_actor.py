@@ -1,4 +1,4 @@
-"""Bringing an actor back that was deleted or replaced: its keyframes and its motion belong to the take."""
+"""A take's actor in its scene: built, sized, placed, and brought back with its keyframes and its motion."""
 
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,6 @@ from .properties import length_names, length_property, panel_lengths
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
-    from ...core.footage.region_tracks import RegionTracks
 
 
 def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
@@ -85,9 +84,6 @@ def _action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
     return None if data is None else data.action
 
 
-# --- A take's actor in its scene
-
-
 SYMMETRY_TOLERANCE_M = 5e-4  # Left and right count as equally long within this
 
 
@@ -141,7 +137,7 @@ def performers_stance(
 
     if take.clip is None or take.camera is None:
         return None
-    regions: RegionTracks | None = None
+    regions = None
     try:
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         keypoints = frame.keypoints(body)

@@ -1,4 +1,4 @@
-"""A motion marked as an asset with the details that the animator entered."""
+"""The final Action: baked, marked as an asset, and exported."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,14 +30,9 @@ def mark_motion_asset(
     pictured: bpy.types.Action | None,
     actor: bpy.types.Object | None = None,
 ) -> None:
-    """Add the catalog to its file, then mark an Action.
+    """Add the catalog to its file, then mark an Action with the details that the take's finish has.
 
-    Args:
-        context: Its asset browsers are refreshed.
-        take: The take, whose details of the finish are the asset's.
-        action: The Action to mark.
-        pictured: The actor's Action that the picture is drawn from; None keeps the present picture.
-        actor: The actor that it moves; the take's by default.
+    The picture is drawn from the pictured Action of the actor, the take's by default; None keeps the present.
 
     Raises:
         InputError: The catalog is unusable, or the pictured Action is not the actor's.

@@ -3,6 +3,7 @@
 import bpy
 
 from ..bridge.export_formats import FORMATS
+from ..reconstruct.panel import draw_shown_action
 from ..shell.base_operator import capitalized
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
@@ -48,16 +49,8 @@ def _draw_result(
 ) -> None:
     """Draw the result of the last bake, and the switch between it and the motion."""
     settings = take.finish
-    data = take.armature.animation_data
-    shown = data.action if data else None
     column.separator()
-    row = column.row(align=True)
-    for which, action, text in (
-        ("MOTION", take.motion_action, "Motion"),
-        ("FINAL", settings.action, "Final"),
-    ):
-        depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
+    draw_shown_action(column, take, {"MOTION": take.motion_action, "FINAL": settings.action})
     lines = column.column(align=True)
     if settings.outdated:
         draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")

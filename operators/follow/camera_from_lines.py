@@ -1,4 +1,4 @@
-"""Moments in which a take's keypoints show the performer upright, to find the camera by."""
+"""Find the camera from lines drawn over the footage, and from the performer upright at several places."""
 
 from contextlib import suppress
 from dataclasses import replace
@@ -35,9 +35,6 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fit import CameraFit
 
 
-FEWEST = 2  # Moments without which nothing is told
-
-
 def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
     from ...core.body.actor import Actor
@@ -55,12 +52,9 @@ def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Upri
         tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
         keypoints = keypoints_without_keyframes(source, scene_evidence(take), tracks, stature_m)
         found = standing_keypoints(keypoints, Body(Actor.from_stature(stature_m)), source.rate)
-        if len(found) >= FEWEST:
+        if len(found) >= 2:  # fewer tell nothing
             return found
     return Uprights.none()
-
-
-# --- Find the camera from lines that are drawn over the footage, and from the performer at several places
 
 
 DONE = {"RET", "NUMPAD_ENTER"}
@@ -200,11 +194,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
-        """Find the camera from the lines that the take keeps, or the performer's keypoints, and set it.
-
-        Raises:
-            InputError: There is neither, or they say nothing of the camera.
-        """
         take = active_take(context.scene)
         fit = self._fit(take, read_lines(take), take.stature)
         if fit is None:

@@ -1,4 +1,4 @@
-"""The points that were clicked on in the frames of a take: adding, finding and removing them."""
+"""Points of the body that a person clicks on in the frames of a take."""
 
 from typing import Any
 
@@ -14,22 +14,11 @@ from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, pixel_under, side_of, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import footage, idle
-from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
-from .evidence import keypoint_files
+from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
+from .evidence import clicked_here, clip_frame, keypoint_files
 from .frame_keypoints import keypoints_at
-from .tracks import body_point_items, point_title
-
-
-def clip_frame(take: bpy.types.PropertyGroup) -> int:
-    """The scene's current frame, counted from the clip's first."""
-    scene = take.id_data
-    return int(scene.frame_current - footage_of(scene, take).first_frame)
-
-
-def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
-    """The points that were clicked on in the current frame."""
-    here = clip_frame(take)
-    return [click.point for click in take.follow.clicks if click.frame == here]
+from .marker_properties import segment_title
+from .tracks import body_point_items
 
 
 def set_click(
@@ -49,9 +38,6 @@ def remove_click(take: bpy.types.PropertyGroup, point: str, frame: int) -> bool:
     for index in reversed(found):
         clicks.remove(index)
     return bool(found)
-
-
-# --- Click on points of the body in the footage, frame by frame, where no detector finds them
 
 
 KEYS = "Tab: Next Point   |   Backspace: Previous   |   Enter: Done   |   Esc: Cancel"
@@ -92,7 +78,7 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
         point = active_take(context.scene).follow.clicked_point
-        title = f"Click on: {point_title(point)}"
+        title = f"Click on: {segment_title(point)}"
         return FootageRequest(title, side_of(point)), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
@@ -134,11 +120,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
-        """Set one point in the current frame.
-
-        Raises:
-            InputError: The pixel lies outside the footage.
-        """
         take = active_take(context.scene)
         width, height = take.clip.size
         if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
@@ -227,11 +208,7 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
             context.workspace.status_text_set(None)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Vouch for the seen point that is nearest to the click: points by hand are the performer's.
-
-        Raises:
-            InputError: Nobody is seen in this frame.
-        """
+        """Vouch for the seen point that is nearest to the click: points by hand are the performer's."""
         take = active_take(context.scene)
         found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
         if found is None:
@@ -242,7 +219,7 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         point, pixel = found
         set_click(take, point, pixel)
         redraw_footage(context)
-        self.report({"INFO"}, f"The performer is known by the point {point_title(point)}")
+        self.report({"INFO"}, f"The performer is known by the point {segment_title(point)}")
 
 
 def nearest_point(

@@ -11,8 +11,8 @@ from ...core.errors import InputError
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
+from .evidence import add_keypoint_file, keypoint_path
 from .frame_keypoints import clear_readings
-from .keypoint_paths import add_keypoint_file, keypoint_path
 
 if TYPE_CHECKING:
     from ...core.footage.keypoints.keypoints import People

@@ -1,4 +1,4 @@
-"""The brush over the footage: its strokes while it is at work, for the operator and for the overlay."""
+"""Regions of the picture that are never a marker: the brush over the footage, and still areas."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,9 +12,9 @@ from ..shell.footage_clicks import ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, follow_mouse, pixel_under, stop_asking
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, markers
-from ..shell.takes import active_take, redraw_footage
+from ..shell.takes import active_take, find_take, redraw_footage
 from .marker_properties import clear_readouts
-from .marker_styles import LeftOut, leave_out, some_ignored, still_areas, write_left_out
+from .marker_styles import MarkerSearch, search_markers, write_search
 from .mask_previews import preview_of, show_masks, update_masks
 
 if TYPE_CHECKING:
@@ -80,7 +80,21 @@ def brush_at_work() -> Brush | None:
     return _brush
 
 
-# --- Brush over what is never a marker, as a wall of a marker's color
+# --- Operators
+
+
+def still_areas(context: bpy.types.Context) -> str | None:
+    """Some still area of a marker's color is known that is surely no marker."""
+    take = find_take(context.scene)
+    if take and any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers):
+        return None
+    return "Check the markers first; no still area of a marker's color is known"
+
+
+def some_ignored(context: bpy.types.Context) -> str | None:
+    """Some region of the picture is ignored."""
+    take = find_take(context.scene)
+    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
 
 
 KEYS = "[  ]: Brush Size   |   Backspace: Back   |   Enter: Done   |   Esc: Cancel"
@@ -185,15 +199,14 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
             show_masks(context, self._masks_before)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[LeftOut]":
-        return leave_out(
-            scene, self._from_path(active_take(scene)) if self._brushed is None else self._brushed
-        )
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        brushed = self._from_path(active_take(scene)) if self._brushed is None else self._brushed
+        return search_markers(scene, more=brushed)
 
-    def finish(self, scene: bpy.types.Scene, result: LeftOut) -> None:
-        if self._masks_before is not None and result.check is not None:
-            show_masks(bpy.context, True)
-        for sentence in write_left_out(scene, result):
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(
+            scene, result, masks=bool(self._masks_before is not None and result.check)
+        ):
             warn(self, sentence)
         self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
 
@@ -238,7 +251,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, still_areas, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[LeftOut]":
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
         from ...core.footage.ignored_regions import IgnoredRegion
 
         take = active_take(scene)
@@ -248,10 +261,10 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
             if marker.has_readout(take)
             for area in marker.still_areas
         ]
-        return leave_out(scene, tuple(IgnoredRegion(box=box) for box in dict.fromkeys(boxes)))
+        return search_markers(scene, more=tuple(IgnoredRegion(box=box) for box in dict.fromkeys(boxes)))
 
-    def finish(self, scene: bpy.types.Scene, result: LeftOut) -> None:
-        for sentence in write_left_out(scene, result):
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(scene, result):
             warn(self, sentence)
         self.report({"INFO"}, f"Still areas are never a marker: {len(result.more)} more")
 

@@ -12,9 +12,8 @@ from ..shell.file_browser import browse, chosen_path
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage
-from .evidence import keypoint_files, scene_evidence
+from .evidence import add_keypoint_file, keypoint_files, scene_evidence
 from .frame_keypoints import clear_readings
-from .keypoint_paths import add_keypoint_file
 
 if TYPE_CHECKING:
     from ...core.footage.keypoints.keypoints import People

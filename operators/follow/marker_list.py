@@ -19,19 +19,23 @@ def next_segment(take: bpy.types.PropertyGroup) -> str | None:
     return next((segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked), None)
 
 
-def free_name(take: bpy.types.PropertyGroup, segment: str) -> str:
-    """Return a unique name for a marker: the segment's, with a number if another marker has it."""
-    return unique_name(segment, (marker.name for marker in take.markers))
-
-
 def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.PropertyGroup:
-    """Add a marker named after its segment, and make it the active one."""
-    name = free_name(take, segment)
+    """Add a marker with a unique name after its segment, and make it the active one."""
+    name = unique_name(segment, (marker.name for marker in take.markers))
     marker = take.markers.add()
     marker.segment, marker.name = segment, name
     marker.named_after = segment
     take.active_marker = len(take.markers) - 1
     return marker
+
+
+def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
+    """Add those of the usual five that are missing; the first of them becomes the active one."""
+    marked, first = {marker.segment for marker in take.markers}, len(take.markers)
+    for segment in USUAL_SEGMENTS:
+        if segment not in marked:
+            append_marker(take, segment)
+    take.active_marker = first
 
 
 class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
@@ -107,15 +111,10 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         take = ensure_take(context.scene)
-        marked = {marker.segment for marker in take.markers}
-        missing = [segment for segment in USUAL_SEGMENTS if segment not in marked]
-        if not missing:
+        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
             self.report({"INFO"}, "Trunk, forearms and shins have markers already")
             return {"CANCELLED"}
-        first = len(take.markers)
-        for segment in missing:
-            append_marker(take, segment)
-        take.active_marker = first
+        append_usual_markers(take)
         return None
 
 

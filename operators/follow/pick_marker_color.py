@@ -1,6 +1,5 @@
 """Pick a marker's color from the footage, and check at once how well the marker is found."""
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import bpy
@@ -9,37 +8,13 @@ from ..shell.base_operator import reported, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
 from ..shell.footage_view import ask, follow_mouse, pixel_under, stop_asking
 from ..shell.job_operator import JobOperator, cancel_click
-from ..shell.requirements import footage, idle, markers
+from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
-from .ignored_regions import ignored_regions
-from .marker_styles import (
-    Rgb,
-    check_unchanged,
-    find_markers,
-    request_for,
-    set_marker_color,
-    styles_with_colors,
-    write_readouts,
-)
-from .mask_previews import show_masks, update_shown_masks
+from .marker_styles import MarkerSearch, request_for, search_markers, write_search
+from .mask_previews import show_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
-    from ...core.footage.marker_check import MarkerCheck
-    from ...core.footage.region_tracks import MarkerStyle
     from ...core.progress import Job
-
-
-@dataclass(frozen=True, eq=False)
-class Picked:
-    """Result of the job."""
-
-    take: str  # The take's identifier
-    marker: str  # Name of the marker that is given the color
-    color: Rgb
-    styles: "tuple[MarkerStyle, ...]"
-    ignored: "tuple[IgnoredRegion, ...]"
-    check: "MarkerCheck"
 
 
 class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
@@ -109,41 +84,47 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
             show_masks(context, self._masks_before)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
-        """Return the job that reads the pixel from the clip's file and looks for its color.
-
-        The viewport's own pixel has gone through color management.
-        """
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        """The color is read from the clip's file: the viewport's has gone through color management."""
         from ..bridge.footage_color import footage_color
 
         take = active_take(scene)
-        source, identifier, name = footage_of(scene, take), take.identifier, self._marker(take).name
-        color = footage_color(source, self.pixel)
-        styles, ignored = styles_with_colors(take, {name: color}), ignored_regions(take)
-        check = yield from find_markers(source, styles, ignored)
-        return Picked(identifier, name, color, styles, ignored, check)
+        name, color = self._marker(take).name, footage_color(footage_of(scene, take), self.pixel)
+        return (yield from search_markers(scene, {name: color}))
 
-    def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        take = take_by_identifier(scene, result.take)
-        styles = styles_with_colors(take, {result.marker: result.color})
-        check_unchanged((styles, ignored_regions(take)), (result.styles, result.ignored))
-        marker = next(marker for marker in take.markers if marker.name == result.marker)
-        set_marker_color(marker, result.color)
-        write_readouts(take, result.styles, result.check)
-        if self._masks_before is not None:  # picked by a click: its mask is shown at once
-            show_masks(bpy.context, True)
-        update_shown_masks(scene)
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        write_search(scene, result, masks=self._masks_before is not None)
+        ((name, color),) = result.colors.items()
+        marker = next(each for each in take_by_identifier(scene, result.take).markers if each.name == name)
         for sentence in marker.warning.splitlines():
             warn(self, sentence)
-        self.report(
-            {"INFO"},
-            f"Marker {marker.name} has the color {result.color}, found in {marker.found} of "
-            f"{marker.sampled} frames",
-        )
+        found = f"found in {marker.found} of {marker.sampled} frames"
+        self.report({"INFO"}, f"Marker {name} has the color {color}, {found}")
 
     def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
         row = int(take.active_marker) if self.row < 0 else self.row
         return take.markers[min(row, len(take.markers) - 1)]
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))
+class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
+    """Look for the markers in frames all over the clip: how large, distinct and reliably found each one is"""
+
+    bl_idname = "keymark.check_markers"
+    bl_label = "Check Markers"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, markers, picked_color, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        return search_markers(scene)
+
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        warnings = write_search(scene, result)
+        for sentence in warnings:
+            warn(self, sentence)
+        if not warnings:
+            self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_OT_pick_marker_color, KEYMARK_OT_check_markers)
+)

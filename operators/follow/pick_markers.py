@@ -1,7 +1,6 @@
 """Pick the colors of all markers, one click after the other."""
 
 from collections.abc import Generator
-from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -13,39 +12,26 @@ from ..shell.footage_clicks import ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
 from ..shell.requirements import footage, idle
-from ..shell.takes import active_take, footage_of, take_by_identifier
+from ..shell.takes import active_take, footage_of
 from .ignored_regions import ignored_regions
-from .marker_list import USUAL_SEGMENTS, append_marker
+from .marker_list import USUAL_SEGMENTS
 from .marker_styles import (
-    Rgb,
-    check_unchanged,
+    MarkerSearch,
     find_markers,
     request_for,
-    set_marker_color,
+    search_markers,
     styles_with_colors,
-    write_readouts,
+    write_search,
 )
-from .mask_previews import end_picked, show_masks, show_picked, update_masks, update_shown_masks
+from .mask_previews import end_picked, show_masks, show_picked, update_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.region_tracks import MarkerStyle
     from ...core.progress import Job
 
 
 KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: Done   |   Esc: Cancel"
-
-
-@dataclass(frozen=True, eq=False)
-class Picked:
-    """Result of the job."""
-
-    take: str  # The take's identifier
-    colors: dict[str, Rgb]  # The new colors by the markers' names
-    styles: "tuple[MarkerStyle, ...]"
-    ignored: "tuple[IgnoredRegion, ...]"
-    check: "MarkerCheck"
 
 
 class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
@@ -156,32 +142,18 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
             show_masks(context, self._masks_before)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
         from ..bridge.footage_color import footage_color
 
-        take = active_take(scene)
-        source, identifier, ignored = footage_of(scene, take), take.identifier, ignored_regions(take)
-        colors = self._colors
+        source, colors = footage_of(scene, active_take(scene)), self._colors
         if colors is None:
             colors = {one.name: footage_color(source, one.loc, round(one.time)) for one in self.clicks}
         if not colors:
             raise InputError("clicks is empty; click on at least one marker")
-        styles = styles_with_colors(take, colors)
-        check = yield from find_markers(source, styles, ignored)
-        return Picked(identifier, dict(colors), styles, ignored, check)
+        return (yield from search_markers(scene, colors))
 
-    def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        take = take_by_identifier(scene, result.take)
-        now = styles_with_colors(take, result.colors), ignored_regions(take)
-        check_unchanged(now, (result.styles, result.ignored))
-        _list_usual(take)
-        for name, color in result.colors.items():
-            set_marker_color(_marker(take, name), color)
-        warnings = write_readouts(take, result.styles, result.check)
-        if self._colors is not None:  # picked by clicks: the masks are shown at once
-            show_masks(bpy.context, True)
-        update_shown_masks(scene)
-        for sentence in warnings:
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(scene, result, masks=self._colors is not None):
             warn(self, sentence)
         self.report({"INFO"}, f"{len(result.colors)} markers are picked")
 
@@ -219,18 +191,6 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
 def _seen(identifier: str, styles: "tuple[MarkerStyle, ...]", search: "Job[MarkerCheck]") -> "Job[None]":
     """Look for markers, then let what was found be the preview of the take with an identifier."""
     show_picked(identifier, styles, (yield from search))
-
-
-def _list_usual(take: bpy.types.PropertyGroup) -> None:
-    """Add the usual five to an empty list."""
-    if not len(take.markers):
-        for segment in USUAL_SEGMENTS:
-            append_marker(take, segment)
-        take.active_marker = 0
-
-
-def _marker(take: bpy.types.PropertyGroup, name: str) -> bpy.types.PropertyGroup:
-    return next(marker for marker in take.markers if marker.name == name)
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_markers,))

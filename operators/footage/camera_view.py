@@ -70,10 +70,7 @@ def picture_at_factor_one(
 ) -> tuple[float, float]:
     """Return width and height [px] of the camera's picture with one side as long as the region's: factor one.
 
-    Args:
-        region_size: Width and height [px].
-        picture: Width and height; only their ratio counts.
-        sensor_fit: The side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
+    The sensor fit tells the side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
     """
     if sensor_fit == "AUTO":
         scale = max(region_size) / max(picture)
@@ -90,11 +87,6 @@ def camera_view(
 
     Blender draws the picture scaled by a factor, the square of (sqrt(2) + zoom / 50) / 2; an offset is a
     share of twice the region's size times that factor.
-
-    Args:
-        region_size: Width and height [px].
-        free: The part of the region.
-        picture: Width and height of the picture at factor one [px].
     """
     left, bottom, right, top = free
     room = max(right - left - 2.0 * MARGIN_PX, 1.0), max(top - bottom - 2.0 * MARGIN_PX, 1.0)
@@ -119,9 +111,6 @@ def look_through(space: bpy.types.SpaceView3D, scene: bpy.types.Scene, camera: b
     if space.use_local_camera:
         space.camera = camera
     space.region_3d.view_perspective = "CAMERA"
-
-
-# --- A viewport keeps the footage beside its sidebar
 
 
 SAME = 1e-4  # Difference within which views are one; Blender keeps them in single precision

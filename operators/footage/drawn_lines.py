@@ -16,11 +16,8 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fit import CameraFit
 
 VERTICAL, LEVEL, ACROSS, HEIGHT = KINDS = ("VERTICAL", "LEVEL", "ACROSS", "HEIGHT")
-PAIR = 2  # Lines of a kind after which the next kind is asked for
 NEAR_PX = 12.0  # Distance in the region within which an end is taken [px at a UI scale of 1]
 CLICKED_PX = 6.0  # Length below which a line is not drawn yet: its other end follows at the next click
-
-LOWEST_M, TALLEST_M = 0.5, 3.0  # Limits of a performer's height
 
 Pixel = tuple[float, float]
 
@@ -52,10 +49,7 @@ class Drawing:
     def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
         """Take the end of a line that is near, or begin a new line.
 
-        Args:
-            pixel: Where the mouse is in the footage [px].
-            frame: The scene frame shown.
-            near: Distance in the region from the mouse to a pixel of the footage, as a share of `NEAR_PX`.
+        `near` tells the distance in the region from the mouse to a pixel, as a share of `NEAR_PX`.
         """
         if self.held is not None:  # the second click of a line that is drawn by two
             self.move(pixel)
@@ -82,8 +76,7 @@ class Drawing:
     def release(self, far: Callable[[Pixel, Pixel], float]) -> bool:
         """Let go of the held end, unless its line is too short to be one; return whether it was let go.
 
-        Args:
-            far: Distance in the region between two pixels of the footage, as a share of `CLICKED_PX`.
+        `far` tells the distance in the region between two pixels, as a share of `CLICKED_PX`.
         """
         if self.held is None:
             return False
@@ -93,7 +86,7 @@ class Drawing:
         is_new = self.held == (len(self.lines) - 1, 1) and line.kind == self.kind
         self.held = None
         drawn = sum(other.kind == self.kind for other in self.lines)
-        if is_new and not self.stays and drawn >= PAIR and self.kind in (VERTICAL, LEVEL):
+        if is_new and not self.stays and drawn >= 2 and self.kind in (VERTICAL, LEVEL):
             self.kind = LEVEL if self.kind == VERTICAL else HEIGHT
         return True
 
@@ -103,8 +96,7 @@ class Drawing:
     def remove(self, near: Callable[[DrawnLine], float]) -> None:
         """Remove the line under the mouse, else the last one; a line that is being drawn first.
 
-        Args:
-            near: Distance in the region from the mouse to a line, as a share of `NEAR_PX`.
+        `near` tells the distance in the region from the mouse to a line, as a share of `NEAR_PX`.
         """
         if not self.lines:
             return
@@ -128,7 +120,7 @@ class Drawing:
             length = 0.0
         if not self.of_performer:
             self.lines[self.last].length = length
-        elif LOWEST_M <= length <= TALLEST_M:
+        elif 0.5 <= length <= 3.0:  # limits of a performer's height [m]
             self.stature_m = length
         return True
 

@@ -24,9 +24,10 @@ def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> No
     """Put a clip behind a take's camera; the scene's size, rate and range follow."""
     scene = take.id_data
     attached = attach_footage(scene, clip, _camera_for(take, clip), take.guessed_lens_mm)
-    take.guessed_lens_mm = attached.guessed_lens_mm or _guess_of_others(take, attached.camera)
+    shared = [other for other in scene.keymark.takes if other != take and other.camera == attached.camera]
+    take.guessed_lens_mm = attached.guessed_lens_mm or (shared[0].guessed_lens_mm if shared else 0.0)
     if attached.camera != take.camera:
-        take.guessed_placement = _guessed_placement_of_others(take, attached.camera)
+        take.guessed_placement = tuple(shared[0].guessed_placement) if shared else NO_GUESS
     if attached.guessed_placement is not None:
         take.guessed_placement = as_numbers(attached.guessed_placement)
     take.camera = attached.camera
@@ -148,21 +149,6 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
         if camera == take.camera or not is_startup_camera(camera):
             return camera
     return None
-
-
-def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) -> float:
-    """Return the guessed focal length of another take with the same camera; 0 for none."""
-    takes = take.id_data.keymark.takes
-    return next((other.guessed_lens_mm for other in takes if other != take and other.camera == camera), 0.0)
-
-
-def _guessed_placement_of_others(
-    take: bpy.types.PropertyGroup, camera: bpy.types.Object
-) -> tuple[float, ...]:
-    """Return the guessed placement of another take with the same camera; zeros for none."""
-    takes = take.id_data.keymark.takes
-    others = (tuple(other.guessed_placement) for other in takes if other != take and other.camera == camera)
-    return next(others, NO_GUESS)
 
 
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:

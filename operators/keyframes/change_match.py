@@ -1,4 +1,4 @@
-"""Jump to the next or previous found keyframe, or to a doubtful one."""
+"""Found keyframes: jump to them, accept, remove and replace them."""
 
 import bpy
 
@@ -95,13 +95,8 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         note_contradictions(take, frame, ())
         invalidate_keyed_frames()
         improved = improve_neighbors(context, take, frame)
-        if improved:
-            self.report(
-                {"INFO"},
-                f"Frame {frame:g} counts as posed now; {improved} found ones around it were posed anew",
-            )
-        else:
-            self.report({"INFO"}, f"Frame {frame:g} counts as posed now")
+        also = f"; {improved} found ones around it were posed anew" if improved else ""
+        self.report({"INFO"}, f"Frame {frame:g} counts as posed now{also}")
         return None
 
 
@@ -186,11 +181,9 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         match = chosen_match(take)
         if self.candidate >= len(match.candidates):
-            self.report(
-                {"ERROR"},
-                f"Frame {match.frame:g} has {len(match.candidates)} candidates; candidate must be 0 to "
-                f"{len(match.candidates) - 1}",
-            )
+            count = len(match.candidates)
+            sentence = f"Frame {match.frame:g} has {count} candidates; candidate must be 0 to {count - 1}"
+            self.report({"ERROR"}, sentence)
             return {"CANCELLED"}
         match.chosen, match.by_hand = self.candidate, True
         key_candidate(take, match)
@@ -198,13 +191,8 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         frame, number = float(match.frame), self.candidate + 1
         note_contradictions(take, frame, ())
         improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
-        if improved:
-            self.report(
-                {"INFO"},
-                f"Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
-            )
-        else:
-            self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}")
+        also = f"; {improved} found ones around it were posed anew" if improved else ""
+        self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}{also}")
         return None
 
 

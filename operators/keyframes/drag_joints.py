@@ -1,4 +1,4 @@
-"""One drag of a joint in a 3D view: from movements of the mouse to the posture that follows."""
+"""Dragging the actor's joints in a 3D view: from movements of the mouse to the posture that follows."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -9,7 +9,7 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
-from ..follow.tracks import point_title
+from ..follow.marker_properties import segment_title
 from ..overlays import handles
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
@@ -85,7 +85,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     joint: bpy.props.EnumProperty(
         name="Joint",
         description="The joint; left and right are the performer's own",
-        items=[(name, point_title(name), "Move this joint") for name in HUMAN.point_names],
+        items=[(name, segment_title(name), "Move this joint") for name in HUMAN.point_names],
     )
     place: bpy.props.FloatVectorProperty(
         name="Place", description="Where to, in the world", subtype="TRANSLATION", size=3
@@ -110,9 +110,6 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         sight /= max(float(np.linalg.norm(sight)), 1e-9)
         moved = dragged(body, posture, self.joint, np.array(self.place), sight, self.pushed)
         set_corrected(self, context, take, moved)
-
-
-# --- Drag the actor's joints in a 3D view
 
 
 GRAB_PX = 18.0  # Distance of the mouse from a joint below which a press takes hold of it
@@ -291,7 +288,7 @@ def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = Fals
     """Show in the status bar what keys do now, with no joint, over one or while it is dragged."""
     words = IDLE_KEYS
     if joint:
-        title = point_title(joint)
+        title = segment_title(joint)
         words = DRAG_KEYS.format(joint=title) if dragged else HOVER_KEYS.format(joint=title, keys=words)
     context.workspace.status_text_set(words)
 

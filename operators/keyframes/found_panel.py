@@ -88,9 +88,7 @@ def _draw_counts(
 ) -> None:
     """Draw how many were found, how many of them are in doubt, and the reason that was given."""
     count, doubtful = count_found(take)
-    words = f"{count} found, none of them doubtful"
-    if doubtful:
-        words = f"{count} found, {doubtful} of them doubtful"
+    words = f"{count} found, {doubtful or 'none'} of them doubtful"
     layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
     if take.matching.reason:
         draw_sentence(layout, context, take.matching.reason, "BLANK1")

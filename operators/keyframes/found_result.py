@@ -16,9 +16,8 @@ from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, posed_frames, state_of
 from ..shell.results import keep_reading, keep_speed
 from ..shell.takes import actor_of, take_by_identifier
-from .found_keyframes import undecided_matches
+from .found_keyframes import SceneClip, undecided_matches
 from .match_edits import add_candidate, add_match, key_matches
-from .scene_clip import SceneClip
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,14 +100,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
 def write_found(
     take: bpy.types.PropertyGroup, clip: SceneClip, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
-    """Key found postures and store what is known of them; none of their frames may have an entry.
-
-    Args:
-        take: The take.
-        clip: Its clip, as it was read.
-        keyframes: The found keyframes, in order of frame.
-        found: What was found, with the candidates of frames.
-    """
+    """Key found postures, in order of frame, and store what is known of them; none may have an entry yet."""
     candidates = {frame.index: frame.candidates for frame in found.frames}
     for keyframe in keyframes:
         said, frame = keyframe.matched, float(clip.frames[keyframe.index])

@@ -15,26 +15,18 @@ from ..follow.ignored_regions import ignored_regions
 from ..shell.keyed_frames import match_at
 from ..shell.results import reading_of
 from ..shell.takes import footage_of
-from .found_keyframes import undecided_matches
+from .found_keyframes import SceneClip, read_known_take, undecided_matches
 
 if TYPE_CHECKING:
     from ...core.footage.reading import Reading
 
 
 def improve_neighbors(context: bpy.types.Context, take: bpy.types.PropertyGroup, frame: float) -> int:
-    """Pose the found keyframes around one that the animator has just decided on anew.
+    """Pose the found keyframes around one that was just stored, accepted or replaced; return their number.
 
-    To be called once that is stored, within the same operator, so that one undo takes both back. Posed
-    keyframes, and those whose candidate a person chose, never change.
-
-    Args:
-        context: Its scene holds the take.
-        take: The take.
-        frame: The scene frame of the keyframe that was stored, accepted or replaced.
-
-    Returns:
-        How many changed: none where *Improve Neighbors* is off, or the footage was not read as it is followed
-        now.
+    To be called within the same operator, so that one undo takes both back. Posed keyframes, and those whose
+    candidate a person chose, never change; none does where *Improve Neighbors* is off, or the footage was not
+    read as it is followed now.
     """
     if not take.matching.improve_neighbors or not undecided_matches(take):
         return 0
@@ -65,7 +57,6 @@ def _pose_anew(
     from ..bridge.scene_frames import scene_frames
     from ..library.registry_files import named_libraries
     from .found_result import write_found
-    from .scene_clip import SceneClip, read_known_take
 
     known, notes = run(read_known_take(scene, settings))
     frames = scene_frames(reading.tracks.time_s, known.frame_start, known.fps)

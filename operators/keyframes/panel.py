@@ -1,4 +1,4 @@
-"""The panel that corrects a pose by choosing and dragging."""
+"""The panels of step 4, the keyframes."""
 
 import bpy
 
@@ -49,12 +49,6 @@ def _flipped(take: bpy.types.PropertyGroup) -> str:
     return "Flip Depth"
 
 
-# --- The panels of step 4
-
-
-PROMINENT = 1.6  # Height of the button that does the step's whole work
-
-
 class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
@@ -68,7 +62,7 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     def draw_step(self, context: bpy.types.Context) -> None:
         take, column = active_take(context.scene), self.column()
         everything = column.column()
-        everything.scale_y = PROMINENT
+        everything.scale_y = 1.6
         if not draw_progress(everything, context, "keymark.pose_all"):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
         if not len(take.proposals):
@@ -114,19 +108,15 @@ def _draw_posed(
     """Draw the numbers of proposed frames that are posed, of other posed frames, and of found ones."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     found = len(matched_frames(take))
+    done = proposed - left
     if found:
         text = f"{posed} posed, {found} found"
-        draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
-        return
-    if not proposed:
+    elif proposed:
+        text = f"{done} of {proposed} posed" + (f", {posed - done} elsewhere" if posed > done else "")
+    else:
         text = f"{posed} posed; none proposed yet"
-        draw_sentence(layout, context, text, "INFO")
-        return
-    done = proposed - left
-    text = f"{done} of {proposed} posed"
-    if posed > done:
-        text = f"{done} of {proposed} posed, {posed - done} elsewhere"
-    draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
+    ready = not left and (found or proposed)
+    draw_sentence(layout, context, text, "CHECKMARK" if ready else "INFO")
 
 
 def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyGroup) -> None:
@@ -141,11 +131,9 @@ def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyG
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        text = f"Frame {frame} is found, not posed"
-        layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
+        layout.label(text=f"Frame {frame} is found, not posed", icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
-        text = f"Frame {frame} is proposed, not posed yet"
-        layout.label(text=text, icon="KEYFRAME", translate=False)
+        layout.label(text=f"Frame {frame} is proposed, not posed yet", icon="KEYFRAME", translate=False)
     else:
         layout.label(text=f"Frame {frame} is not posed", icon="DOT", translate=False)
 

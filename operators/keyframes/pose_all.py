@@ -15,8 +15,8 @@ from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import count_found, doubtful_matches, proposed_frames
 from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.takes import active_take
+from .found_keyframes import SceneClip, read_scene_clip
 from .found_properties import FloorSettings
-from .scene_clip import SceneClip, read_scene_clip
 
 if TYPE_CHECKING:
     from ...core.progress import Job

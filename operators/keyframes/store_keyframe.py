@@ -22,15 +22,7 @@ from .improve_neighbors import improve_neighbors
 def key_pose(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> int:
     """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
 
-    Args:
-        context: Its scene holds the take.
-        take: The take, with an actor and a keyframe Action.
-
-    Returns:
-        How many found keyframes around it were posed anew.
-
-    Raises:
-        InputError: A bone is missing.
+    Returns how many found keyframes around it were posed anew.
     """
     from ..bridge.keyframes import store_pose
 
@@ -75,19 +67,15 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
                 "what the skeleton can do, and its nearest posture will be used"
             )
             give_notices(take, "keyframes", about, (warn(self, sentence),), frame=frame)
-        elif improved:
-            self.report(
-                {"INFO"},
-                f"Stored a keyframe at frame {frame:g}; {improved} found ones around it were posed anew",
-            )
+            return
+        also = ""
+        if improved:
+            also = f"; {improved} found ones around it were posed anew"
         elif was_found:
-            self.report(
-                {"INFO"}, f"Stored a keyframe at frame {frame:g}; it was found, and counts as posed now"
-            )
+            also = "; it was found, and counts as posed now"
         elif switched:
-            self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}; the actor shows the keyframes now")
-        else:
-            self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}")
+            also = "; the actor shows the keyframes now"
+        self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

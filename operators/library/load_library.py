@@ -75,18 +75,6 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(KEYMARK_OT_import_library.bl_idname, text="Keymark Keyframe Library (.json/.blend)")
 
 
-def _register_import_library() -> None:
-    """Add the operator, and an entry to File > Import."""
-    bpy.utils.register_class(KEYMARK_OT_import_library)
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def _unregister_import_library() -> None:
-    """Remove both."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    bpy.utils.unregister_class(KEYMARK_OT_import_library)
-
-
 class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     """Read the folder of your libraries again, after other programs have changed its files"""
 
@@ -134,17 +122,17 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_refresh_shelf, KEYMARK_OT_edit_library)
+    (KEYMARK_OT_import_library, KEYMARK_OT_refresh_shelf, KEYMARK_OT_edit_library)
 )
 
 
 def register() -> None:
-    """Register all of this module."""
+    """Register the operators, and add an entry to File > Import."""
     _register_classes()
-    _register_import_library()
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
 def unregister() -> None:
     """Take it all back."""
-    _unregister_import_library()
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     _unregister_classes()

@@ -13,7 +13,6 @@ from bpy.app import timers
 from ..shell.takes import redraw_sidebars
 from . import library_files as user_folder
 
-SOON_S = 0.1  # Delay before the folders are read, so that the panel is drawn first
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
@@ -52,11 +51,7 @@ def _number(identifier: str) -> int:
 
 
 def refresh(choose: str = "") -> None:
-    """Read the folders, and fill the list.
-
-    Args:
-        choose: Identifier of the library to choose in the list; by default the same as before.
-    """
+    """Read the folders, fill the list, and choose the library of an identifier, else the same as before."""
     from ...core.prior.registry import registered_libraries
     from .registry_files import folders
 
@@ -79,7 +74,7 @@ def refresh_if_empty() -> None:
     """Read the folders soon if the list is empty, as after Blender's start or a new file; for drawing."""
     empty = not len(bpy.context.window_manager.keymark_shelf.libraries)
     if empty and not bpy.app.background and not timers.is_registered(_refresh_now):
-        timers.register(_refresh_now, first_interval=SOON_S)
+        timers.register(_refresh_now, first_interval=0.1)  # the panel is drawn first
 
 
 def cancel_refresh() -> None:

@@ -17,11 +17,7 @@ def folders() -> list[Path]:
 
 
 def load_registered(identifier: str) -> Library:
-    """The registered library of an identifier, read from its file.
-
-    Raises:
-        InputError: There is none, or its file is unusable.
-    """
+    """The registered library of an identifier; an InputError without a usable file of it."""
     return find_library(identifier, folders())
 
 
@@ -86,14 +82,7 @@ def _own_file(folder: Path, identifier: str) -> Path:
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)
     damaged = next((each for each in there if each.path == found and each.library is None), None)
-    if other is not None:
-        raise InputError(
-            f"{found}: holds the library '{other.title}', which would be lost; give that file another "
-            "name first"
-        )
-    if damaged is not None:
-        raise InputError(
-            f"{found}: holds something that is no library, which would be lost; give that file another "
-            "name first"
-        )
+    if other is not None or damaged is not None:
+        held = "something that is no library" if other is None else f"the library '{other.title}'"
+        raise InputError(f"{found}: holds {held}, which would be lost; give that file another name first")
     return found

@@ -28,21 +28,21 @@ class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+)
 
 
 def register() -> None:
-    """Add the registry to the window manager."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
+    """Register the groups, and add the registry to the window manager."""
+    _register_classes()
     bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
         type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
     )
 
 
 def unregister() -> None:
-    """Remove it."""
+    """Take it all back."""
     registry.cancel_refresh()
     del bpy.types.WindowManager.keymark_shelf
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()

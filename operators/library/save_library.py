@@ -1,4 +1,4 @@
-"""Common licenses of libraries, suggested in license fields."""
+"""Save a keyframe library to a file, or learn one from a take's motion."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,11 +28,7 @@ USUAL = (
 
 def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: str) -> list[tuple[str, str]]:
     """The common licenses that contain the typed text, each with what it allows; all if none does."""
-    fitting = [each for each in USUAL if typed.lower() in each[0].lower()] or USUAL
-    return [(license, allowed) for license, allowed in fitting]
-
-
-# --- Save a keyframe library
+    return [each for each in USUAL if typed.lower() in each[0].lower()] or list(USUAL)
 
 
 FORMATS = [
@@ -126,11 +122,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return self.title.strip() or (take.name if take is not None else "Postures")
 
     def _library(self, context: bpy.types.Context) -> "Library":
-        """The library to write.
-
-        Raises:
-            InputError: There is none, or it is not complete.
-        """
         from ...core.prior.learning import LibraryMetadata
         from ..bridge.library.posed_library import library_of_assets, library_of_keyframes
         from .registry_files import load_registered
@@ -148,10 +139,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return library_of_keyframes(context.scene, armature, take.keyframe_action, about)
 
 
-# --- Learn a keyframe library from a take's motion
-
-
-DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
 A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
 
@@ -195,7 +182,7 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
             self.title = take.name
         if not self.author:
             self.author = take.finish.author
-        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
+        return context.window_manager.invoke_props_dialog(self, width=360, confirm_text="Learn")
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

@@ -1,4 +1,4 @@
-"""Live preview: the actor shows what a running job has found, and is restored afterwards."""
+"""What a reconstruction shows on the actor while it runs, and what it writes into the scene at the end."""
 
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from ...core.progress import Preview
 from ...core.review.review import Review
 from ..bridge.fcurves import write_motion
 from ..bridge.pose import write_posture
+from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
-from ..review.review_results import show_review
-from ..shell.results import keep_reading, keep_reconstruction, keep_review, reconstructed_again
+from ..shell.results import clear_review, keep_reading, keep_reconstruction, keep_review, reconstructed_again
 from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
@@ -29,13 +29,7 @@ class LivePreview:
     """Shows previews on an armature in its scene; `end` leaves both as they were."""
 
     def __init__(self, scene: bpy.types.Scene, armature_object: bpy.types.Object, frames: Array) -> None:
-        """Change nothing before the first preview.
-
-        Args:
-            scene: The scene that holds the armature.
-            armature_object: The actor.
-            frames: (F,) scene frame of every frame of the clip.
-        """
+        """Change nothing before the first preview; `frames` (F,) are the scene frames of the clip's."""
         self._scene, self._armature, self._frames = scene, armature_object, frames
         self._uids = scene.session_uid, armature_object.session_uid
         self._changes: ExitStack | None = None
@@ -126,3 +120,20 @@ class ReconstructionResult:
         keep_review(take, self.review)
         show_review(take, self.review)
         return take
+
+
+def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
+    """Fill the review of a take whose motion was written, and write its curves into the motion's Action."""
+    shown = take.review
+    clear_review(take)
+    shown.frame_count = len(review.frames)
+    believed = float(review.confidence.mean())
+    shown.confidence = believed if believed == believed else -1.0  # NaN: the method cannot tell
+    for weak in review.weak_frames:
+        item = shown.weak_frames.add()
+        item.frame = review.frames[weak.index]
+        item.reason = weak.reason.name
+        item.marker = "" if weak.marker is None else review.marker_names[weak.marker]
+        item.point = weak.point or ""
+        item.strength = weak.strength
+    write_review_curves(take.armature, take.motion_action, review)

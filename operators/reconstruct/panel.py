@@ -21,22 +21,22 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         column.prop(take, "method")
         column.prop(take, "live_preview")
-        _draw_show(column, take)
+        if take.armature is not None and take.motion_action is not None:
+            actions = {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action}
+            draw_shown_action(column, take, actions)
 
 
-def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the switch between keyframes and motion, where there is a motion."""
-    if take.armature is None or take.motion_action is None:
-        return
+def draw_shown_action(
+    layout: bpy.types.UILayout, take: bpy.types.PropertyGroup, actions: dict[str, bpy.types.Action | None]
+) -> None:
+    """Draw the switch between Actions on the actor, by the names of `keymark.show_action`."""
     data = take.armature.animation_data
     shown = data.action if data else None
     row = layout.row(align=True)
-    for which, action, text in (
-        ("KEYFRAMES", take.keyframe_action, "Keyframes"),
-        ("MOTION", take.motion_action, "Motion"),
-    ):
+    for which, action in actions.items():
         depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
+        button = row.operator("keymark.show_action", text=which.title(), depress=depress, translate=False)
+        button.which = which
 
 
 class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):

@@ -81,27 +81,20 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         take.notes.clear()
         for note in result.notes:
             take.notes.add().text = warn(self, note)
+        count = len(result.reconstruction.motion.keyframe_indices)
         self.report(
             {"INFO"},
-            f"Reconstructed {len(result.frames)} frames from "
-            f"{len(result.reconstruction.motion.keyframe_indices)} keyframes",
+            f"Reconstructed {len(result.frames)} frames from {count} keyframes",
         )
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:
-    """Refuse a take with too few keyframes, with the notes on those that do not count.
-
-    Raises:
-        InputError: There are fewer than two in the footage.
-    """
+    """Refuse a take with fewer than two keyframes, with the notes on those that do not count."""
     if count < 2:
         raise InputError(
             f"{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
             f"actor{''.join(f'. {capitalized(note)}' for note in notes)}"
         )
-
-
-# --- Show keyframes, motion or final Action on the actor
 
 
 MISSING = {

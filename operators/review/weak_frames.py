@@ -1,4 +1,4 @@
-"""Jump through the frames worth another keyframe, the worst first."""
+"""Frames worth another keyframe: jump to them and pose them; look at the actor from the side."""
 
 import bpy
 import numpy as np
@@ -100,9 +100,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         self.report({"INFO"}, f"Stored the reconstructed pose at frame {frame:g}; now correct it")
         return None
-
-
-# --- Look at the actor from the footage's side, where depth shows, and back
 
 
 DISTANCE_HEIGHTS = 2.6

@@ -1,4 +1,4 @@
-"""Open a take from disk: footage, camera, actor, what is followed, and keyframes."""
+"""Open a take from disk or one that comes with Keymark; files that are dropped onto an editor."""
 
 from pathlib import Path
 
@@ -53,31 +53,15 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(KEYMARK_OT_open_take.bl_idname, text="Keymark Take (take.json)")
 
 
-def _register_open_take() -> None:
-    """Add the operator, and an entry to File > Import."""
-    bpy.utils.register_class(KEYMARK_OT_open_take)
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def _unregister_open_take() -> None:
-    """Remove both."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    bpy.utils.unregister_class(KEYMARK_OT_open_take)
-
-
-# --- Open a take that comes with Keymark, ready to reconstruct
-
-
-AEROBIC, GREETING = "AEROBIC", "GREETING"
 EXAMPLES = (
     (
-        AEROBIC,
+        "AEROBIC",
         "Exercise in Colored Sleeves",
         "Four seconds of exercise in sleeves and leggings of five colors, picked already, with twelve "
         "keyframes posed by hand",
     ),
     (
-        GREETING,
+        "GREETING",
         "Greeting in Plain Clothes",
         "Somebody comes in and waves, in clothes without markers: keypoints as a detector sees them, the "
         "body's contours, and ten keyframes posed by hand",
@@ -151,19 +135,11 @@ def _draw_examples(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout = menu.layout
     for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
         for name, title, _ in EXAMPLES:
-            text = title
-            entry = layout.operator(
-                KEYMARK_OT_open_example.bl_idname,
-                text=f"Copy {text} to Folder" if copy else text,
-                icon=icon,
-                translate=False,
-            )
+            text = f"Copy {title} to Folder" if copy else title
+            entry = layout.operator("keymark.open_example", text=text, icon=icon, translate=False)
             entry.example, entry.copy = name, copy
         if not copy:
             layout.separator()
-
-
-# --- Open a dropped .json
 
 
 TAKE_FILE = "take.json"
@@ -218,14 +194,8 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
             raise InputError(str(error).removeprefix("Error: ").strip()) from error
 
 
-# --- Handlers of files dropped onto an editor
-
-
-EDITORS = {"VIEW_3D", "CLIP_EDITOR"}
-
-
 def _over_an_editor(context: bpy.types.Context) -> bool:
-    return context.area is not None and context.area.type in EDITORS
+    return context.area is not None and context.area.type in {"VIEW_3D", "CLIP_EDITOR"}
 
 
 class KEYMARK_FH_footage(bpy.types.FileHandler):
@@ -255,17 +225,23 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (KEYMARK_OT_open_example, KEYMARK_OT_open_dropped, KEYMARK_FH_footage, KEYMARK_FH_take)
+    (
+        KEYMARK_OT_open_take,
+        KEYMARK_OT_open_example,
+        KEYMARK_OT_open_dropped,
+        KEYMARK_FH_footage,
+        KEYMARK_FH_take,
+    )
 )
 
 
 def register() -> None:
-    """Register all of this module."""
+    """Register the operators and file handlers, and add an entry to File > Import."""
     _register_classes()
-    _register_open_take()
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
 def unregister() -> None:
     """Take it all back."""
-    _unregister_open_take()
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     _unregister_classes()

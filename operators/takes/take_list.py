@@ -1,4 +1,4 @@
-"""Add a take for another performer in the same clip."""
+"""The scene's list of takes: one added for another performer, removed, and saved."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,8 +7,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..follow.evidence import scene_evidence
-from ..follow.keypoint_paths import add_keypoint_file, keypoint_path
+from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
 from ..keyframes.found_keyframes import known_matches
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.requirements import actor, footage, idle
@@ -37,9 +36,6 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
         take.camera, take.clip = camera, clip
         for path in files:
             add_keypoint_file(take, path)
-
-
-# --- Remove a take from the scene's list
 
 
 def take(context: bpy.types.Context) -> str | None:

@@ -19,8 +19,8 @@ from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
+from ..follow.evidence import add_keypoint_file
 from ..follow.ignored_regions import add_ignored_regions
-from ..follow.keypoint_paths import add_keypoint_file
 from ..follow.marker_styles import set_marker_color
 from ..footage.load_footage import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
@@ -42,11 +42,7 @@ class OpenedTake:
 
 
 def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
-    """Read a take and check it against its clip.
-
-    Args:
-        folder: The take's folder.
-        keyframe_file: Name of the keyframe file in it; the usual one may be missing.
+    """Read a take of a folder and check it against its clip; the usual keyframe file may be missing.
 
     Raises:
         InputError: The take or its clip is unusable.

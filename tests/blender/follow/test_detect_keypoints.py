@@ -5,7 +5,7 @@ import pytest
 from _fake_network import MiddleNetwork
 from keymark.core.take.take import Take
 from keymark.operators.follow.detect_keypoints import KEYMARK_OT_detect_keypoints
-from keymark.operators.follow.keypoint_paths import keypoint_path
+from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.shell.takes import active_take
 
 

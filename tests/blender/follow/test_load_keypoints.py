@@ -12,8 +12,14 @@ import pytest
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.frame_keypoints import clear_readings, keypoint_reading, keypoints_at
-from keymark.operators.follow.readouts import contours_label, keypoints_label, seen_label
+from keymark.operators.follow.frame_keypoints import (
+    clear_readings,
+    contours_label,
+    keypoint_reading,
+    keypoints_at,
+    keypoints_label,
+    seen_label,
+)
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes.panel import next_step
 
