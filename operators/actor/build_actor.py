@@ -54,23 +54,17 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now; its keyframes are kept")
             return
         stance = performers_stance(context.scene, take, body) if self.place else None
+        said = "The actor stands at the world's origin"
         if stance is not None:
-            write_posture(take.armature, stance[0])
-        self._report_stance(had_actor, stance is not None, stance is not None and stance[1])
-
-    def _report_stance(self, had_actor: bool, stands: bool, is_seen: bool) -> None:
-        if is_seen:
-            self.report({"INFO"}, "The actor stands where the performer is seen in this frame")
-        elif stands:
-            self.report(
-                {"INFO"},
-                "The actor stands in the middle of the picture; with markers or keypoints it would "
-                "stand at the performer",
-            )
+            posture, is_seen = stance
+            write_posture(take.armature, posture)
+            said = "The actor stands where the performer is seen in this frame"
+            if not is_seen:
+                said = "The actor stands in the middle of the picture"
+                said += "; with markers or keypoints it would stand at the performer"
         elif had_actor:
-            self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now")
-        else:
-            self.report({"INFO"}, "The actor stands at the world's origin")
+            said = f"The actor is {self.stature:.4g} m tall now"
+        self.report({"INFO"}, said)
 
 
 def any_actor(context: bpy.types.Context) -> str | None:

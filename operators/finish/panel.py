@@ -57,11 +57,9 @@ def _draw_result(
     kept = f"{settings.keys_after} keys instead of {settings.keys_before}"
     draw_sentence(lines, context, kept, "KEYFRAME_HLT")
     if settings.furthest_mm > 0.0:
-        off = f"At most {settings.furthest_mm:.1f} mm off"
-        draw_sentence(lines, context, off, "DRIVER_DISTANCE")
+        draw_sentence(lines, context, f"At most {settings.furthest_mm:.1f} mm off", "DRIVER_DISTANCE")
     if settings.rests:
-        rests = f"Feet planted: {settings.rests} rests"
-        draw_sentence(lines, context, rests, "PINNED")
+        draw_sentence(lines, context, f"Feet planted: {settings.rests} rests", "PINNED")
 
 
 class FinishPart(TakePanel):

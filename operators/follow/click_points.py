@@ -124,9 +124,8 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         width, height = take.clip.size
         if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
             x, y = self.pixel
-            raise InputError(
-                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
-            )
+            extent = f"{width} x {height} pixels"
+            raise InputError(f"pixel ({x:g}, {y:g}) lies outside the footage, which is {extent}")
         set_click(take, self.point, tuple(self.pixel))
         redraw_footage(context)
 
@@ -212,10 +211,8 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         take = active_take(context.scene)
         found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
         if found is None:
-            raise InputError(
-                f"no detector sees anybody in frame {context.scene.frame_current}; go to one in which "
-                "the performer is seen"
-            )
+            nobody = f"no detector sees anybody in frame {context.scene.frame_current}"
+            raise InputError(f"{nobody}; go to one in which the performer is seen")
         point, pixel = found
         set_click(take, point, pixel)
         redraw_footage(context)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 
 KEYPOINT_FILE = "keypoints.json"
-MOST_TRIED = 1000  # Numbers that are tried for a name that is free
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +63,8 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
         take.follow.use_keypoints = True
         clear_readings()
         redraw_footage(bpy.context)
-        self.report(
-            {"INFO"},
-            f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames; the keypoints are in "
-            f"{result.output.name}",
-        )
+        seen = f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames"
+        self.report({"INFO"}, f"{seen}; the keypoints are in {result.output.name}")
 
 
 def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
@@ -83,7 +79,7 @@ def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
     if not access(wanted.parent, W_OK | X_OK):
         raise InputError(f"{wanted.parent}: cannot be written; the keypoints belong beside the clip")
     known = {keypoint_path(entry) for entry in take.follow.files}
-    names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, MOST_TRIED))]
+    names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, 1000))]
     return next((name for name in names if name in known or not name.exists()), wanted)
 
 

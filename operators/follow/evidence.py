@@ -109,8 +109,7 @@ def _has_points(take: bpy.types.PropertyGroup) -> bool:
 # --- Keypoint files on disk
 
 
-LOOKED_S = 2.0
-"""Time for which a file's state on disk is taken to be what it was: drawing reads no folder each time."""
+LOOKED_S = 2.0  # Time for which a file's state counts as it was: drawing reads no folder each time
 
 _states: dict[Path, tuple[float, str | None]] = {}
 """Time at which a path was looked at [s], and the state it had."""

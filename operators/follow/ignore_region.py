@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 
 Pixel = tuple[float, float]
 
-STEP = 0.25  # Distance between points of a stroke, in radii: more would not be seen
-GROWTH = 1.25  # Factor between sizes of the brush
-USUAL = 0.03  # The first radius as a share of the picture's width
-SMALLEST_PX, LARGEST = 1.0, 0.5  # The smallest radius, and the largest one as a share of the picture's width
+SMALLEST_PX = 1.0  # Smallest radius of the brush
 
 
 @dataclass
@@ -41,7 +38,7 @@ class Brush:
     is_down: bool = False
 
     def __post_init__(self) -> None:
-        self.radius_px = self.radius_px or max(USUAL * self.width, SMALLEST_PX)
+        self.radius_px = self.radius_px or max(0.03 * self.width, SMALLEST_PX)
 
     def press(self, pixel: Pixel) -> None:
         self.strokes.append((self.radius_px, [pixel]))
@@ -50,15 +47,15 @@ class Brush:
     def move(self, pixel: Pixel, most_points: int) -> None:
         """Go on with the stroke; a long one goes on as another."""
         radius, points = self.strokes[-1]
-        if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < STEP * radius:
-            return
+        if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < 0.25 * radius:
+            return  # nearer points would not be seen
         if len(points) >= most_points:
             self.strokes.append((radius, [points[-1]]))
         self.strokes[-1][1].append(pixel)
 
     def grow(self, steps: int) -> None:
         """Make it larger, or smaller with fewer than no steps."""
-        self.radius_px = float(np.clip(self.radius_px * GROWTH**steps, SMALLEST_PX, LARGEST * self.width))
+        self.radius_px = float(np.clip(self.radius_px * 1.25**steps, SMALLEST_PX, 0.5 * self.width))
 
     def regions(self) -> "tuple[IgnoredRegion, ...]":
         from ...core.footage.ignored_regions import IgnoredRegion
@@ -78,9 +75,6 @@ def take_brush(brush: Brush | None) -> None:
 def brush_at_work() -> Brush | None:
     """The brush that is at work; None for none."""
     return _brush
-
-
-# --- Operators
 
 
 def still_areas(context: bpy.types.Context) -> str | None:

@@ -60,11 +60,9 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         redraw_footage(context)
         for note in people.notes:
             warn(self, note)
-        self.report(
-            {"INFO"},
-            f"Loaded {len(people.names)} points of {people.source}, in "
-            f"{sum(len(frame.pixel) > 0 for frame in people.frames)} of {len(people.frames)} frames",
-        )
+        loaded = f"Loaded {len(people.names)} points of {people.source}"
+        seen = sum(len(frame.pixel) > 0 for frame in people.frames)
+        self.report({"INFO"}, f"{loaded}, in {seen} of {len(people.frames)} frames")
 
 
 def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":

@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 
 def request_for(segment: str) -> FootageRequest:
     """The request for the marker on a segment; left and right are the performer's own."""
-    title = f"Click on: {segment_title(segment)}"
-    return FootageRequest(title, side_of(segment))
+    return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment))
 
 
 Rgb = tuple[int, int, int]  # Red, green, blue in 0 to 255
@@ -42,7 +41,11 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     Raises:
         InputError: Two markers have one name or one segment.
     """
-    styles = tuple(_style(marker.name, marker.segment, _to_bytes(marker.color)) for marker in take.markers)
+    from ...core.footage.region_tracks import MarkerStyle
+
+    colors = [tuple(round(float(value) * 255) for value in marker.color) for marker in take.markers]
+    pairs = zip(take.markers, colors, strict=True)
+    styles = tuple(MarkerStyle(marker.name, marker.segment, color) for marker, color in pairs)
     for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
         twice = next((value for value in values if values.count(value) > 1), None)
         if twice is not None:
@@ -58,9 +61,11 @@ def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb])
     Raises:
         InputError: Two markers have one name or one segment, or there is no marker of a name.
     """
+    from ...core.footage.region_tracks import MarkerStyle
+
     styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
     if not styles:
-        styles = tuple(_style(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
+        styles = tuple(MarkerStyle(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
     unknown = set(colors) - {style.name for style in styles}
     if unknown:
         known = ", ".join(style.name for style in styles)
@@ -77,17 +82,6 @@ def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: Rgb) -> None:
     marker.color = [value / 255 for value in color_srgb]
 
 
-def _style(name: str, segment: str, color_srgb: Rgb) -> "MarkerStyle":
-    from ...core.footage.region_tracks import MarkerStyle
-
-    return MarkerStyle(name, segment, color_srgb)
-
-
-def _to_bytes(color: bpy.types.bpy_prop_array) -> Rgb:
-    red, green, blue = (round(float(value) * 255) for value in color)
-    return red, green, blue
-
-
 def markers_label(take: bpy.types.PropertyGroup) -> str:
     """As in `4 of 5`, once the clip was read for these markers; before that how many there are."""
     count = len(take.markers)
@@ -101,11 +95,8 @@ def markers_label(take: bpy.types.PropertyGroup) -> str:
     return f"{int(reading.tracks.visible[index].sum())} of {count}"
 
 
-MOST_CLIPS = 2
-"""Clips whose sampled frames are cached, some megabytes each, so that another color is checked at once."""
-SAMPLING_SHARE = 0.7
-
-_samples: "dict[str, ClipSamples]" = {}  # By the digest of the clip's file, the least recently used first
+_samples: "dict[str, ClipSamples]" = {}
+"""Sampled frames of the last two clips, some megabytes each, by the digest of the file: the latest last."""
 
 
 def find_markers(
@@ -124,12 +115,12 @@ def find_markers(
     samples = _samples.pop(key, None)
     if samples is None:
         job = sample_clip(footage.open())
-        samples = yield from within("Looking at frames of the clip", job, 0.0, SAMPLING_SHARE)
-    _samples[key] = samples  # the most recently used one last
-    while len(_samples) > MOST_CLIPS:
+        samples = yield from within("Looking at frames of the clip", job, 0.0, 0.7)
+    _samples[key] = samples
+    while len(_samples) > 2:
         del _samples[next(iter(_samples))]
     check = check_markers(samples, styles, ignored=ignored)
-    return (yield from within("Finding the markers", check, SAMPLING_SHARE, 1.0))
+    return (yield from within("Finding the markers", check, 0.7, 1.0))
 
 
 def write_readouts(
@@ -171,11 +162,11 @@ def search_markers(
     scene: bpy.types.Scene, colors: Mapping[str, Rgb] | None = None, more: "tuple[IgnoredRegion, ...]" = ()
 ) -> "Job[MarkerSearch]":
     """Look for the active take's markers with new colors, or without more regions of the picture."""
-    take, colors = active_take(scene), dict(colors or {})
+    take, new = active_take(scene), dict(colors or {})
     source, identifier, ignored = footage_of(scene, take), take.identifier, ignored_regions(take)
-    styles = styles_with_colors(take, colors)
+    styles = styles_with_colors(take, new)
     check = (yield from find_markers(source, styles, (*ignored, *more))) if styles else None
-    return MarkerSearch(identifier, colors, more, styles, ignored, check)
+    return MarkerSearch(identifier, new, more, styles, ignored, check)
 
 
 def write_search(scene: bpy.types.Scene, found: MarkerSearch, masks: bool = False) -> list[str]:

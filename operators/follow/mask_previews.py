@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...], tuple[object, ...]]
 
-MOST_PREVIEWS = 4
-
 
 @dataclass(frozen=True, eq=False)
 class ColorMask:
@@ -60,7 +58,7 @@ def keep_preview(
     """Cache the learned colors of a take's markers."""
     _previews.pop(key := _key(take), None)
     _previews[key] = _preview(styles, check)
-    while len(_previews) > MOST_PREVIEWS:
+    while len(_previews) > 4:
         del _previews[next(iter(_previews))]
 
 
@@ -98,8 +96,7 @@ def update_masks(scene: bpy.types.Scene) -> Preview | None:
     if preview is None or is_of_frame(preview, scene):
         return preview
     footage = footage_of(scene, take)
-    ignored = ignored_mask(take)
-    preview.masks = _masks(preview, footage, ignored)
+    preview.masks = _masks(preview, footage, ignored_mask(take))
     preview.time_s = footage.shown_s
     return preview
 

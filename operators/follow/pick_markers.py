@@ -161,11 +161,8 @@ class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
         self._stop_looking()
         take = active_take(context.scene)
         styles = styles_with_colors(take, self._colors)
-        self._looking = _seen(
-            take.identifier,
-            styles,
-            find_markers(footage_of(context.scene, take), styles, ignored_regions(take)),
-        )
+        search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
+        self._looking = _seen(take.identifier, styles, search)
 
     def _look(self, context: bpy.types.Context) -> None:
         """Go on looking for the colors picked so far; at the end show their masks."""

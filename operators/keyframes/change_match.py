@@ -41,9 +41,7 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
                 "contradicts, then the least sure ones. Accept it, take another candidate, or correct "
                 "the pose and store it; pressed once more, it goes on to the next"
             )
-        if properties.direction == "NEXT":
-            return "Go to the next found keyframe"
-        return "Go to the previous found keyframe"
+        return f"Go to the {properties.direction.lower()} found keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         take = active_take(context.scene)

@@ -55,14 +55,6 @@ class JointDrag:
             self.moved = self.moved + step
 
     @property
-    def has_moved(self) -> bool:
-        return bool(self.moved.any()) or self.depth_m != 0.0
-
-    @property
-    def pushed(self) -> bool:
-        return self.depth_m != 0.0
-
-    @property
     def sight(self) -> Array:
         """(3,) direction in which the view looks at the place."""
         return self.view.sight(self.position + self.moved)
@@ -234,16 +226,10 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             _show_keys(context)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._restore(context)
-            if drag.has_moved:
+            if drag.moved.any() or drag.depth_m != 0.0:
                 # As an operator of its own, so that each drag is one step of undo.
-                bpy.ops.keymark.move_joint(
-                    "EXEC_DEFAULT",
-                    True,
-                    joint=drag.joint,
-                    place=drag.place,
-                    sight=drag.sight,
-                    pushed=drag.pushed,
-                )
+                ways = {"place": drag.place, "sight": drag.sight, "pushed": drag.depth_m != 0.0}
+                bpy.ops.keymark.move_joint("EXEC_DEFAULT", True, joint=drag.joint, **ways)
             _show_keys(context)
         elif event.type == "MOUSEMOVE":
             drag.follow(event)
@@ -280,7 +266,7 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     from ...core.posing.dragged import dragged
     from ..bridge.pose import write_posture
 
-    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.pushed)
+    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.depth_m != 0.0)
     write_posture(take.armature, moved)
 
 

@@ -1,4 +1,4 @@
-"""Poses offered for a frame that is not keyed: what fitting it has found, the shown one first."""
+"""Fit the pose of a frame to the footage, and show the poses that it may have; nothing is keyed."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -63,11 +63,9 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
             self.report({"ERROR"}, f"Frame {frame:g} offers no poses; fit it to the footage first")
             return {"CANCELLED"}
         if self.candidate >= len(offered.candidates):
-            self.report(
-                {"ERROR"},
-                f"Frame {frame:g} offers {len(offered.candidates)} poses; candidate must be 0 to "
-                f"{len(offered.candidates) - 1}",
-            )
+            count = len(offered.candidates)
+            sentence = f"Frame {frame:g} offers {count} poses; candidate must be 0 to {count - 1}"
+            self.report({"ERROR"}, sentence)
             return {"CANCELLED"}
         show_keyframes(take)
         write_posture(take.armature, candidate_posture(offered.candidates[self.candidate]))
@@ -121,42 +119,29 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         take = active_take(scene)
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         libraries = () if self.start == "POSE" else all_libraries()
-        found = fit_to_frame(
-            frame,
-            take.armature,
-            take.keyframe_action,
-            self.start,
-            known_matches(take),
-            libraries,
-            _floor_m(take.matching),
-        )
+        known, floor_m = known_matches(take), _floor_m(take.matching)
+        actor_and_keys = take.armature, take.keyframe_action
+        found = fit_to_frame(frame, *actor_and_keys, self.start, known, libraries, floor_m)
         show_keyframes(take)
         write_posture(take.armature, found.candidates[0].posture)
         offer_poses(take, scene.frame_current_final, found.candidates)
         note_contradictions(take, scene.frame_current_final, found.contradictions)
         if found.contradictions:
-            self.report(
-                {"WARNING"},
-                f"No plausible pose explains {', '.join(found.contradictions)} here; check what else "
-                "looks like it, or pose the frame",
-            )
+            names = ", ".join(found.contradictions)
+            advice = "check what else looks like it, or pose the frame"
+            self.report({"WARNING"}, f"No plausible pose explains {names} here; {advice}")
         elif not np.isfinite(found.residual_px).any():
-            self.report(
-                {"WARNING"},
-                "Seen from the camera, the body hides the markers that this frame shows; check the pose",
+            sentence = (
+                "Seen from the camera, the body hides the markers that this frame shows; check the pose"
             )
+            self.report({"WARNING"}, sentence)
         elif len(found.candidates) > 1:
-            self.report(
-                {"INFO"},
-                f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the "
-                "panel; look at it from the side too, then store it",
-            )
+            sure = f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the panel"
+            self.report({"INFO"}, f"{sure}; look at it from the side too, then store it")
         else:
-            self.report(
-                {"INFO"},
-                f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels; look at it from the side "
-                "too, as little tells the depth, then store it",
-            )
+            off = f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels"
+            advice = "look at it from the side too, as little tells the depth, then store it"
+            self.report({"INFO"}, f"{off}; {advice}")
 
 
 def _floor_m(matching: bpy.types.PropertyGroup) -> float | None:

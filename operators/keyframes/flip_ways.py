@@ -53,9 +53,6 @@ def _is_selected(bone: bpy.types.PoseBone) -> bool:
     return bool(bone.select if hasattr(bone, "select") else bone.bone.select)
 
 
-# --- The ways of a flipped limb, gone through one by one
-
-
 SAME = 1e-3  # Difference of postures that comes from the precision of bones alone [m, rad]
 
 

@@ -80,10 +80,8 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         count, doubtful = count_found(take)
         if doubtful:
             take.matching.shown_match = doubtful_matches(take)[0]
-            self.report(
-                {"WARNING"},
-                f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown",
-            )
+            said = f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown"
+            self.report({"WARNING"}, said)
         else:
             self.report({"INFO"}, f"{count} keyframes found, none of them doubtful")
 
@@ -95,9 +93,8 @@ def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":
     from .found_result import Proposals
 
     take, tracks = clip.take, clip.reading.tracks
-    moved = evidence_speed(
-        tracks, take.marker_segments, performer_keypoints(take, None, tracks), clip.reading.album
-    )
+    keypoints = performer_keypoints(take, None, tracks)
+    moved = evidence_speed(tracks, take.marker_segments, keypoints, clip.reading.album)
     speed = yield from within("Measuring the speed", moved, 0.0, 1.0)
     return Proposals(tuple(map(int, propose_keyframes(speed.values, count))), speed.values)
 

@@ -55,9 +55,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         take = active_take(scene)
         identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
         footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
-        styles = evidence.markers
+        styles, ignored = evidence.markers, evidence.ignored_regions
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
-        ignored = evidence.ignored_regions
         key = reading_key(clip.path, clip.fps, styles, None, ignored)
         if reading is None or not of_same_footage(reading.key, key):
             job = read_clip(clip, styles, ignored=ignored)
@@ -81,9 +80,6 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         self.report({"INFO"}, f"{len(result.frames)} keyframes proposed")
         notes = [warn(self, result.note)] if result.note else []
         give_notices(take, "keyframes", "proposals", notes)
-
-
-# --- Go to the next or the previous proposed keyframe
 
 
 def proposals(context: bpy.types.Context) -> str | None:
@@ -117,9 +113,7 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
-        if properties.direction == "NEXT":
-            return "Go to the next proposed keyframe"
-        return "Go to the previous proposed keyframe"
+        return f"Go to the {properties.direction.lower()} proposed keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
         scene, take = context.scene, find_take(context.scene)
@@ -132,16 +126,13 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         behind = [frame for frame in frames if frame < scene.frame_current]
         if self.skip_posed:  # wraps around the ends
             ahead, behind = ahead or frames, behind or frames
-        if self.direction == "NEXT" and ahead:
-            scene.frame_set(ahead[0])
-        elif self.direction == "PREVIOUS" and behind:
-            scene.frame_set(behind[-1])
-        elif self.direction == "NEXT":
-            self.report({"INFO"}, "There is no proposed keyframe after this frame")
+        is_next = self.direction == "NEXT"
+        if not (ahead if is_next else behind):
+            self.report(
+                {"INFO"}, f"There is no proposed keyframe {'after' if is_next else 'before'} this frame"
+            )
             return {"CANCELLED"}
-        else:
-            self.report({"INFO"}, "There is no proposed keyframe before this frame")
-            return {"CANCELLED"}
+        scene.frame_set(ahead[0] if is_next else behind[-1])
         return None
 
 

@@ -47,14 +47,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         settings = active_take(scene)
         identifier, method, armature = settings.identifier, settings.method, settings.armature
         watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
-        reading_scene = read_scene_take(
-            footage_of(scene, settings),
-            armature,
-            settings.keyframe_action,
-            scene_evidence(settings),
-            known_matches(settings),
-            kept,
-        )
+        evidence, known = scene_evidence(settings), known_matches(settings)
+        source, keys = footage_of(scene, settings), settings.keyframe_action
+        reading_scene = read_scene_take(source, armature, keys, evidence, known, kept)
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
         _check_enough(len(take.keyframes), notes)
         check_reconstructible(take, method)

@@ -19,7 +19,6 @@ NEAR = 1e-4
 
 
 def delete(armature_object: bpy.types.Object) -> None:
-    """Delete an object as X in the viewport does: it leaves the scene."""
     with bpy.context.temp_override(selected_objects=[armature_object], active_object=armature_object):
         assert bpy.ops.object.delete() == {"FINISHED"}
 
@@ -69,7 +68,6 @@ def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opene
 
 
 def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened: bpy.types.Scene) -> None:
-    """One that has an Action of its own keeps it."""
     take = active_take(opened)
     frames = keyframes_of(take)
     first, other = take.armature, build_armature(opened, Body(Actor.from_stature(1.7)))
@@ -82,7 +80,6 @@ def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened:
 
 
 def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.types.Scene) -> None:
-    """No second one is built beside it."""
     take = active_take(opened)
     actor, count = take.armature, len(bpy.data.objects)
     take.armature = None

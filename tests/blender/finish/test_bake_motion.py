@@ -27,7 +27,6 @@ ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
 
 def motion_of(body: Body, posture: Posture) -> Motion:
-    """A motion of FRAMES frames at 30 a second, from scene frame 1."""
     points = body.points(body.pose(posture))
     covariance = np.broadcast_to(1e-4 * np.eye(3), (FRAMES, 13, 3, 3))
     return Motion(body, 30.0, 1, np.arange(FRAMES) / 30.0, posture, points, covariance, (0,), "map")
@@ -64,7 +63,6 @@ def take(
 
 
 def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points: ShownPoints) -> np.ndarray:
-    """(F, 13, 3) evaluated points of an Action, frame by frame."""
     scene = bpy.context.scene
     assign_action(take.armature, action)
     before = scene.frame_current
@@ -79,7 +77,6 @@ def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points
 def curves(
     take: bpy.types.PropertyGroup, action: bpy.types.Action
 ) -> dict[tuple[str, int], bpy.types.FCurve]:
-    """The curves that animate the actor."""
     found = existing_channelbag(action, take.armature).fcurves
     return {(curve.data_path, curve.array_index): curve for curve in found}
 
@@ -172,7 +169,6 @@ def test_planted_feet_stand_still_in_blender(
 
 
 def travel(path: np.ndarray) -> np.ndarray:
-    """Mean distance per frame of each point of (F, N, 3)."""
     return np.linalg.norm(np.diff(path, axis=0), axis=-1).mean(axis=0)
 
 
@@ -191,7 +187,6 @@ def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup)
 
 
 def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) -> None:
-    """Hands that the animator keyed keep their keys and handles."""
     channelbag = existing_channelbag(take.motion_action, take.armature)
     for curve in [curve for curve in channelbag.fcurves if '"hand.L"' in curve.data_path]:
         channelbag.fcurves.remove(curve)
@@ -235,7 +230,6 @@ def test_without_a_motion_the_tooltip_says_so(take: bpy.types.PropertyGroup) -> 
 
 
 def test_an_action_of_one_frame_is_refused_with_a_sentence(take: bpy.types.PropertyGroup) -> None:
-    """Nothing is made."""
     take.motion_action = bpy.data.actions.new("Empty")
     with pytest.raises(RuntimeError, match="has no motion of 'Actor'"):
         bpy.ops.keymark.bake_motion()

@@ -26,7 +26,6 @@ ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
 @pytest.fixture
 def take(registered: None, body: Body, wave_motion: Motion) -> bpy.types.PropertyGroup:
-    """A take with a reconstructed motion."""
     scene = bpy.context.scene
     scene.frame_end = 250
     result = add_take(scene, "Wave")
@@ -107,14 +106,12 @@ def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("catalog", ["", "/", "a:b", "a\nb"])
 def test_a_catalog_that_is_no_path_is_refused(tmp_path: Path, catalog: str) -> None:
-    """Nothing is written."""
     with pytest.raises(InputError, match="is not a path of names"):
         ensure_catalog(tmp_path / NAME, catalog)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
-    """Its first line is not the version that is known."""
     file = tmp_path / NAME
     file.write_text("VERSION 7\n")
     with pytest.raises(InputError, match="begins with 'VERSION 7'"):
@@ -123,7 +120,6 @@ def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
 
 
 def state(scene: bpy.types.Scene) -> tuple[object, ...]:
-    """The state that an export must restore."""
     layer = bpy.context.view_layer
     return (
         [o.name for o in layer.objects if o.select_get()],
@@ -147,7 +143,6 @@ IMPORTERS = {
 def test_an_exported_motion_moves_alike_when_read_back(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, tmp_path: Path, kind: str
 ) -> None:
-    """The hand moves as the actor's; the scene is as before."""
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
     if kind == "GLTF" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
@@ -180,7 +175,6 @@ def test_an_exported_motion_moves_alike_when_read_back(
 
 
 def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndarray:
-    """(13, 3) where a bone's head is in the world, frame by frame."""
     scene = bpy.context.scene
     places = []
     for frame in range(1, 14):
@@ -205,7 +199,6 @@ def test_a_failed_export_leaves_no_file_and_the_scene(take: bpy.types.PropertyGr
 def test_a_format_that_blender_lacks_is_refused(
     take: bpy.types.PropertyGroup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With the reason."""
     gone = replace(FORMATS["USD"], operator_type="KEYMARK_OT_of_no_addon", addon="USD Exporter")
     monkeypatch.setitem(FORMATS, "USD", gone)
     with pytest.raises(RuntimeError, match="USD cannot be written: Enable the add-on USD Exporter"):
@@ -233,7 +226,6 @@ def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup
 
 @pytest.mark.usefixtures("registered")
 def test_the_operator_is_made_from_the_registry_of_formats() -> None:
-    """Its menu and the filter of its file browser name every format."""
     properties = bpy.ops.keymark.export_motion.get_rna_type().properties
     menu = [(item.identifier, item.name, item.description) for item in properties["format"].enum_items]
     assert menu == [(kind, each.name, each.description) for kind, each in FORMATS.items()]

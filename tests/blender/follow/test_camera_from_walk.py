@@ -42,7 +42,6 @@ def walking_file(take: Take, frames: int, path: Path) -> Path:
 
 @pytest.mark.usefixtures("registered")
 def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
-    """A lens that somebody has set is kept."""
     clip = tmp_path / "room.mp4"
     writer = cv2.VideoWriter(
         str(clip), cv2.VideoWriter_fourcc(*"mp4v"), plain_take.fps, plain_take.camera.resolution

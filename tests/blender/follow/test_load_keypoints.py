@@ -1,4 +1,4 @@
-"""Files of keypoints of a take: loaded, switched, moved, changed, and followed with nothing else."""
+"""Keypoints of a take: detected, loaded, switched, moved, changed, and followed with nothing else."""
 
 import json
 import os
@@ -9,9 +9,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from _fake_network import MiddleNetwork
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
+from keymark.operators.follow.detect_keypoints import KEYMARK_OT_detect_keypoints
+from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.follow.frame_keypoints import (
     clear_readings,
     contours_label,
@@ -27,14 +30,12 @@ FRAMES = 13
 
 
 def load(path: Path) -> bpy.types.PropertyGroup:
-    """The active take with a file of keypoints."""
     assert bpy.ops.keymark.load_keypoints(filepath=str(path)) == {"FINISHED"}
     clear_readings()
     return active_take(bpy.context.scene)
 
 
 def reading(take: bpy.types.PropertyGroup):  # noqa: ANN201
-    """What panels show of the chosen file, looked at anew."""
     clear_readings()
     return keypoint_reading(take, take.follow.files[take.follow.active_file])
 
@@ -70,7 +71,6 @@ def test_a_plain_take_is_reconstructed_from_keypoints(
 
 
 def test_keyframes_are_proposed_from_keypoints(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """Where no marker tells how fast the performer moves."""
     take = load(keypoint_file)
     take.keyframe_count = 4
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
@@ -123,7 +123,6 @@ def test_a_file_is_listed_once_and_removed_again(
 def test_a_file_that_is_none_of_the_clips_is_refused(
     plain: bpy.types.Scene, keypoint_file: Path, change: Callable, sentence: str
 ) -> None:
-    """In one sentence, and the take stays as it was."""
     value = json.loads(keypoint_file.read_text(encoding="utf-8"))
     change(value)
     keypoint_file.write_text(json.dumps(value), encoding="utf-8")
@@ -181,7 +180,6 @@ def test_the_blend_file_remembers_where_keypoints_are(
 def test_another_clip_drops_what_was_seen_in_the_first(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """As it drops proposals; switches stay."""
     take = load(keypoint_file)
     take.follow.use_contours = False
     bpy.ops.keymark.click_point(point="head", pixel=(30.0, 30.0))
@@ -223,7 +221,6 @@ def test_what_is_missing_is_said(plain: bpy.types.Scene, keypoint_file: Path) ->
 
 
 def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> None:
-    """Neither looked for nor asked for their colors."""
     take = active_take(opened)
     bpy.ops.keymark.add_marker()  # without a color
     with pytest.raises(RuntimeError, match="Pick the colors of all markers"):
@@ -251,6 +248,41 @@ def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: 
 
 
 def test_a_dropped_file_of_keypoints_is_loaded(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """Where a take's file is opened and a library imported."""
     assert bpy.ops.keymark.open_dropped(filepath=str(keypoint_file)) == {"FINISHED"}
     assert len(active_take(plain).follow.files) == 1
+
+
+@pytest.fixture(autouse=True)
+def network(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("keymark.core.footage.pose_network.PoseNetwork", MiddleNetwork)
+
+
+def test_what_is_found_is_written_beside_the_clip_and_listed(
+    plain: bpy.types.Scene, plain_take: Take
+) -> None:
+    """Run again, it writes the same file anew; a file of someone else's stays."""
+    theirs = plain_take.folder / "clip.keypoints.json"
+    theirs.write_text("theirs", encoding="utf-8")
+    for _ in range(2):
+        assert bpy.ops.keymark.detect_keypoints() == {"FINISHED"}
+    (entry,) = active_take(plain).follow.files
+    assert keypoint_path(entry) == plain_take.folder / "clip.keypoints2.json"
+    assert theirs.read_text(encoding="utf-8") == "theirs"
+
+
+def test_a_clip_without_anybody_changes_nothing(
+    plain: bpy.types.Scene, plain_take: Take, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MiddleNetwork, "presence", 0.0)
+    before = sorted(plain_take.folder.iterdir())
+    with pytest.raises(RuntimeError, match="nobody is seen"):
+        bpy.ops.keymark.detect_keypoints()
+    assert sorted(plain_take.folder.iterdir()) == before and len(active_take(plain).follow.files) == 0
+
+
+def test_a_job_that_is_closed_leaves_nothing_behind(plain: bpy.types.Scene, plain_take: Take) -> None:
+    job = KEYMARK_OT_detect_keypoints.start(KEYMARK_OT_detect_keypoints, plain)
+    for _ in range(3):
+        assert next(job).stage == "Detecting keypoints"
+    job.close()
+    assert not list(plain_take.folder.glob("*keypoints*")) and len(active_take(plain).follow.files) == 0

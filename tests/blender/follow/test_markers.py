@@ -24,7 +24,6 @@ USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take's clip and no marker."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return bpy.context.scene
 
@@ -50,7 +49,6 @@ def test_the_usual_five_are_added_at_once_and_only_where_missing() -> None:
 
 
 def test_a_name_follows_its_segment_until_it_is_changed() -> None:
-    """A name of the animator's own stays."""
     bpy.ops.keymark.add_marker()
     (marker,) = active_take(bpy.context.scene).markers
     marker.segment = "foot.L"
@@ -94,7 +92,6 @@ def test_the_eyedropper_beside_a_row_picks_that_marker_alone(
 
 
 def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
-    """Neither the color nor the list."""
     take = active_take(opened)
     before = [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers]
     with pytest.raises(RuntimeError, match="lies outside the footage"):
@@ -198,7 +195,6 @@ def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
 
 
 def test_names_move_up_past_those_that_are_there() -> None:
-    """Over both of two that overlap in turn; one beside them stays."""
     taken = [(0.0, 10.0, 50.0, 8.0), (20.0, 18.0, 50.0, 8.0), (200.0, 0.0, 10.0, 99.0)]
     assert free_height((10.0, 12.0, 40.0, 8.0), taken) == 26.0
     assert free_height((80.0, 12.0, 40.0, 8.0), taken) == 12.0
@@ -253,7 +249,6 @@ def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.S
 
 
 def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> None:
-    """The same scene frame shows another of its frames then."""
     take = active_take(opened)
     bpy.ops.keymark.check_markers()
     opened.frame_set(5)
@@ -283,7 +278,6 @@ def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, 
 
 
 def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """One sentence, and the switch stays as it was."""
     clear_previews()
     active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
     with pytest.raises(RuntimeError, match="the footage is not there") as caught:

@@ -13,7 +13,6 @@ USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take's clip and no marker."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return bpy.context.scene
 
@@ -28,7 +27,6 @@ def pixel_of(take: Take, segment: str) -> np.ndarray:
 
 
 def clicks(take: Take, *names: str) -> list[dict[str, object]]:
-    """Clicks on markers in the first frame."""
     return [{"name": name, "loc": tuple(pixel_of(take, name)), "time": 1.0} for name in names]
 
 
@@ -89,7 +87,6 @@ def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> 
 def test_clicks_that_cannot_be_used_change_nothing(
     loaded: bpy.types.Scene, made: list[dict[str, object]], sentence: str
 ) -> None:
-    """Not even the list."""
     with pytest.raises(RuntimeError, match=sentence):
         bpy.ops.keymark.pick_markers(clicks=made)
     assert not len(active_take(loaded).markers)

@@ -44,7 +44,6 @@ def test_switches_go_out_with_a_take_and_come_back(opened: bpy.types.Scene, tmp_
 def test_a_take_that_leaves_its_markers_aside_opens_with_them_switched_off(
     registered: None, tiny_take: Take
 ) -> None:
-    """What it has is there; what it is held against is on."""
     file = tiny_take.folder / "take.json"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("{", '{"evidence": ["contours"], ', 1), encoding="utf-8")
@@ -55,7 +54,6 @@ def test_a_take_that_leaves_its_markers_aside_opens_with_them_switched_off(
 
 
 def test_a_take_whose_keypoints_are_gone_is_refused(registered: None, plain_take: Take) -> None:
-    """The sentence names the file, and the scene stays empty."""
     file = plain_take.folder / "take.json"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("{", '{"keypoints": "no.json", ', 1), encoding="utf-8")

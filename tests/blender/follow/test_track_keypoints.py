@@ -32,7 +32,6 @@ def add_track(
 
 
 def people(scene: bpy.types.Scene, frames: np.ndarray | None = None) -> tuple[People, ...]:
-    """What the tracks of the active take show."""
     take = active_take(scene)
     footage = footage_of(scene, take)
     shown = footage.first_frame + np.arange(FRAMES, dtype=float) if frames is None else frames
@@ -40,7 +39,6 @@ def people(scene: bpy.types.Scene, frames: np.ndarray | None = None) -> tuple[Pe
 
 
 def places(source: People, point: str) -> np.ndarray:
-    """(F, 2) where a source sees a point, NaN elsewhere."""
     column = source.names.index(point)
     rows = [seen.pixel[0, column] if len(seen.pixel) else (np.nan, np.nan) for seen in source.frames]
     return np.array(rows)
@@ -126,7 +124,6 @@ def test_two_tracks_of_one_point_are_two_sources(plain: bpy.types.Scene) -> None
 
 
 def test_the_switch_takes_all_tracks_away(plain: bpy.types.Scene) -> None:
-    """They stay assigned, and are neither followed nor shown."""
     take = active_take(plain)
     add_track(take.clip, "head", {1: (10.0, 10.0)})
     assert has_keypoints(take) and keypoints_at(take, 1)

@@ -30,13 +30,11 @@ SCALE = 10.0
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with the tiny clip loaded."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return active_take(bpy.context.scene)
 
 
 def known_camera() -> Camera:
-    """The camera as it stood."""
     return Camera(40.8, 36.0, SIZE, CameraPlacement(1.1, float(np.radians(-9.0)), 0.0).matrix())
 
 
@@ -84,7 +82,6 @@ def test_a_lens_that_lines_determine_is_no_guess(loaded: bpy.types.PropertyGroup
 
 
 def test_a_lens_that_somebody_knows_is_kept(loaded: bpy.types.PropertyGroup) -> None:
-    """Whatever lines say."""
     loaded.camera.data.lens = 33.0
     store_lines(loaded, 20 * seen_lines(known_camera(), loaded.stature))
     bpy.ops.keymark.camera_from_lines()
@@ -93,7 +90,6 @@ def test_a_lens_that_somebody_knows_is_kept(loaded: bpy.types.PropertyGroup) -> 
 
 
 def test_the_sensors_fit_does_not_matter(loaded: bpy.types.PropertyGroup) -> None:
-    """A camera measured along its height gets the same view."""
     data = loaded.camera.data
     data.sensor_fit, data.sensor_height = "VERTICAL", 24.0
     data.lens = 40.8 / 36.0 * 24.0 * 160 / 120
@@ -104,7 +100,6 @@ def test_the_sensors_fit_does_not_matter(loaded: bpy.types.PropertyGroup) -> Non
 
 
 def test_without_lines_or_with_useless_ones_nothing_changes(loaded: bpy.types.PropertyGroup) -> None:
-    """It is said what to draw."""
     before = tuple(loaded.guessed_placement)
     with pytest.raises(RuntimeError, match="no lines to find its camera by"):
         bpy.ops.keymark.camera_from_lines()
@@ -120,19 +115,16 @@ def near(pixel: Pixel) -> "object":
 
 
 def far(one: Pixel, other: Pixel) -> float:
-    """Distance of two pixels as a share of the shortest line."""
     return float(np.hypot(one[0] - other[0], one[1] - other[1])) / SCALE
 
 
 def drag(drawing: Drawing, start: Pixel, end: Pixel) -> None:
-    """Press, move, release."""
     drawing.press(start, 3, near(start))
     drawing.move(end)
     drawing.release(far)
 
 
 def test_five_drags_draw_five_lines_of_three_kinds() -> None:
-    """Two verticals, two level lines, then a known height."""
     drawing = Drawing(VERTICAL, False)
     for number in range(5):
         drag(drawing, (100.0 * number, 10.0), (100.0 * number, 200.0))

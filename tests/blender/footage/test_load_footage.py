@@ -18,7 +18,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160, 120)) -> Path:
-    """A gray clip that gets brighter."""
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), fps, size)
     assert writer.isOpened()
     for frame in range(frames):
@@ -29,13 +28,11 @@ def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with the tiny clip loaded."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return active_take(bpy.context.scene)
 
 
 def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyGroup) -> None:
-    """Set or confirmed by the animator, it is no guess any more."""
     assert lens_is_guess(loaded)
     loaded.camera.data.lens = 31.0
     assert not lens_is_guess(loaded)
@@ -90,7 +87,6 @@ def test_a_clip_of_this_file_is_used(tmp_path: Path) -> None:
 
 
 def test_choosing_a_camera_puts_the_clip_behind_it(loaded: bpy.types.PropertyGroup) -> None:
-    """The scene looks through it."""
     other = bpy.data.objects.new("Other", bpy.data.cameras.new("Other"))
     bpy.context.scene.collection.objects.link(other)
     loaded.camera = other
@@ -131,7 +127,6 @@ def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
 
 
 def test_a_dropped_take_is_opened() -> None:
-    """It is not asked for again; a button, which names no file, asks."""
     dropped = SimpleNamespace(filepath="/takes/walk/take.json", execute=lambda _context: {"FINISHED"})
     assert KEYMARK_OT_open_take.invoke(dropped, bpy.context, None) == {"FINISHED"}
     for operator in (bpy.ops.keymark.load_footage, bpy.ops.keymark.open_take):
@@ -139,7 +134,6 @@ def test_a_dropped_take_is_opened() -> None:
 
 
 def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An even clip passes; one with a gap in its times does not."""
     from keymark.core.footage.clips.video_file import VideoFile
 
     assert loaded.clip_state.rate == pytest.approx(25.0)
@@ -151,7 +145,6 @@ def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch:
 
 
 def reopened(path: Path) -> bpy.types.PropertyGroup:
-    """The active take of a file that is opened."""
     bpy.ops.wm.open_mainfile(filepath=str(path))
     return active_take(bpy.context.scene)
 
@@ -203,7 +196,6 @@ def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Pat
 
 
 def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:  # noqa: ANN001
-    """A file of another length or size is taken, with a word."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     other = write_clip(tmp_path / "other.mp4", 9, 24.0)
     bpy.ops.keymark.relocate_clip(filepath=str(other))
@@ -250,7 +242,6 @@ def test_nothing_chosen_is_said_and_the_folder_kept(tiny_take: Take, tmp_path: P
 
 
 def _browsed(operator: type) -> str:
-    """Where an operator's file browser begins."""
     shown = SimpleNamespace(bl_idname="KEYMARK_OT_load_footage", filepath="")
     manager = SimpleNamespace(fileselect_add=lambda _operator: None)
     assert operator.invoke(shown, SimpleNamespace(window_manager=manager), None) == {"RUNNING_MODAL"}

@@ -44,7 +44,6 @@ def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motio
 
 
 def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
-    """Accepted, a frame is posed; removed, it is no keyframe."""
     found.matching.shown_match = 1
     before = shown(found, 7)
     bpy.ops.keymark.accept_match()
@@ -93,7 +92,6 @@ def test_the_most_doubtful_is_gone_to_first(found: Group) -> None:
 
 
 def test_found_keyframes_are_gone_through_in_order(found: Group) -> None:
-    """From the current frame on, around the ends."""
     scene, visited = bpy.context.scene, []
     scene.frame_set(7)
     for direction in ("NEXT", "NEXT", "PREVIOUS", "PREVIOUS"):
@@ -114,7 +112,6 @@ def test_the_chosen_one_is_that_of_the_current_frame(found: Group) -> None:
 
 
 def test_every_step_is_undone_and_redone(unposed: Group, given: SimpleNamespace) -> None:
-    """One undo each, to the last key."""
     ops = bpy.ops.keymark
     bpy.context.scene.frame_set(1)
     bpy.ops.ed.undo_push(message="Opened")

@@ -130,7 +130,6 @@ def test_a_candidate_that_a_person_chose_stays(
 
 
 def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
-    """And it is said."""
     for frame in (1, 7, 13):
         bpy.context.scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()
@@ -152,14 +151,12 @@ def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: Sim
 
 
 def test_the_floor_is_handed_on(unposed: Group, given: SimpleNamespace) -> None:
-    """Only where it is known."""
     bpy.ops.keymark.pose_all(floor_height=0.4)
     bpy.ops.keymark.pose_all(floor="HEIGHT", floor_height=0.4)
     assert given.floors == [None, pytest.approx(0.4)]
 
 
 def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamespace) -> None:
-    """The sentence is reported, nothing else happens."""
     before = scene_state()
     given.error = InputError("no marker is seen in the footage")
     with pytest.raises(RuntimeError, match="No marker is seen"):
@@ -168,7 +165,6 @@ def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamesp
 
 
 def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNamespace) -> None:
-    """Nothing is keyed, and the panel names the next step."""
     assert next_step(unposed) == "Next: pose all keyframes"
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
@@ -181,7 +177,6 @@ def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNames
 
 
 def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
-    """The tooltip names the first missing requirement."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.pose_all()

@@ -23,14 +23,12 @@ NOBODY = "LicenseRef-Proprietary"
 
 @pytest.fixture
 def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The user's folder of libraries."""
     monkeypatch.setattr(user_folder, "own_folder", lambda: tmp_path)
     return tmp_path
 
 
 @pytest.fixture
 def posture(wave_posture: Callable[[np.ndarray], Posture]) -> Posture:
-    """A motion that does not come again."""
     return wave_posture(np.linspace(0.0, 1.0, FRAMES) ** 2)
 
 
@@ -55,7 +53,6 @@ def take(registered: None, body: Body, posture: Posture) -> bpy.types.PropertyGr
 
 
 def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Posture, own: Path) -> None:
-    """Each posture is the motion's at its time; the title is the take."""
     assert bpy.ops.keymark.learn_library(count=12) == {"FINISHED"}
     (file,) = own.iterdir()
     library = read_library(file)
@@ -73,7 +70,6 @@ def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Post
 
 
 def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """The same title gets another identifier."""
     for _ in range(2):
         assert bpy.ops.keymark.learn_library(title="Swing", author="Anna", license="CC0-1.0") == {"FINISHED"}
     assert sorted(file.name for file in own.iterdir()) == ["swing.json", "swing_2.json"]
@@ -98,6 +94,5 @@ def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, ow
 
 @pytest.mark.usefixtures("registered")
 def test_without_a_motion_it_says_what_is_missing() -> None:
-    """As every operator does."""
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.learn_library()

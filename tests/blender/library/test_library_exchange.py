@@ -40,13 +40,11 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
 
 @pytest.fixture
 def library(random_posture: RandomPosture) -> Library:
-    """A library of two postures."""
     postures = tuple(LibraryPosture(name, random_posture(seed)) for seed, name in enumerate(("A", "B")))
     return Library("small", "Small", 2, "A. Person", "CC0-1.0", Actor.from_stature(1.7), postures)
 
 
 def imported(library: Library, folder: Path, **settings: bool) -> set[str]:
-    """Write a library and import it."""
     write_library(folder / "offered.json", library)
     return set(bpy.ops.keymark.import_library(filepath=str(folder / "offered.json"), **settings))
 
@@ -105,7 +103,6 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
 
 
 def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
-    """With the reason, and in no menu."""
     (own / "broken.json").write_text("{")
     bpy.ops.keymark.refresh_shelf()
     item = bpy.context.window_manager.keymark_shelf.libraries[0]
@@ -130,7 +127,6 @@ def test_a_file_that_only_has_the_name_is_not_lost(
 
 
 def test_an_older_version_that_shall_replace_does(own: Path, library: Library, tmp_path: Path) -> None:
-    """Also where the newer one lies in a file of another name."""
     write_library(own / "a copy.json", replace(library, version=7))
     imported(library, tmp_path, replace=True)
     assert titles(own) == [("small", "Small", 2, 2)]
@@ -146,7 +142,6 @@ def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Li
 def test_libraries_are_the_same_objects_until_a_file_changes(
     own: Path, library: Library, tmp_path: Path
 ) -> None:
-    """What was made of them is kept by the objects."""
     imported(library, tmp_path)
     first = registry_files.all_libraries()
     assert registry_files.all_libraries() is first
@@ -155,7 +150,6 @@ def test_libraries_are_the_same_objects_until_a_file_changes(
 
 
 def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_path: Path) -> None:
-    """Else nothing changes, and the sentence names both."""
     imported(library, tmp_path)
     newer = replace(library, version=3, postures=library.postures[:1])
     with pytest.raises(
@@ -168,13 +162,11 @@ def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_
 
 
 def saved(path: Path, **settings: str) -> Library:
-    """Save a library, and read it."""
     assert bpy.ops.keymark.export_library(filepath=str(path), **settings) == {"FINISHED"}
     return (read_library_blend(path)[0]) if path.suffix == ".blend" else read_library(path)
 
 
 def same(first: Library, second: Library) -> bool:
-    """Whether a file of both would be the same."""
     return first.to_json() == second.to_json()
 
 
@@ -182,7 +174,6 @@ def same(first: Library, second: Library) -> bool:
 def test_a_library_is_saved_and_loaded_without_loss(
     own: Path, library: Library, tmp_path: Path, suffix: str
 ) -> None:
-    """As a text file and as pose assets."""
     imported(library, tmp_path)
     path = tmp_path / f"again{suffix}"
     assert same(saved(path), library)
@@ -286,7 +277,6 @@ def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: 
 
 
 def test_the_open_file_is_not_replaced_by_a_library(own: Path, library: Library, tmp_path: Path) -> None:
-    """Only pose assets would be left of it."""
     imported(library, tmp_path)
     path = tmp_path / "work.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))

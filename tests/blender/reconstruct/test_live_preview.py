@@ -19,7 +19,6 @@ FRAMES = np.arange(1.0, 14.0)
 
 @pytest.fixture
 def actor(tiny_take: Take) -> bpy.types.Object:
-    """The tiny take's actor, one bone of it posed but not keyed."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     bpy.context.scene.frame_set(6)
     actor = active_take(bpy.context.scene).armature
@@ -28,7 +27,6 @@ def actor(tiny_take: Take) -> bpy.types.Object:
 
 
 def state(actor: bpy.types.Object) -> tuple[object, ...]:
-    """The actor's visible state."""
     data = actor.animation_data
     pose = [tuple(bone.matrix_basis.col[k]) for bone in actor.pose.bones for k in range(4)]
     scene = bpy.context.scene
@@ -60,7 +58,6 @@ def test_the_actor_goes_through_the_frames_and_back(
 def test_a_file_saved_meanwhile_holds_nothing_of_the_preview(
     actor: bpy.types.Object, tiny_take: Take, tmp_path: Path
 ) -> None:
-    """And the preview goes on afterwards."""
     before = state(actor)
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
     batch = type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])
@@ -75,7 +72,6 @@ def test_a_file_saved_meanwhile_holds_nothing_of_the_preview(
 
 
 def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tiny_take: Take) -> None:
-    """As after another file was opened."""
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
     preview.show(Preview(0, type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -86,7 +82,6 @@ def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tin
 
 @pytest.mark.parametrize("method", ["map", "ekf"])
 def test_a_reconstruction_hands_out_what_it_has_found(actor: bpy.types.Object, method: str) -> None:
-    """Watched to its end or cut short, the scene is as before."""
     active_take(bpy.context.scene).method = method
     before = state(actor)
     job = SimpleNamespace()

@@ -21,7 +21,6 @@ def take(tiny_take: Take, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Property
 
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Grows by one whenever markers are looked for in a clip."""
     from keymark.core.footage import reading as read_clip
 
     counted: list[int] = []
@@ -55,7 +54,6 @@ def test_the_clip_is_read_once_for_proposals_and_every_method(
 
 
 def test_another_color_has_the_clip_read_again(take: bpy.types.PropertyGroup, passes: list[int]) -> None:
-    """The reading of the old clip is out of date."""
     bpy.ops.keymark.reconstruct()
     before = take.reading_key
     red, green, blue = take.markers[0].color
@@ -65,7 +63,6 @@ def test_another_color_has_the_clip_read_again(take: bpy.types.PropertyGroup, pa
 
 
 def test_running_again_replaces_generated_keys_in_the_same_action(take: bpy.types.PropertyGroup) -> None:
-    """And is the same motion; the keyframe Action stays as it is."""
     from keymark.operators.bridge.actions import existing_channelbag
 
     bpy.ops.keymark.reconstruct()
@@ -84,7 +81,6 @@ def test_running_again_replaces_generated_keys_in_the_same_action(take: bpy.type
 
 
 def test_notes_of_the_last_run_stay_readable(take: bpy.types.PropertyGroup) -> None:
-    """Until the next run."""
     take.camera.data.lens *= 1.12
     bpy.ops.keymark.reconstruct()
     assert any("lens" in note.text for note in take.notes)
@@ -114,7 +110,6 @@ def test_two_takes_keep_their_own_results(take: bpy.types.PropertyGroup) -> None
 
 
 def test_time_left_is_said_once_it_can_be_told() -> None:
-    """In steps that a person can follow."""
     assert time_left(0.5, 0.5) == time_left(10.0, 0.01) == ""
     assert time_left(10.0, 0.5) == "about 10 s left"
     assert time_left(17.0, 0.28) == "about 40 s left"
@@ -159,7 +154,6 @@ def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) ->
 
 
 def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
-    """The result is discarded: no Action, key or review of it stays."""
     from types import SimpleNamespace
 
     from keymark.core.errors import InputError

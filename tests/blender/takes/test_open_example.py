@@ -15,12 +15,11 @@ from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 
-AEROBIC, GREETING = open_example.AEROBIC, open_example.GREETING
+AEROBIC, GREETING = "AEROBIC", "GREETING"
 KEYFRAMES = {AEROBIC: 12, GREETING: 10}
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """All files below a folder, hidden ones too, with their contents."""
     return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
@@ -79,7 +78,6 @@ def test_a_copy_is_a_take_of_its_own(tmp_path: Path) -> None:
 
 
 def test_a_copy_that_is_there_already_is_opened(tmp_path: Path) -> None:
-    """And not written again."""
     bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path))
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "aerobic").iterdir()}
     assert bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path)) == {"FINISHED"}
@@ -118,13 +116,11 @@ def test_a_copy_that_fails_leaves_no_file(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_a_copy_needs_a_folder() -> None:
-    """A script that names none is told so."""
     with pytest.raises(RuntimeError, match="name the folder to copy the example to"):
         bpy.ops.keymark.open_example(copy=True)
 
 
 def test_an_installation_without_the_example_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Instead of a sentence about a folder that nobody chose."""
     monkeypatch.setattr(examples, "SHIPPED", tmp_path)
     with pytest.raises(RuntimeError, match="missing from the installation; install Keymark anew"):
         bpy.ops.keymark.open_example()

@@ -38,7 +38,6 @@ def test_a_clip_of_a_shoot_opens_and_is_saved_to_stand_alone(clip: Path, chosen:
 
 
 def test_the_description_beside_a_clip_can_be_dropped(clip: Path) -> None:
-    """Like the take.json of a folder."""
     bpy.ops.keymark.open_dropped(filepath=str(clip.with_name("take01.take.json")))
     assert active_take(bpy.context.scene).name == "take01"
 

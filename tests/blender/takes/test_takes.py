@@ -15,7 +15,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def open_take(take: Take, times: int = 1) -> bpy.types.Scene:
-    """The scene with a take opened."""
     for _ in range(times):
         assert bpy.ops.keymark.open_take(filepath=str(take.folder)) == {"FINISHED"}
     return bpy.context.scene
@@ -32,7 +31,6 @@ def open_take(take: Take, times: int = 1) -> bpy.types.Scene:
     ],
 )
 def test_names_are_made_unique(name: str, others: list[str], free: str) -> None:
-    """By numbers like Blender's own."""
     if name == "walk.001":
         others = ["walk", *others]
     assert unique_name(name, others) == free.replace("walk.002", free)
@@ -50,7 +48,6 @@ def test_renaming_to_a_name_that_is_taken_numbers_it(tiny_take: Take) -> None:
 
 
 def test_a_take_opened_twice_has_everything_twice_but_the_clip(tiny_take: Take) -> None:
-    """Two actors, cameras and Actions, named after their takes."""
     takes = open_take(tiny_take, times=2).keymark.takes
     assert takes[0].clip == takes[1].clip
     for name in ("armature", "camera", "keyframe_action"):
@@ -61,7 +58,6 @@ def test_a_take_opened_twice_has_everything_twice_but_the_clip(tiny_take: Take) 
 
 
 def test_switching_brings_clip_camera_rate_and_range(tiny_take: Take, tmp_path: Path) -> None:
-    """Back and forth between clips of different rates and starts."""
     scene = open_take(tiny_take)
     folder = tmp_path / "later"
     folder.mkdir()
@@ -79,7 +75,6 @@ def test_switching_brings_clip_camera_rate_and_range(tiny_take: Take, tmp_path: 
 
 
 def test_takes_of_one_clip_keep_the_animators_range(tiny_take: Take) -> None:
-    """Between performers of one clip nothing but the take changes."""
     scene = open_take(tiny_take)
     scene.frame_end = 7
     bpy.ops.keymark.add_performer()
@@ -121,7 +116,6 @@ def test_another_performer_shares_clip_and_camera_only(tiny_take: Take) -> None:
 
 
 def test_another_clip_for_one_performer_leaves_the_others_camera(tiny_take: Take, tmp_path: Path) -> None:
-    """A camera that is shared is not given another clip."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     bpy.ops.keymark.add_performer()
     other = tmp_path / "other.mp4"
@@ -152,7 +146,6 @@ def test_two_performers_are_reconstructed_independently(tiny_take: Take) -> None
 
 
 def test_a_take_is_removed_from_the_list_alone(tiny_take: Take) -> None:
-    """Actor, Actions and camera stay; the take before becomes active."""
     scene = open_take(tiny_take, times=2)
     kept = len(bpy.data.objects), len(bpy.data.actions), len(bpy.data.movieclips)
     assert bpy.ops.keymark.remove_take() == {"FINISHED"}
@@ -166,7 +159,6 @@ def test_a_take_is_removed_from_the_list_alone(tiny_take: Take) -> None:
 
 
 def test_a_take_is_removed_with_its_data_but_not_anothers(tiny_take: Take) -> None:
-    """The clip is shared and stays."""
     scene = open_take(tiny_take, times=2)
     first = scene.keymark.takes[0]
     camera, armature = first.camera, first.armature
@@ -223,7 +215,6 @@ def test_the_next_step_follows_what_is_there(tiny_take: Take) -> None:
 
 
 def test_opening_and_removing_in_turn_keeps_every_take_whole(tiny_take: Take) -> None:
-    """Settings do not slip from one take to another."""
     scene = open_take(tiny_take, times=3)
     takes = scene.keymark.takes
     for index, take in enumerate(takes):

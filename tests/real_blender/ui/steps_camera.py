@@ -83,7 +83,6 @@ def _shown(known: Any, start: NDArray[np.float64], end: NDArray[np.float64]) -> 
 
 
 def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:
-    """Where a pixel of the footage is in the window."""
     area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
     with bpy.context.temp_override(window=person.hands.window, area=area, region=region):
         view = keymark("operators.shell.footage_view").footage_view(person.scene, person.take, area, region)

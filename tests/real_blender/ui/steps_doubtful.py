@@ -113,12 +113,10 @@ def _seen(person: Person) -> NDArray[np.float64]:
 
 
 def _shown(person: Person) -> NDArray[np.float64]:
-    """Where the actor's are."""
     return np.array(keymark("operators.bridge.object_space").joint_places(person.take.armature))
 
 
 def _points(person: Person, candidate: Any) -> NDArray[np.float64]:
-    """Where a candidate's are."""
     posture = keymark("operators.bridge.keyframes").candidate_posture(candidate)
     points: NDArray[np.float64] = person.known.body.points(person.known.body.pose(posture))
     return points

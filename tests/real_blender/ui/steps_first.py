@@ -38,14 +38,12 @@ def example(person: Person) -> Steps[None]:
 
 
 def reconstruct(person: Person) -> Steps[None]:
-    """One click."""
     yield from job(person, "keymark.reconstruct")
     expect(person.take.motion_action is not None, "there is no motion")
     yield from person.look("reconstructed")
 
 
 def play(person: Person) -> Steps[None]:
-    """Space over the viewport, and Space again."""
     yield from person.hands.move_over("VIEW_3D")
     seen = set()
     yield from person.hands.press("SPACE")

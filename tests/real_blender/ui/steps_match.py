@@ -60,7 +60,6 @@ def choose(person: Person) -> Steps[None]:
 
 
 def reconstruct(person: Person) -> Steps[None]:
-    """The motion, from keyframes that were found."""
     yield from person.undoable("reconstructing", lambda: job(person, "keymark.reconstruct"))
     yield from person.look("unposed")
     points = yield from shown_points(person)

@@ -163,7 +163,6 @@ def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> Non
 
 
 def plain_take(demo: Path, folder: Path) -> Path:
-    """The demonstration without its markers."""
     folder.mkdir()
     for name in ("clip.mp4", "keyframes.json", "keypoints.json", "truth.json"):
         shutil.copy(demo / name, folder / name)
