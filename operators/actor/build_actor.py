@@ -7,10 +7,10 @@ from ..shell.base_operator import BaseOperator
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, idle
 from ..shell.takes import active_take, ensure_take, find_take, has_lost_actor
-from .properties import panel_lengths
+from .properties import Stature, panel_lengths
 
 
-class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_idname = "keymark.build_actor"
@@ -18,15 +18,6 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (bones_editable, idle)
 
-    stature: bpy.props.FloatProperty(
-        name="Height",
-        description="The performer's body height",
-        subtype="DISTANCE",
-        precision=4,
-        default=1.75,
-        min=0.5,
-        max=3.0,
-    )
     place: bpy.props.BoolProperty(
         name="Stand in the Footage",
         description="Stand the actor where markers or keypoints show the performer in this frame, facing the "

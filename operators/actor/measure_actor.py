@@ -12,9 +12,10 @@ from ..shell.notices import give_notices
 from ..shell.requirements import bones_editable, camera, footage, idle
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage
+from .properties import Stature
 
 
-class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
     bl_idname = "keymark.measure_actor"
@@ -22,15 +23,6 @@ class KEYMARK_OT_measure_actor(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, camera, bones_editable, idle)
 
-    stature: bpy.props.FloatProperty(
-        name="Height",
-        description="The performer's body height",
-        subtype="DISTANCE",
-        precision=4,
-        default=1.75,
-        min=0.5,
-        max=3.0,
-    )
     head_pixel: bpy.props.FloatVectorProperty(
         name="Top of Head",
         description="In pixels of the footage from its top left corner",

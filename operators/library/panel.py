@@ -3,8 +3,7 @@
 import bpy
 
 from ..shell.panel import RowList, SubPanel, draw_sentence
-from .library_files import own_folder
-from .registry import chosen_entry
+from .registry import chosen_entry, own_folder
 
 MOST_LINES = 4  # Lines of a library's description, or of its problem
 

@@ -5,17 +5,28 @@ was found then.
 """
 
 from contextlib import suppress
+from pathlib import Path
 from zlib import crc32
 
 import bpy
 from bpy.app import timers
 
+from ..shell.results import EXTENSION
 from ..shell.takes import redraw_sidebars
-from . import library_files as user_folder
 
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
+
+
+def own_folder() -> Path:
+    """Folder of the user's libraries; created if missing."""
+    try:
+        return Path(bpy.utils.extension_path_user(EXTENSION, path="libraries", create=True))
+    except ValueError:  # not installed as an extension
+        folder = Path(bpy.app.tempdir) / "libraries"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
 
 
 def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
@@ -55,7 +66,7 @@ def refresh(choose: str = "") -> None:
     from ...core.prior.registry import registered_libraries
     from .registry_files import folders
 
-    listed, own = bpy.context.window_manager.keymark_shelf, user_folder.own_folder()
+    listed, own = bpy.context.window_manager.keymark_shelf, own_folder()
     wanted = choose or chosen_identifier(bpy.context)
     listed.libraries.clear()
     for found in registered_libraries(folders()):

@@ -8,12 +8,12 @@ from ...core.errors import InputError
 from ...core.prior.library import Library, write_library
 from ...core.prior.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
 from ...core.prior.texts import EVERY_LIBRARY
-from . import library_files as user_folder
+from . import registry
 
 
 def folders() -> list[Path]:
     """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
-    return [user_folder.own_folder(), SHIPPED]
+    return [registry.own_folder(), SHIPPED]
 
 
 def load_registered(identifier: str) -> Library:
@@ -34,11 +34,6 @@ def named_libraries(name: str) -> Sequence[Library]:
         InputError: There is no such library.
     """
     return all_libraries() if name == EVERY_LIBRARY else [load_registered(name)]
-
-
-def registered_identifiers() -> set[str]:
-    """Identifiers of all registered libraries, those of unusable files included."""
-    return {entry.identifier for entry in registered_libraries(folders())}
 
 
 def all_libraries() -> Sequence[Library]:
@@ -67,7 +62,7 @@ def write_to_registry(libraries: Iterable[Library]) -> None:
         InputError: The file of that name holds another library, or no library.
         ConversionError: A file cannot be written.
     """
-    files = [(_own_file(user_folder.own_folder(), library.identifier), library) for library in libraries]
+    files = [(_own_file(registry.own_folder(), library.identifier), library) for library in libraries]
     for file, library in files:
         write_library(file, library)
 

@@ -31,6 +31,19 @@ def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: 
     return [each for each in USUAL if typed.lower() in each[0].lower()] or list(USUAL)
 
 
+class Licensed:
+    """Mixin of operators that make a library: its license."""
+
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
+
+
 FORMATS = [
     ("JSON", "Library File (.json)", "One text file, for other people's Keymark and for version control"),
     ("BLEND", "Pose Assets (.blend)", "Pose assets for the asset browser, with their catalogs beside them"),
@@ -43,7 +56,7 @@ SOURCES = [
 ]
 
 
-class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
     """Save a keyframe library, pose assets or the take's keyframes as a library file, to keep or share it"""
 
     bl_idname = "keymark.export_library"
@@ -63,14 +76,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         name="Title", description="Title of a new library; by default the take's name", options={"SKIP_SAVE"}
     )
     author: bpy.props.StringProperty(name="Author", description="Author of a new library")
-    license: bpy.props.StringProperty(
-        name="License",
-        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
-        "by default none",
-        default="LicenseRef-Proprietary",
-        search=suggest,
-        search_options={"SUGGESTION"},
-    )
     format: bpy.props.EnumProperty(
         name="Format", description="Format of the file, where its name has neither suffix", items=FORMATS
     )
@@ -143,7 +148,7 @@ ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
 A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
 
 
-class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
     bl_idname = "keymark.learn_library"
@@ -155,14 +160,6 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         name="Title", description="Title of the library; by default the take's name"
     )
     author: bpy.props.StringProperty(name="Author", description="Author of the library")
-    license: bpy.props.StringProperty(
-        name="License",
-        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
-        "by default none",
-        default="LicenseRef-Proprietary",
-        search=suggest,
-        search_options={"SUGGESTION"},
-    )
     count: bpy.props.IntProperty(
         name="Postures",
         description="Number of postures in the library; 0 for 10 to 40, as many as differ",
@@ -194,16 +191,18 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Learn the library, and write it into the user's folder."""
         from ...core.prior.learning import LibraryMetadata
+        from ...core.prior.registry import registered_libraries
         from ..bridge.library.posed_library import library_from_action
-        from .registry_files import registered_identifiers, write_to_registry
+        from .registry_files import folders, write_to_registry
 
         take, render = active_take(context.scene), context.scene.render
         title = self.title.strip() or take.name
+        known = {entry.identifier for entry in registered_libraries(folders())}
         about = LibraryMetadata(
             title=title,
             author=self.author.strip() or "Unknown",
             license=self.license.strip(),
-            identifier=self.learned_as or identifier_from(title, registered_identifiers()),
+            identifier=self.learned_as or identifier_from(title, known),
         )
         action = take.finish.action or take.motion_action
         frame_s = render.fps_base / render.fps

@@ -14,7 +14,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.library import library_files as user_folder
+from keymark.operators.library import registry
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50
@@ -23,7 +23,7 @@ NOBODY = "LicenseRef-Proprietary"
 
 @pytest.fixture
 def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(user_folder, "own_folder", lambda: tmp_path)
+    monkeypatch.setattr(registry, "own_folder", lambda: tmp_path)
     return tmp_path
 
 

@@ -20,7 +20,6 @@ from keymark.operators.bridge.keyframes import write_keyframes
 from keymark.operators.bridge.library.library_file import read_library_blend
 from keymark.operators.bridge.library.pose_assets import add_assets
 from keymark.operators.bridge.posture_curves import write_posture_curves
-from keymark.operators.library import library_files as user_folder
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.registry_files import load_registered
 from keymark.operators.shell.takes import add_take
@@ -33,7 +32,7 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     """The user's folder of libraries, empty; nothing comes with Keymark."""
     folder = tmp_path / "own"
     folder.mkdir()
-    monkeypatch.setattr(user_folder, "own_folder", lambda: folder)
+    monkeypatch.setattr(registry, "own_folder", lambda: folder)
     monkeypatch.setattr(registry_files, "folders", lambda: [folder])
     return folder
 
