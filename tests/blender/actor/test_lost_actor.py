@@ -26,7 +26,6 @@ def delete(armature_object: bpy.types.Object) -> None:
 @pytest.mark.parametrize("again", ["apply_lengths", "build_actor"])
 @pytest.mark.parametrize("how", ["in the viewport", "from the file"])
 def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, how: str, again: str) -> None:
-    """Whether it is in the file still or has to be built: the same lengths, frames and poses."""
     take = active_take(opened)
     bpy.ops.keymark.apply_lengths()
     opened.frame_set(FRAME)
@@ -56,7 +55,6 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
 
 
 def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opened: bpy.types.Scene) -> None:
-    """Keys move the hips from where they are at rest, which the lengths alone do not tell."""
     take = active_take(opened)
     bpy.ops.keymark.build_actor(stature=1.95)  # longer legs, the hips at rest stay
     opened.frame_set(FRAME)
@@ -88,7 +86,6 @@ def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.t
 
 
 def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:
-    """No other armatures, and no actor that was deleted and is kept by another take."""
     from keymark.operators.takes.properties import _is_actor
 
     take = active_take(opened)
@@ -100,6 +97,5 @@ def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> 
 
 
 def test_a_height_is_shown_to_the_millimeter(opened: bpy.types.Scene) -> None:
-    """Blender's precision of a length with a unit counts all digits, not those after the point."""
     precision = active_take(opened).bl_rna.properties["stature"].precision
     assert bpy.utils.units.to_string("METRIC", "LENGTH", 1.797, precision=precision) == "1.797 m"

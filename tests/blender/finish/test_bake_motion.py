@@ -85,7 +85,6 @@ def curves(
 def test_few_keys_show_the_motion_within_the_tolerance(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, shared: str
 ) -> None:
-    """In Blender itself, whatever the bones' rotation modes, in every frame."""
     settings = take.finish
     settings.plant_feet, settings.tolerance_mm, settings.shared = False, 6.0, shared
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
@@ -100,7 +99,6 @@ def test_few_keys_show_the_motion_within_the_tolerance(
 
 
 def test_keys_are_the_animators_own_and_posed_frames_stay(take: bpy.types.PropertyGroup) -> None:
-    """No key is GENERATED, curves are smooth, every bone is keyed where the animator posed."""
     bpy.ops.keymark.bake_motion()
     for curve in curves(take, take.finish.action).values():
         points = curve.keyframe_points
@@ -112,7 +110,6 @@ def test_keys_are_the_animators_own_and_posed_frames_stay(take: bpy.types.Proper
 
 
 def test_handles_give_the_cubic_that_was_checked(take: bpy.types.PropertyGroup) -> None:
-    """Between the keys Blender's curve is the Hermite cubic of the keys' values and slopes."""
     bpy.ops.keymark.bake_motion()
     curve = max(
         curves(take, take.finish.action).values(), key=lambda c: abs(c.range()[1] - len(c.keyframe_points))
@@ -173,7 +170,6 @@ def travel(path: np.ndarray) -> np.ndarray:
 
 
 def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup) -> None:
-    """No second Action; a coarser tolerance leaves fewer keys and none of the old ones."""
     bpy.ops.keymark.bake_motion()
     action, count, actions = take.finish.action, take.finish.keys_after, len(bpy.data.actions)
     take.finish.tolerance_mm = 30.0
@@ -223,7 +219,6 @@ def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_p
 
 
 def test_without_a_motion_the_tooltip_says_so(take: bpy.types.PropertyGroup) -> None:
-    """The operator is disabled, and its tooltip names the missing requirement."""
     take.motion_action = None
     with pytest.raises(RuntimeError, match="Reconstruct the motion first"):
         bpy.ops.keymark.bake_motion()

@@ -36,7 +36,6 @@ def take(registered: None, body: Body, wave_motion: Motion) -> bpy.types.Propert
 
 
 def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """Catalog, tags, words and picture survive saving and loading; the catalog's file names it."""
     blend = tmp_path / "library.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     settings = take.finish
@@ -67,7 +66,6 @@ def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup,
 
 
 def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
-    """The error names the remedy; without a catalog the motion is marked nevertheless."""
     with pytest.raises(RuntimeError, match="save it first, or leave Catalog empty"):
         bpy.ops.keymark.mark_asset()
     assert take.motion_action.asset_data is None
@@ -77,7 +75,6 @@ def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_marking_again_replaces_tags_only(take: bpy.types.PropertyGroup) -> None:
-    """No tag is repeated, and tags that are no longer named are removed."""
     take.finish.catalog = ""
     for tags in ("a, b", "b, c"):
         take.finish.tags = tags
@@ -86,7 +83,6 @@ def test_marking_again_replaces_tags_only(take: bpy.types.PropertyGroup) -> None
 
 
 def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
-    """Others' catalogs and comments stay; a catalog that is there is found, not added again."""
     file = tmp_path / NAME
     before = "# mine\nVERSION 1\n\n11111111-2222-3333-4444-555555555555:Props/Chairs:Props-Chairs\n"
     file.write_text(before)
@@ -185,7 +181,6 @@ def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndar
 
 
 def test_a_failed_export_leaves_no_file_and_the_scene(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """A folder stands where the file should: one sentence, nothing beside it."""
     folder = tmp_path / "wave.bvh"
     folder.mkdir()
     before = state(bpy.context.scene)
@@ -206,7 +201,6 @@ def test_a_format_that_blender_lacks_is_refused(
 
 
 def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """The actor stays hidden, and the armature that is posed stays in its mode."""
     scene, actor = bpy.context.scene, take.armature
     layer = bpy.context.view_layer
     hidden = bpy.data.collections.new("Hidden")
@@ -234,7 +228,6 @@ def test_the_operator_is_made_from_the_registry_of_formats() -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: Path) -> None:
-    """After another reconstruction the export warns; after another bake it does not."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     take = active_take(bpy.context.scene)
     take.method = "interpolation"

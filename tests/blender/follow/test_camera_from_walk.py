@@ -65,7 +65,6 @@ def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
 def test_who_never_stands_is_no_measure(
     plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion
 ) -> None:
-    """The camera stays as it was, with keypoints that show nobody upright as without any."""
     with pytest.raises(RuntimeError, match="has no lines"):
         bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
     lying = np.array(wave_motion.points)[..., [2, 1, 0]]

@@ -64,7 +64,6 @@ def brush(radius: float = 8.0) -> None:
 
 
 def test_a_brushed_panel_is_gone_from_masks_and_readouts(cluttered: bpy.types.Scene) -> None:
-    """The warning was there before; strokes are kept as they were made."""
     take = active_take(cluttered)
     (sleeve,) = take.markers
     assert "stays still" in sleeve.warning and len(sleeve.still_areas)
@@ -99,7 +98,6 @@ def test_a_removed_region_is_searched_again(cluttered: bpy.types.Scene) -> None:
 
 
 def test_a_region_may_count_in_some_frames_only(cluttered: bpy.types.Scene) -> None:
-    """The panel shows frames of the scene; a clip that is moved in time takes them along."""
     take = active_take(cluttered)
     bpy.ops.keymark.ignore_still_areas()
     (region,) = take.ignored_regions

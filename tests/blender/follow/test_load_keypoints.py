@@ -35,7 +35,7 @@ def load(path: Path) -> bpy.types.PropertyGroup:
     return active_take(bpy.context.scene)
 
 
-def reading(take: bpy.types.PropertyGroup):  # noqa: ANN201
+def reading(take: bpy.types.PropertyGroup):
     clear_readings()
     return keypoint_reading(take, take.follow.files[take.follow.active_file])
 
@@ -58,7 +58,6 @@ def openpose_folder(folder: Path, motion: Motion, take: Take) -> Path:
 def test_a_plain_take_is_reconstructed_from_keypoints(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion, shown_points: Callable
 ) -> None:
-    """No marker, no contour: three keyframes and a detector's points are enough."""
     take = load(keypoint_file)
     take.follow.use_contours = False
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -79,7 +78,6 @@ def test_keyframes_are_proposed_from_keypoints(plain: bpy.types.Scene, keypoint_
 
 
 def test_what_is_seen_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """The points of this frame with their score, nothing while they are switched off."""
     assert keypoints_label(active_take(plain)) == ""
     take = load(keypoint_file)
     (seen,) = keypoints_at(take, 5)
@@ -134,7 +132,6 @@ def test_a_file_that_is_none_of_the_clips_is_refused(
 def test_a_file_that_is_gone_is_said_and_found_again(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """By the panel and by the estimate; the moved file takes the place of the old one."""
     take = load(keypoint_file)
     moved = Path(shutil.move(keypoint_file, tmp_path / "moved.json"))
     assert reading(take).is_missing and keypoints_at(take, 5) == ()
@@ -147,7 +144,6 @@ def test_a_file_that_is_gone_is_said_and_found_again(
 def test_a_file_that_was_written_again_is_said_and_used(
     plain: bpy.types.Scene, keypoint_file: Path, plain_take: Take, wave_motion: Motion, seen_by: Callable
 ) -> None:
-    """The newest content counts; the panel says so until it is loaded again."""
     take = load(keypoint_file)
     assert not reading(take).has_changed
     write_keypoints(keypoint_file, seen_by(plain_take, wave_motion, others=1), 1, plain_take.fps)
@@ -193,7 +189,6 @@ def test_another_clip_drops_what_was_seen_in_the_first(
 def test_another_performer_has_the_same_files_and_no_clicks(
     plain: bpy.types.Scene, keypoint_file: Path
 ) -> None:
-    """A detector sees everyone; what a person clicked on is the first performer's."""
     load(keypoint_file)
     bpy.ops.keymark.click_point(point="head", pixel=(30.0, 30.0))
     assert bpy.ops.keymark.add_performer() == {"FINISHED"}
@@ -232,7 +227,6 @@ def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> 
 
 @pytest.mark.usefixtures("registered")
 def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: Path) -> None:
-    """Keypoints are one way; whoever builds the actor at once follows contours alone."""
     bpy.ops.keymark.load_footage(filepath=str(plain_take.clip))
     scene = bpy.context.scene
     assert next_step(active_take(scene)) == "Next: say where the camera stood"
@@ -260,7 +254,6 @@ def network(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_is_found_is_written_beside_the_clip_and_listed(
     plain: bpy.types.Scene, plain_take: Take
 ) -> None:
-    """Run again, it writes the same file anew; a file of someone else's stays."""
     theirs = plain_take.folder / "clip.keypoints.json"
     theirs.write_text("theirs", encoding="utf-8")
     for _ in range(2):

@@ -35,7 +35,6 @@ def pixel_of(take: Take, segment: str) -> np.ndarray:
 
 
 def test_the_usual_five_are_added_at_once_and_only_where_missing() -> None:
-    """In an empty scene, and again after one was removed; none of them has a color yet."""
     bpy.ops.keymark.add_usual_markers()
     take = active_take(bpy.context.scene)
     assert [marker.segment for marker in take.markers] == USUAL
@@ -61,7 +60,6 @@ def test_a_name_follows_its_segment_until_it_is_changed() -> None:
 def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
     opened: bpy.types.Scene, tiny_take: Take
 ) -> None:
-    """The readout is of all, as another color changes what the rest are confused with."""
     take = active_take(opened)
     before = [tuple(marker.color) for marker in take.markers]
     take.active_marker = 3
@@ -100,7 +98,6 @@ def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
 
 
 def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: bpy.types.Scene) -> None:
-    """One color that is nowhere, and two that are alike, are named; the rest are well."""
     take = active_take(opened)
     take.markers[1].color = (0.1, 0.95, 0.9)
     take.markers[4].color = take.markers[3].color
@@ -114,7 +111,6 @@ def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: 
 
 
 def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:
-    """Another color, another name, another clip and a marker less all take it back."""
     take = active_take(opened)
 
     def checked() -> bool:
@@ -141,7 +137,6 @@ def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:
 
 
 def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Without any color there is nothing to check, and the tooltip says so."""
     bpy.ops.keymark.add_usual_markers()
     take = active_take(loaded)
     with pytest.raises(RuntimeError, match="Pick the color of a marker first"):
@@ -153,7 +148,6 @@ def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene
 
 
 def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Each covers what the readout says and follows its marker; of other colors there are none."""
     clear_previews()
     take = active_take(opened)
     assert update_masks(opened) is None
@@ -174,7 +168,6 @@ def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny
 
 
 def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> None:
-    """A switch: the second press hides them again; nothing of it is stored in the scene."""
     clear_previews()
     assert bpy.ops.keymark.show_masks() == {"FINISHED"}
     assert bpy.context.window_manager.keymark_show_masks
@@ -184,7 +177,6 @@ def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> No
 
 
 def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
-    """Top row first, the marker's color where it is, darkness where nothing is."""
     bpy.ops.keymark.check_markers()
     masks = update_masks(opened).masks
     picture = tinted(masks)
@@ -221,7 +213,6 @@ def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened
 
 
 def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
-    """The button says so, instead of a sentence about gray after the clip was read."""
     bpy.ops.keymark.add_marker()
     for operator in ("reconstruct", "propose_keyframes"):
         with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):
@@ -229,7 +220,6 @@ def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) ->
 
 
 def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """The same path with other pictures: no readout, no sample and no mask of the old ones."""
     take = active_take(opened)
     clip = tmp_path / "clip.mp4"
     shutil.copy(bpy.path.abspath(take.clip.filepath), clip)

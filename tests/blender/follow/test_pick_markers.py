@@ -31,7 +31,6 @@ def clicks(take: Take, *names: str) -> list[dict[str, object]]:
 
 
 def test_five_clicks_make_the_usual_five(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Into an empty list, with colors and readouts, whatever frame the scene shows meanwhile."""
     loaded.frame_set(9)
     assert bpy.ops.keymark.pick_markers(clicks=clicks(tiny_take, *USUAL)) == {"FINISHED"}
     take = active_take(loaded)
@@ -45,7 +44,6 @@ def test_five_clicks_make_the_usual_five(loaded: bpy.types.Scene, tiny_take: Tak
 
 
 def test_skipped_markers_stay_without_a_color(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Of the five, two are clicked on; a later go asks for the rest and leaves these."""
     bpy.ops.keymark.pick_markers(clicks=clicks(tiny_take, "shin.L", "trunk"))
     take = active_take(loaded)
     assert [marker.name for marker in take.markers if marker.is_picked] == ["trunk", "shin.L"]
@@ -57,7 +55,6 @@ def test_skipped_markers_stay_without_a_color(loaded: bpy.types.Scene, tiny_take
 
 
 def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Two markers in another order and with names of the animator's own; nothing is added."""
     for segment, name in (("shin.R", "sock"), ("forearm.L", "sleeve")):
         bpy.ops.keymark.add_marker()
         marker = active_take(loaded).markers[-1]

@@ -29,7 +29,6 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
 def test_fitting_brings_the_pose_to_the_keypoints(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion, start: str
 ) -> None:
-    """Between two keyframes, from any start, nearer than with five markers."""
     take = load(keypoint_file)
     plain.frame_set(4)
     write_posture(take.armature, wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25)))

@@ -15,7 +15,6 @@ SWITCHES = ("use_markers", "use_keypoints", "use_depth_hints", "use_contours")
 def test_keypoints_go_out_with_a_take_and_come_back(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """Files, tracks and clicks alike: each source becomes a file of the folder."""
     bpy.ops.keymark.load_keypoints(filepath=str(keypoint_file))
     bpy.ops.keymark.click_point(point="nose", pixel=(80.0, 30.0))
     track = active_take(plain).clip.tracking.tracks.new(name="wrist.L", frame=1)
@@ -31,7 +30,6 @@ def test_keypoints_go_out_with_a_take_and_come_back(
 
 
 def test_switches_go_out_with_a_take_and_come_back(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """Contours that are not followed are not followed elsewhere either."""
     active_take(opened).follow.use_contours = False
     folder = tmp_path / "saved"
     bpy.ops.keymark.save_take(directory=str(folder))

@@ -4,7 +4,6 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
-from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import fixed_reason
 from keymark.operators.shell.takes import active_take, placement_is_guess
 from keymark.operators.takes.panel import next_step
@@ -12,12 +11,6 @@ from mathutils import Euler
 
 pytestmark = pytest.mark.usefixtures("registered")
 ASKED = "Next: say where the camera stood"
-
-
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
 
 
 def matrix(camera: bpy.types.Object) -> np.ndarray:
@@ -56,7 +49,6 @@ def test_a_camera_with_a_parent_keeps_its_parent(loaded: bpy.types.PropertyGroup
 def test_a_new_camera_is_asked_about_until_somebody_says_where_it_stood(
     loaded: bpy.types.PropertyGroup,
 ) -> None:
-    """By a field, by moving it, or by the tick, in every take with this camera."""
     assert placement_is_guess(loaded) and next_step(loaded) == ASKED
     loaded.camera.location.z = 1.0
     assert not placement_is_guess(loaded) and next_step(loaded) != ASKED

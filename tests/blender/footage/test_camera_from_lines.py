@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.camera_fields import CameraPlacement
-from keymark.core.take.take import Take
 from keymark.operators.footage.drawn_lines import (
     ACROSS,
     HEIGHT,
@@ -20,18 +19,12 @@ from keymark.operators.footage.drawn_lines import (
     store_lines,
 )
 from keymark.operators.footage.take_footage import lens_is_guess
-from keymark.operators.shell.takes import active_take, placement_is_guess
+from keymark.operators.shell.takes import placement_is_guess
 
 pytestmark = pytest.mark.usefixtures("registered")
 SIZE = (160, 120)
 SCALE = 10.0
 """Region pixels within which an end is taken, and of a footage pixel."""
-
-
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
 
 
 def known_camera() -> Camera:
@@ -53,7 +46,6 @@ def seen_lines(camera: Camera, stature_m: float) -> list[DrawnLine]:
 
 
 def test_lines_set_the_camera_and_are_kept(loaded: bpy.types.PropertyGroup) -> None:
-    """Height, tilt, roll; nothing else of the camera moves, and what is not determined is said."""
     lines = seen_lines(known_camera(), loaded.stature)
     place = tuple(loaded.camera.location[:2])
     store_lines(loaded, lines)
@@ -70,7 +62,6 @@ def test_lines_set_the_camera_and_are_kept(loaded: bpy.types.PropertyGroup) -> N
 
 
 def test_a_lens_that_lines_determine_is_no_guess(loaded: bpy.types.PropertyGroup) -> None:
-    """A wide lens that looks far down, in a large picture's worth of lines."""
     true = replace(
         known_camera(),
         lens_mm=28.0,
@@ -140,7 +131,6 @@ def test_five_drags_draw_five_lines_of_three_kinds() -> None:
 
 
 def test_two_clicks_draw_a_line_as_well() -> None:
-    """The second end follows the mouse between them, and counts only when it is somewhere."""
     drawing = Drawing(HEIGHT, True)
     drawing.press((50.0, 300.0), 7, near((50.0, 300.0)))
     assert not drawing.release(far) and drawing.complete == []
@@ -166,7 +156,6 @@ def test_an_end_is_dragged_and_a_line_removed() -> None:
 
 
 def test_digits_give_the_last_height_its_length() -> None:
-    """Of a thing; of the performer they are the body height, and no other line has one."""
     drawing = Drawing(HEIGHT, False, stature_m=1.75)
     drag(drawing, (10.0, 10.0), (10.0, 200.0))
     assert drawing.length_of(drawing.lines[0]) == 1.75

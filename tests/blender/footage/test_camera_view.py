@@ -37,7 +37,6 @@ def test_panels_take_their_room() -> None:
 @pytest.mark.parametrize("picture", [(1920.0, 1080.0), (1080.0, 1920.0), (960.0, 912.0)])
 @pytest.mark.parametrize("sensor_fit", ["HORIZONTAL", "VERTICAL", "AUTO"])
 def test_the_picture_fills_the_free_part(picture: tuple[float, float], sensor_fit: str) -> None:
-    """Centered there, touching the margin on one pair of sides and within it on the other."""
     free = (40.0, 0.0, 750.0, 570.0)
     whole = picture_at_factor_one(REGION, picture, sensor_fit)
     zoom, offset = camera_view(REGION, free, whole)

@@ -26,12 +26,6 @@ def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160
     return path
 
 
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
-
-
 def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyGroup) -> None:
     assert lens_is_guess(loaded)
     loaded.camera.data.lens = 31.0
@@ -44,7 +38,6 @@ def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyG
 
 
 def test_the_startup_files_camera_stays_where_it_is(tiny_take: Take) -> None:
-    """It looks down from a corner; the footage gets a camera of its own at eye height."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     startup = bpy.context.scene.camera
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
@@ -55,7 +48,6 @@ def test_the_startup_files_camera_stays_where_it_is(tiny_take: Take) -> None:
 
 
 def test_choosing_a_clip_in_the_panel_does_what_loading_does(tmp_path: Path) -> None:
-    """Rate, range, background and camera follow; choosing another keeps the camera."""
     scene = bpy.context.scene
     clips = [
         bpy.data.movieclips.load(str(write_clip(tmp_path / f"{count}.mp4", count, fps)))
@@ -73,7 +65,6 @@ def test_choosing_a_clip_in_the_panel_does_what_loading_does(tmp_path: Path) -> 
 
 
 def test_a_clip_of_this_file_is_used(tmp_path: Path) -> None:
-    """By its name; without one the scene's own; an unknown name lists those there are."""
     scene = bpy.context.scene
     with pytest.raises(RuntimeError, match="has no clip; load the footage"):
         bpy.ops.keymark.use_clip()
@@ -106,7 +97,6 @@ def test_a_camera_that_was_deleted_is_replaced(loaded: bpy.types.PropertyGroup) 
 def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
     loaded: bpy.types.PropertyGroup, tmp_path: Path
 ) -> None:
-    """Over the viewport and the clip editor alone; a clip that is there keeps its take."""
     first = loaded.clip
     context = bpy.context
     assert ".mp4" in KEYMARK_FH_footage.bl_file_extensions.split(";")
@@ -150,7 +140,6 @@ def reopened(path: Path) -> bpy.types.PropertyGroup:
 
 
 def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path) -> None:
-    """Everything else of the take stays, and what needs no footage works meanwhile."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     moved = tmp_path / "elsewhere.mp4"
@@ -179,7 +168,6 @@ def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path)
 
 
 def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Path) -> None:
-    """Baked, exported and reviewed on a machine that never had the clip."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     active_take(bpy.context.scene).method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -195,7 +183,7 @@ def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Pat
     assert len(bpy.data.objects) == 0 and min(before) > 0
 
 
-def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:  # noqa: ANN001
+def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     other = write_clip(tmp_path / "other.mp4", 9, 24.0)
     bpy.ops.keymark.relocate_clip(filepath=str(other))
@@ -204,7 +192,6 @@ def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, c
 
 
 def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
-    """A saved file holds the clip's relative path: the folder can go to another machine."""
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()
     shutil.copy(tiny_take.clip, here / "clip.mp4")
@@ -217,7 +204,6 @@ def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
 
 
 def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> None:
-    """What Blender made for the attempt goes; what the animator had does not, tracking and all."""
     clip = tmp_path / "broken.mp4"
     clip.write_bytes(bytes(2000))
     with pytest.raises(RuntimeError, match="cannot"):

@@ -54,7 +54,6 @@ def points_of(scene: bpy.types.Scene) -> np.ndarray:
 
 
 def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bpy.types.Scene) -> None:
-    """The selected arm alone moves; pressing until it comes round gives the first pose again."""
     take = active_take(opened)
     opened.frame_set(4)
     before = reaching(opened)
@@ -108,7 +107,6 @@ def test_with_all_bones_selected_the_active_one_counts(opened: bpy.types.Scene) 
 
 @pytest.mark.parametrize("facing", ["CAMERA", "LEFT", "RIGHT", "AWAY"])
 def test_the_performer_turns_in_place(opened: bpy.types.Scene, facing: str) -> None:
-    """Whatever becomes of the limbs; without a fit the hips stay to the millimeter."""
     take = active_take(opened)
     opened.frame_set(4)
     before = posture_of(opened).translation
@@ -137,7 +135,6 @@ def test_turning_outside_the_footage_needs_no_fit(opened: bpy.types.Scene) -> No
 def test_a_neighbors_pose_is_copied_to_the_place_of_this_frame(
     opened: bpy.types.Scene, direction: str, frame: int
 ) -> None:
-    """Only the place is this frame's own; scene and keys are as before."""
     take = active_take(opened)
     opened.frame_set(frame)
     there = posture_of(opened)
@@ -169,7 +166,6 @@ def test_a_moved_joint_lies_where_it_was_moved_to(opened: bpy.types.Scene) -> No
 
 
 def test_correcting_the_shown_motion_goes_on_with_the_keyframes(opened: bpy.types.Scene) -> None:
-    """The keyframe Action is shown, with the corrected pose of the motion."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()

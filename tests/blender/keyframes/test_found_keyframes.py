@@ -58,7 +58,6 @@ def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
 
 
 def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) -> None:
-    """A changed keyframe and a chosen candidate stay; then there is nothing left to remove."""
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     bpy.context.scene.frame_set(7)
@@ -101,7 +100,6 @@ def test_found_keyframes_are_gone_through_in_order(found: Group) -> None:
 
 
 def test_the_chosen_one_is_that_of_the_current_frame(found: Group) -> None:
-    """Choosing goes there, going there chooses; between two the last one stays chosen."""
     scene, matching = bpy.context.scene, found.matching
     matching.shown_match = 1
     assert scene.frame_current == 7
@@ -135,7 +133,6 @@ def test_every_step_is_undone_and_redone(unposed: Group, given: SimpleNamespace)
 
 
 def test_the_timeline_tells_found_keyframes_from_posed_ones(found: Group) -> None:
-    """A square each, filled where sure; no proposal's diamond stays at the same frame."""
     found.proposals.clear()
     for frame in (4, 7):
         found.proposals.add().frame = frame
@@ -149,7 +146,6 @@ def test_the_timeline_tells_found_keyframes_from_posed_ones(found: Group) -> Non
 
 
 def test_found_keyframes_come_back_with_the_file(found: Group, tmp_path: Path) -> None:
-    """Frames, stored candidates, the reason, and that the keys are unchanged."""
     before, reason = known_matches(found), found.matching.reason
     place = [tuple(one.place) for match in found.matching.matches for one in match.candidates]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))

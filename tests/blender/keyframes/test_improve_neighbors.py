@@ -47,7 +47,6 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
 
 
 def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleNamespace) -> None:
-    """A candidate that was chosen holds from then on, though it counts as found."""
     asked = len(given.frames)
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
@@ -64,7 +63,6 @@ def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleName
 def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
     found: Group, given: SimpleNamespace
 ) -> None:
-    """Switched off, with nothing found, without a reading, or with one of other colors."""
     scene, asked = bpy.context.scene, len(given.frames)
     found.matching.improve_neighbors = False
     assert improve_neighbors(bpy.context, found, 7.0) == 0

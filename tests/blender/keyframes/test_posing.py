@@ -35,7 +35,6 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
 def test_fitting_brings_the_pose_to_the_markers(
     opened: bpy.types.Scene, wave_motion: Motion, start: str
 ) -> None:
-    """Between two keyframes, from any start; no key is set, and a redraw keeps the pose."""
     take = active_take(opened)
     opened.frame_set(4)
     rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
@@ -83,7 +82,6 @@ def test_fitting_outside_the_footage_says_where_it_is(opened: bpy.types.Scene) -
 
 
 def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.types.Scene) -> None:
-    """The pose of the motion becomes a keyframe; the motion's Action gets no key."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -145,7 +143,6 @@ def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
 
 
 def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
-    """Keys on the camera that leave it where the footage was taken from in this frame alone."""
     take = active_take(opened)
     camera = take.camera
     for frame, aside in ((1, 0.6), (4, 0.0), (13, 0.9)):
@@ -160,7 +157,6 @@ def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene,
 
 
 def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.Scene) -> None:
-    """Blender forgets unkeyed poses when it goes to another frame; no performer's is lost."""
     take = active_take(opened)
     opened.frame_set(5)
     camera = take.camera
@@ -178,7 +174,6 @@ def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.
 
 
 def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.Scene) -> None:
-    """A linked copy of the scene shows the same actor at a frame of its own."""
     opened.frame_set(1)
     first = posture_of(opened)
     bpy.ops.scene.new(type="LINK_COPY")
@@ -229,7 +224,6 @@ def fitted(opened: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
 
 
 def test_a_fitted_frame_offers_other_poses_and_keys_none(fitted: bpy.types.Scene) -> None:
-    """The likeliest is shown; another one at a click; elsewhere there is nothing to choose."""
     take = active_take(fitted)
     offered = offered_at(take, 4.0)
     assert offered is not None and offered.chosen == 0
@@ -256,7 +250,6 @@ def test_storing_the_pose_ends_the_choice(fitted: bpy.types.Scene) -> None:
 
 
 def test_what_contradicts_is_kept_until_the_frame_is_fitted_otherwise(fitted: bpy.types.Scene) -> None:
-    """It is there on coming back to the frame, and undo brings it back."""
     take = active_take(fitted)
     name = take.markers[0].name
     note_contradictions(take, 4.0, (name,))

@@ -76,7 +76,6 @@ def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup
 
 
 def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """The redo panel goes back and does it anew: the file is the one it wrote before."""
     assert bpy.ops.keymark.learn_library(title="Swing") == {"FINISHED"}
     assert bpy.ops.keymark.learn_library(title="Swing", count=14, learned_as="swing") == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["swing.json"]
@@ -84,7 +83,6 @@ def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup
 
 
 def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """A license that is none, or more postures than frames: one sentence, no file, no asset."""
     actions = len(bpy.data.actions)
     for wrong, sentence in (({"license": "free for all!"}, "license"), ({"count": 500}, "50 frames")):
         with pytest.raises(RuntimeError, match=sentence):

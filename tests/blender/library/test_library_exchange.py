@@ -58,7 +58,6 @@ def titles(folder: Path) -> list[tuple[str, str, int, int]]:
 
 
 def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: Path) -> None:
-    """In the user's folder, in the list and in menus; imported again, nothing happens."""
     assert imported(library, tmp_path) == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["small.json"]
     listed = bpy.context.window_manager.keymark_shelf.libraries
@@ -73,7 +72,6 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
 
 
 def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Path) -> None:
-    """A library is imported, a take is opened or its error is reported, other files are refused."""
     write_library(tmp_path / "take.json", library)  # the name does not matter
     assert bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json")) == {"FINISHED"}
     assert titles(own) == [("small", "Small", 2, 2)]
@@ -92,7 +90,6 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
 
 
 def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
-    """The stored number means the same library after another one is listed before it."""
     take = add_take(bpy.context.scene, "Take")
     imported(library, tmp_path)
     take.matching.library = "small"
@@ -113,7 +110,6 @@ def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
 def test_a_file_that_only_has_the_name_is_not_lost(
     own: Path, library: Library, tmp_path: Path, content: str
 ) -> None:
-    """Files that people have put into the folder themselves may hold anything."""
     there = own / "small.json"
     if content == "another":
         write_library(there, replace(library, identifier="anna", title="Anna"))
@@ -132,7 +128,6 @@ def test_an_older_version_that_shall_replace_does(own: Path, library: Library, t
 
 
 def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Library) -> None:
-    """Libraries are found by identifier, even where another library's title equals it."""
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
     assert load_registered("small").title == "Zoo"
@@ -182,7 +177,6 @@ def test_a_library_is_saved_and_loaded_without_loss(
 
 
 def test_a_library_is_edited_as_pose_assets(own: Path, library: Library, tmp_path: Path) -> None:
-    """It comes back as it was, then with another name; a saved file's catalogs are named."""
     imported(library, tmp_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "work.blend"))
     assert bpy.ops.keymark.edit_library(library="small") == {"FINISHED"}
@@ -266,7 +260,6 @@ def test_what_was_posed_becomes_a_library(
 
 
 def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
-    """The suffix decides, not the last format; the format property decides for other suffixes."""
     imported(library, tmp_path)
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")

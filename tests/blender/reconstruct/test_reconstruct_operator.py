@@ -26,7 +26,7 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     counted: list[int] = []
     original = read_clip.detect_markers
 
-    def sight(*arguments):  # noqa: ANN002, ANN202
+    def sight(*arguments):
         counted.append(1)
         return original(*arguments)
 
@@ -37,7 +37,6 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 def test_the_clip_is_read_once_for_proposals_and_every_method(
     take: bpy.types.PropertyGroup, passes: list[int]
 ) -> None:
-    """Reading, review and notes lie with the take; the key goes along with the file."""
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
     assert len(take.proposals) >= 2 and results.reading_of(take) is not None
     for method in ("map", "ekf", "interpolation", "map"):
@@ -90,7 +89,6 @@ def test_notes_of_the_last_run_stay_readable(take: bpy.types.PropertyGroup) -> N
 
 
 def test_two_takes_keep_their_own_results(take: bpy.types.PropertyGroup) -> None:
-    """A job's result goes to the take it was started for, whichever is worked on when it ends."""
     from types import SimpleNamespace
 
     from keymark.core.progress import run
@@ -118,7 +116,6 @@ def test_time_left_is_said_once_it_can_be_told() -> None:
 
 
 def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup) -> None:
-    """Reading the same keyframes from Blender once more is no change; moving one is."""
     from types import SimpleNamespace
 
     from keymark.operators.reconstruct.reconstruct import KEYMARK_OT_reconstruct
@@ -140,7 +137,6 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
 
 
 def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
-    """The button is gray with a reason in its tooltip; a second keyframe enables it."""
     scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
     take.keyframe_action = None
     take.armature.animation_data.action = None
@@ -181,7 +177,6 @@ def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.Prop
 
 
 def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.PropertyGroup) -> None:
-    """None or one, beside others outside the footage: the error names those that do not count."""
     take.keyframe_action = bpy.data.actions.new("Elsewhere")
     for frame, said in (
         (40, None),

@@ -41,7 +41,6 @@ def take(tiny_take: Take, wave_motion: Motion) -> bpy.types.PropertyGroup:
 
 
 def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
-    """List, curves and the overlays' data are of the same motion; a second run replaces them."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
     take = active_take(bpy.context.scene)
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -63,7 +62,6 @@ def curve(take: bpy.types.PropertyGroup, name: str) -> bpy.types.FCurve | None:
 
 
 def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -> None:
-    """The worst first; the whole take's confidence is the frames' mean."""
     shown = [(weak.frame, weak.reason, weak.marker, weak.strength) for weak in take.review.weak_frames]
     assert shown == [(7.0, "HIDDEN", "Ärmel", 1.0), (4.0, "FAR", "", 0.25)]
     assert take.review.confidence == pytest.approx(made_up_review().confidence.mean())
@@ -74,7 +72,6 @@ def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -
 
 
 def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> None:
-    """No confidence, and no curve of it from an earlier review; the other curves stay."""
     unknown = np.full(13, np.nan)
     show_review(take, replace(made_up_review(), confidence=unknown, sigma_m=np.full((13, 13), np.nan)))
     assert take.review.confidence < 0.0
@@ -84,7 +81,6 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
 
 
 def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
-    """In one group, generated, in millimeters and pixels; unknown frames have no key."""
     review = made_up_review()
     keypoints = review.keypoints
     distances = np.concatenate(
@@ -133,7 +129,6 @@ def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.Propert
 def test_curves_disturb_neither_pose_nor_keyframes(
     take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """The motion moves as before, and no curve counts as a key of the animator or of the motion."""
     for frame in (1, 7, 13):
         bpy.context.scene.frame_set(frame)
         assert shown_points(take.armature) == pytest.approx(wave_motion.points[frame - 1], abs=1e-4)
@@ -151,7 +146,6 @@ def test_a_second_review_replaces_the_first_but_not_the_animators_keys(take: bpy
 
 
 def test_going_through_weak_frames(take: bpy.types.PropertyGroup) -> None:
-    """The worst first; at the end it stays; choosing in the list goes there as well."""
     scene = bpy.context.scene
     scene.frame_set(1)
     visited = []
@@ -189,7 +183,6 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
 
 
 def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.PropertyGroup) -> None:
-    """Without any list; and without keyframes an Action for them is made."""
     clear_review(take)
     take.keyframe_action = None
     bpy.context.scene.frame_set(5)
@@ -204,7 +197,6 @@ def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.Property
 
 @pytest.mark.parametrize("turn", [0.0, 0.7, 2.5])
 def test_the_view_is_level_with_the_camera_on_the_left(opened: bpy.types.Scene, turn: float) -> None:
-    """Depth runs to the right, height upwards, and the actor is in the middle."""
     take = active_take(opened)
     take.camera.matrix_world = Matrix.Rotation(turn, 4, "Z") @ take.camera.matrix_world
     bpy.context.view_layer.update()
@@ -223,7 +215,6 @@ def test_the_view_is_level_with_the_camera_on_the_left(opened: bpy.types.Scene, 
 
 
 def test_it_is_a_toggle_and_needs_an_actor(opened: bpy.types.Scene) -> None:
-    """Without an editor all viewports are set; without an actor there is nothing to look at."""
     assert bpy.ops.keymark.look_from_side() == {"FINISHED"}
     bpy.data.objects.remove(active_take(opened).armature)
     with pytest.raises(RuntimeError, match="actor"):

@@ -50,7 +50,6 @@ def test_a_file_says_its_version_and_keeps_its_takes(tiny_take: Take, tmp_path: 
 
 @pytest.mark.usefixtures("registered")
 def test_what_a_newer_keymark_wrote_is_left_alone(tiny_take: Take, tmp_path: Path) -> None:
-    """The version stays, so does everything else; working on does not call it older."""
     take = open_take(tiny_take)
     take.identifier = ""  # as if it meant something else by then
     bpy.context.scene.keymark.version = VERSION + 1
@@ -72,7 +71,6 @@ def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) ->
 
 
 def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
-    """With its Action; another keyframe goes into it, and it is reconstructed."""
     with bpy.data.libraries.load(str(rig_file)) as (_source, target):
         target.objects = [RIG]
     scene = bpy.context.scene
@@ -131,7 +129,6 @@ def test_a_library_override_is_an_actor(rig_file: Path, tiny_take: Take, tmp_pat
 
 @pytest.mark.usefixtures("registered")
 def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
-    """Its take points to the copies, and reconstructing there leaves the first scene's actor."""
     first = open_take(tiny_take)
     first.method = "interpolation"
     bpy.ops.scene.new(type="FULL_COPY")
@@ -150,7 +147,6 @@ def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_everything_can_be_undone(tiny_take: Take, tmp_path: Path) -> None:
-    """Step by step back to the empty scene, and every state once more forward."""
 
     def state() -> tuple[object, ...]:
         scene = bpy.context.scene

@@ -70,7 +70,6 @@ def test_each_is_found_by_their_own_colors(
     performances: list[Posture],
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """One after the other; the second run leaves the first one's motion as it was."""
     scene = bpy.context.scene
     bpy.ops.keymark.load_footage(filepath=str(clip))
     scene.camera.matrix_world = np.array(camera.matrix_world).T.tolist()
