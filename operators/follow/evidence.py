@@ -38,11 +38,7 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
 
 
 def followed_markers(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
-    """The styles of a take's markers, none where these are switched off.
-
-    Raises:
-        InputError: Two markers have one name or one segment.
-    """
+    """The styles of a take's markers, none where these are switched off."""
     return marker_styles(take) if take.follow.use_markers else ()
 
 

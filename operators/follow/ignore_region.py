@@ -220,11 +220,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
                 point.loc, point.time = pixel, number
 
     def _from_path(self, take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]":
-        """The strokes that the properties say.
-
-        Raises:
-            InputError: There are none.
-        """
+        """The strokes that the properties say."""
         if not len(self.path):
             raise InputError("path is empty; give at least one pixel of the footage")
         brush, stroke = Brush(take.clip.size[0], self.radius), None

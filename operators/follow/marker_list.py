@@ -74,11 +74,7 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
 
 
 def _check_markers() -> None:
-    """Run the check of the markers, on a timer in the user interface.
-
-    Raises:
-        InputError: The markers cannot be checked.
-    """
+    """Run the check of the markers, on a timer in the user interface."""
     try:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
     except RuntimeError as error:

@@ -102,11 +102,7 @@ _samples: "dict[str, ClipSamples]" = {}
 def find_markers(
     footage: Footage, styles: "tuple[MarkerStyle, ...]", ignored: "tuple[IgnoredRegion, ...]"
 ) -> "Job[MarkerCheck]":
-    """Find markers in frames sampled over a clip, which are decoded once a session.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Find markers in frames sampled over a clip, which are decoded once a session."""
     from ...core.footage.clips.clip import sample_clip
     from ...core.footage.marker_check import check_markers
     from ...core.footage.reading import footage_digest

@@ -86,11 +86,7 @@ def clear_previews() -> None:
 
 
 def update_masks(scene: bpy.types.Scene) -> Preview | None:
-    """Make the masks of the current frame, unless they are made already; return their preview.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Make the masks of the current frame, unless they are made already; return their preview."""
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
     if preview is None or is_of_frame(preview, scene):

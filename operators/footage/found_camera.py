@@ -33,11 +33,7 @@ CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is sa
 
 
 def fit_take(take: bpy.types.PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
-    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept."""
     from ...core.footage.camera_fit import fit_camera
 
     camera = still_camera(footage_of(take.id_data, take))
@@ -50,11 +46,7 @@ def is_found(fit: "CameraFit") -> bool:
 
 
 def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
-    """Give the take's camera what was found, and keep in words how sure it is.
-
-    Raises:
-        InputError: Nothing was found; or there is no camera or clip.
-    """
+    """Give the take's camera what was found, and keep in words how sure it is."""
     if not is_found(fit):
         raise InputError(NOTHING_FOUND)
     lens_was_guess = lens_is_guess(take)

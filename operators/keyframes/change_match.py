@@ -10,7 +10,7 @@ from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take, find_take
 from .candidate_buttons import candidate_title
 from .found_keyframes import chosen_match, undecided_matches
-from .improve_neighbors import improve_neighbors
+from .store_keyframe import improve_neighbors
 
 
 class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):

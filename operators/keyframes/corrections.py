@@ -38,11 +38,7 @@ def shown_pose(take: bpy.types.PropertyGroup) -> "tuple[Body, Posture]":
 
 
 def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera":
-    """The take's camera as it stands in the current frame.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """The take's camera as it stands in the current frame."""
     from ..bridge.camera_placement import read_camera
 
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))

@@ -62,11 +62,7 @@ class SceneClip:
 def read_known_take(
     scene: bpy.types.Scene, settings: bpy.types.PropertyGroup
 ) -> "Job[tuple[Take, tuple[str, ...]]]":
-    """The scene's take with all keyframes, and notes; found ones that nobody decided on are marked so.
-
-    Raises:
-        InputError: Something is missing or unusable.
-    """
+    """The scene's take with all keyframes, and notes; found ones that nobody decided on are marked so."""
     from ..bridge.take_from_scene import read_scene_take
 
     return read_scene_take(
@@ -80,11 +76,7 @@ def read_known_take(
 
 
 def read_scene_clip(scene: bpy.types.Scene, settings: bpy.types.PropertyGroup) -> "Job[SceneClip]":
-    """Read the scene's take and its clip; a clip that was read before is not decoded again.
-
-    Raises:
-        InputError: Something is missing or unusable.
-    """
+    """Read the scene's take and its clip; a clip that was read before is not decoded again."""
     from ...core.take.read_footage import read_footage
     from ..bridge.scene_frames import scene_frames
 

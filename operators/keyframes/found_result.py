@@ -39,11 +39,7 @@ class FoundResult:
     proposals: Proposals | None = None  # Where no frames were proposed before
 
     def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Key what was found beside what is decided, in place of what was found earlier; returns the take.
-
-        Raises:
-            InputError: The take or its actor has been removed, or the actor lacks bones.
-        """
+        """Key what was found beside what is decided, in place of what was found earlier; returns the take."""
         take = take_by_identifier(scene, self.take)
         clear_found(take)
         matching, found = take.matching, self.found

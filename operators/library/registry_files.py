@@ -68,11 +68,7 @@ def write_to_registry(libraries: Iterable[Library]) -> None:
 
 
 def _own_file(folder: Path, identifier: str) -> Path:
-    """The file of a library in a folder, new or existing: people may have put files there under any name.
-
-    Raises:
-        InputError: The file of that name holds something else.
-    """
+    """The file of a library in a folder, new or existing: people may have put files there under any name."""
     path, there = library_path(folder, identifier), registered_libraries([folder])
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)

@@ -82,11 +82,7 @@ class LivePreview:
 
 
 def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
-    """The data block of a session UID, which outlives renaming and undo.
-
-    Raises:
-        InputError: It is gone.
-    """
+    """The data block of a session UID, which outlives renaming and undo."""
     for item in items:
         if item.session_uid == uid:
             return item
@@ -104,11 +100,7 @@ class ReconstructionResult:
     notes: tuple[str, ...]
 
     def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Write the motion's Action and its review, and let the Action animate the actor; returns the take.
-
-        Raises:
-            InputError: The take or its actor has been removed, or the actor lacks bones.
-        """
+        """Write the motion and its review, and let its Action animate the actor; return the take."""
         take = take_by_identifier(scene, self.take)
         take.motion_action = write_motion(
             actor_of(take), self.reconstruction.motion, take.motion_action, take.keyframe_action, self.frames

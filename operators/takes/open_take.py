@@ -165,11 +165,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
         return self._delegate("EXEC_DEFAULT")
 
     def _delegate(self, execution_context: str) -> set[str]:
-        """Call the operator for the file's content, and return its result.
-
-        Raises:
-            InputError: The file is none of these, or the operator failed.
-        """
+        """Call the operator for the file's content, and return its result."""
         from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
 
         path = Path(bpy.path.abspath(self.filepath))

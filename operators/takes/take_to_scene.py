@@ -61,11 +61,7 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
 
 
 def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
-    """Add a take to the scene, show its footage and its range, and report what a person should know of it.
-
-    Raises:
-        InputError: Blender cannot read the clip; the scene is unchanged.
-    """
+    """Add a take to the scene, show its footage and its range, and report what a person should know of it."""
     add_take_to_scene(context, opened)
     hide_startup_cube(context)
     take = active_take(context.scene)

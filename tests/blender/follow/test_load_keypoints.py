@@ -13,7 +13,6 @@ from _fake_network import MiddleNetwork
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.detect_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.follow.frame_keypoints import (
     clear_readings,
@@ -23,6 +22,7 @@ from keymark.operators.follow.frame_keypoints import (
     keypoints_label,
     seen_label,
 )
+from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes.panel import next_step
 

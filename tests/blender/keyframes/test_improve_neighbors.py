@@ -13,7 +13,7 @@ from keymark.core.errors import InputError
 from keymark.core.footage.ignored_regions import IgnoredRegion
 from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.follow.ignored_regions import add_ignored_regions
-from keymark.operators.keyframes.improve_neighbors import improve_neighbors
+from keymark.operators.keyframes.store_keyframe import improve_neighbors
 from keymark.operators.shell import results
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
