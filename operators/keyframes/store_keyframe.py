@@ -163,4 +163,4 @@ class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
 
 
-register, unregister = bpy.utils.register_classes_factory(KEYMARK_OT_store_keyframe)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_store_keyframe,))

@@ -29,6 +29,13 @@ def own_folder() -> Path:
         return folder
 
 
+def folders() -> list[Path]:
+    """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
+    from ...core.prior.registry import SHIPPED
+
+    return [own_folder(), SHIPPED]
+
+
 def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
     """The entry that is chosen in the list."""
     listed = context.window_manager.keymark_shelf
@@ -64,7 +71,6 @@ def _number(identifier: str) -> int:
 def refresh(choose: str = "") -> None:
     """Read the folders, fill the list, and choose the library of an identifier, else the same as before."""
     from ...core.prior.registry import registered_libraries
-    from .registry_files import folders
 
     listed, own = bpy.context.window_manager.keymark_shelf, own_folder()
     wanted = choose or chosen_identifier(bpy.context)

@@ -6,24 +6,21 @@ from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.prior.library import Library, write_library
-from ...core.prior.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
+from ...core.prior.registry import find_libraries, find_library, library_path, registered_libraries
 from ...core.prior.texts import EVERY_LIBRARY
 from . import registry
 
 
-def folders() -> list[Path]:
-    """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
-    return [registry.own_folder(), SHIPPED]
-
-
 def load_registered(identifier: str) -> Library:
     """The registered library of an identifier; an InputError without a usable file of it."""
-    return find_library(identifier, folders())
+    return find_library(identifier, registry.folders())
 
 
 def find_registered(identifier: str) -> Library | None:
     """The registered library of exactly this identifier; None where there is no usable one."""
-    found = (entry.library for entry in registered_libraries(folders()) if entry.identifier == identifier)
+    found = (
+        entry.library for entry in registered_libraries(registry.folders()) if entry.identifier == identifier
+    )
     return next((library for library in found if library is not None), None)
 
 
@@ -44,7 +41,7 @@ def all_libraries() -> Sequence[Library]:
     Raises:
         InputError: There is none.
     """
-    files = sorted(file for folder in folders() if folder.is_dir() for file in folder.glob("*.json"))
+    files = sorted(file for folder in registry.folders() if folder.is_dir() for file in folder.glob("*.json"))
     stats = [(file, file.stat()) for file in files]
     return _libraries(tuple((file, stat.st_mtime_ns, stat.st_size) for file, stat in stats))
 
@@ -52,7 +49,7 @@ def all_libraries() -> Sequence[Library]:
 @lru_cache(maxsize=1)
 def _libraries(_files: tuple[tuple[Path, int, int], ...]) -> Sequence[Library]:
     """All registered libraries, read from files of these times and sizes."""
-    return find_libraries(EVERY_LIBRARY, folders())
+    return find_libraries(EVERY_LIBRARY, registry.folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:

@@ -10,7 +10,7 @@ from ...core.prior.texts import identifier_from
 from ..shell.base_operator import BaseOperator, warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, find_take
-from .registry import chosen_identifier, refresh
+from .registry import chosen_identifier, folders, refresh
 
 if TYPE_CHECKING:
     from ...core.prior.library import Library
@@ -193,7 +193,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         from ...core.prior.learning import LibraryMetadata
         from ...core.prior.registry import registered_libraries
         from ..bridge.library.posed_library import library_from_action
-        from .registry_files import folders, write_to_registry
+        from .registry_files import write_to_registry
 
         take, render = active_take(context.scene), context.scene.render
         title = self.title.strip() or take.name

@@ -33,7 +33,7 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     folder = tmp_path / "own"
     folder.mkdir()
     monkeypatch.setattr(registry, "own_folder", lambda: folder)
-    monkeypatch.setattr(registry_files, "folders", lambda: [folder])
+    monkeypatch.setattr(registry, "folders", lambda: [folder])
     return folder
 
 
