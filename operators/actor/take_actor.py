@@ -84,9 +84,6 @@ def _action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
     return None if data is None else data.action
 
 
-SYMMETRY_TOLERANCE_M = 5e-4  # Left and right count as equally long within this
-
-
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
     """Build a take's armature, selected and active, and return the armature object."""
     armature_object = new_actor(context, take, body)
@@ -119,9 +116,7 @@ def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
     give_notices(take, "actor", "lengths")  # of other lengths
     lengths = take.lengths
     pairs = [(f"{part}.L", f"{part}.R") for part in {name.split(".")[0] for name in segments if "." in name}]
-    lengths.symmetric = all(
-        abs(segments[left] - segments[right]) < SYMMETRY_TOLERANCE_M for left, right in pairs
-    )
+    lengths.symmetric = all(abs(segments[left] - segments[right]) < 5e-4 for left, right in pairs)
     for name in length_names():
         setattr(lengths, length_property(name), segments[name])
 

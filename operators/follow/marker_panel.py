@@ -7,11 +7,6 @@ from ..shell.takes import active_take
 from .marker_styles import markers_label
 from .panel import evidence_panels
 
-IGNORING = ("keymark.ignore_region", "keymark.ignore_still_areas")
-SWATCH_UNITS, NARROW_SWATCH_UNITS = 1.6, 0.8
-"""Width of a marker's color in the list, which leaves a narrow sidebar to the names."""
-LABEL_SHARE = 0.4  # Share of the width that Blender gives to the labels of its two columns
-
 
 class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     """Markers with their colors and the number of sampled frames in which they are found."""
@@ -22,7 +17,7 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
         row = layout.row(align=True)
         swatch = row.row()
         roomy = is_roomy(context)
-        swatch.ui_units_x = SWATCH_UNITS if roomy else NARROW_SWATCH_UNITS
+        swatch.ui_units_x = 1.6 if roomy else 0.8  # a narrow sidebar is left to the names
         swatch.enabled = item.is_picked
         swatch.prop(item, "color", text="")
         row.prop(item, "name", text="", emboss=False)
@@ -94,7 +89,8 @@ def _draw_ignored(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw what is never a marker: the brush, the list of regions, and the frames of the chosen one."""
-    if not any(draw_progress(layout, context, job) for job in IGNORING):
+    jobs = ("keymark.ignore_region", "keymark.ignore_still_areas")
+    if not any(draw_progress(layout, context, job) for job in jobs):
         row = layout.row(align=True)
         row.operator("keymark.ignore_region", icon="BRUSH_DATA")
         if any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers):
@@ -136,7 +132,7 @@ def _draw_marker(
 
 def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
     """Draw a name and a value in the two columns of properties."""
-    row = layout.split(factor=LABEL_SHARE)
+    row = layout.split(factor=0.4)
     left = row.row()
     left.alignment = "RIGHT"
     left.label(text=name)

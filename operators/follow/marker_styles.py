@@ -43,14 +43,15 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     """
     from ...core.footage.region_tracks import MarkerStyle
 
-    colors = [tuple(round(float(value) * 255) for value in marker.color) for marker in take.markers]
-    pairs = zip(take.markers, colors, strict=True)
-    styles = tuple(MarkerStyle(marker.name, marker.segment, color) for marker, color in pairs)
+    styles = []
+    for marker in take.markers:
+        red, green, blue = (round(float(value) * 255) for value in marker.color)
+        styles.append(MarkerStyle(marker.name, marker.segment, (red, green, blue)))
     for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
         twice = next((value for value in values if values.count(value) > 1), None)
         if twice is not None:
             raise InputError(f"two markers have the {kind} '{twice}'; each needs its own")
-    return styles
+    return tuple(styles)
 
 
 def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb]) -> "tuple[MarkerStyle, ...]":

@@ -14,8 +14,6 @@ from ..shell.takes import NO_GUESS, as_numbers, find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
 
 GENERIC_STEM = "clip"  # File name, without its extension, of the clip in every saved take's folder
-SAMPLED_FRAMES = 90
-"""Frames whose times are checked for a variable rate; a phone's rate varies from the start."""
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")  # Extensions of the files that footage is loaded from
 
@@ -154,6 +152,7 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:
     try:
         stamps = footage_of(take.id_data, take).open().source.time_stamps()
-        return is_variable_frame_rate(list(islice(stamps, SAMPLED_FRAMES)))
+        # A phone's rate varies from the start.
+        return is_variable_frame_rate(list(islice(stamps, 90)))
     except (InputError, ModuleNotFoundError):  # reported when the clip is read
         return False

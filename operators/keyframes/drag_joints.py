@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from ..bridge.scene_frames import Pose
 
 
-PRECISE = 0.1  # Share of the mouse's way that counts with Shift held, as in Blender's own transforms
-
-
 @dataclass
 class JointDrag:
     """A joint that is being dragged."""
@@ -47,7 +44,7 @@ class JointDrag:
         """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
         step = np.array([event.mouse_x - self.mouse[0], event.mouse_y - self.mouse[1]], dtype=np.float64)
         self.mouse = event.mouse_x, event.mouse_y
-        step *= PRECISE if event.shift else 1.0
+        step *= 0.1 if event.shift else 1.0  # as in Blender's own transforms
         if event.ctrl:
             aside = self.view.place(self.position + [1.0, 0.0], self.start)
             self.depth_m += float(step[1]) * float(np.linalg.norm(aside - self.start))
@@ -104,7 +101,6 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         set_corrected(self, context, take, moved)
 
 
-GRAB_PX = 18.0  # Distance of the mouse from a joint below which a press takes hold of it
 ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
 VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
 """Keys that change the view: depth is corrected from the side."""
@@ -257,7 +253,7 @@ def nearest_joint(
     positions = [view.position(place) for place in joint_places(take.armature)]
     away = [np.inf if each is None else float(np.linalg.norm(each - mouse)) for each in positions]
     nearest = int(np.argmin(away))
-    reach = GRAB_PX * (float(bpy.context.preferences.system.ui_scale) or 1.0)
+    reach = 18.0 * (float(bpy.context.preferences.system.ui_scale) or 1.0)
     return HUMAN.point_names[nearest] if away[nearest] <= reach else None
 
 

@@ -9,8 +9,6 @@ from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
-SURE = 0.8  # Confidence above which a found keyframe is ticked
-FRAME_UNITS = 1.6
 STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
 """Icon and words of what is no found keyframe any more."""
 
@@ -26,7 +24,7 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
         row = layout.row(align=True)
         row.active = state != "GONE"
         number = row.row()
-        number.ui_units_x = FRAME_UNITS
+        number.ui_units_x = 1.6
         number.label(text=f"{item.frame:g}", translate=False)
         is_found = state == "FOUND"
         icon, words = how_sure(take, item) if is_found else STATES[state]
@@ -50,8 +48,7 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
         return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
         return "QUESTION", "doubtful"
-    sure = match.confidence >= SURE
-    return ("CHECKMARK", "sure") if sure else ("DOT", "likely")
+    return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):

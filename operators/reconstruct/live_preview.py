@@ -22,7 +22,6 @@ from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
 """Handlers before which the preview is undone: files must not hold it, and these events move data blocks."""
-SWEEPS = 9  # Steps in which the actor goes through the frames of a preview
 
 
 class LivePreview:
@@ -38,7 +37,7 @@ class LivePreview:
     def show(self, preview: Preview) -> None:
         """Show one frame of a preview; from one preview to the next the actor moves on."""
         count = preview.posture.batch[0]
-        step = max(1, count // SWEEPS)
+        step = max(1, count // 9)  # the actor goes through all frames in nine steps
         inside = preview.first <= self._shown < preview.first + count
         row = (self._shown - preview.first + step) % count if inside else 0
         self._shown = preview.first + row

@@ -102,10 +102,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         return None
 
 
-DISTANCE_HEIGHTS = 2.6
-"""Distance of the view from the actor, in heights of its body: all of it is seen, limbs stretched out too."""
-
-
 class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
     """Look at the actor from the camera's right, where depth shows; once more, through the camera again"""
 
@@ -143,7 +139,7 @@ def look_from_side(
     view.view_perspective = "ORTHO"
     view.view_location = center
     view.view_rotation = Matrix((up.cross(backward), up, backward)).transposed().to_quaternion()
-    view.view_distance = DISTANCE_HEIGHTS * height
+    view.view_distance = 2.6 * height  # all of it is seen, limbs stretched out too
 
 
 register, unregister = bpy.utils.register_classes_factory(
