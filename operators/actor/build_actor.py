@@ -7,7 +7,7 @@ from ..follow.evidence import scene_evidence
 from ..overlays.legend import Clicks, show
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import pixel_under
+from ..shell.footage_view import pixel_under, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.notices import give_notices
 from ..shell.requirements import actor, bones_editable, camera, footage, idle
@@ -160,10 +160,7 @@ class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         show(None)
-        if context.window is not None:  # None while Blender closes it or opens another file
-            redraw_footage(context)
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
+        stop_asking(context)
 
     def run(self, context: bpy.types.Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""

@@ -24,7 +24,7 @@ from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import FootageView, view_of_footage_under
+from ..shell.footage_view import FootageView, stop_asking, view_of_footage_under
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
@@ -57,9 +57,6 @@ def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Upri
     return Uprights.none()
 
 
-DONE = {"RET", "NUMPAD_ENTER"}
-REMOVE = {"X", "DEL"}
-BACK = "BACK_SPACE"
 REQUESTS = {
     "VERTICAL": "Draw along something plumb: a door frame, the corner of a wall",
     "LEVEL": "Draw lines on the floor or a wall that are level and parallel to each other",
@@ -119,21 +116,20 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         self._place = event.mouse_x, event.mouse_y
         drawing, pressed = self._drawing, event.value == "PRESS"
-        if pressed and event.type in DONE:
+        if pressed and event.type in {"RET", "NUMPAD_ENTER"}:
             return self._finish(context)
         if event.type == "MOUSEMOVE" or event.type == "LEFTMOUSE":
             return self._point(context, event)
         if pressed and event.type == "TAB":
             drawing.next_kind()
-        elif pressed and event.type in REMOVE:
+        elif pressed and event.type in {"X", "DEL"}:
             drawing.remove(self._distance_of_line(context))
-        elif pressed and event.type == BACK:
+        elif pressed and event.type == "BACK_SPACE":
             if not drawing.type("\b"):
                 drawing.remove(self._distance_of_line(context))
         elif pressed and event.unicode and event.unicode in "0123456789.":
             drawing.type(event.unicode)
         else:
-            # Navigation: the animator may zoom in, or go to other frames.
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         self._find(context)
         return {"RUNNING_MODAL"}
@@ -165,8 +161,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         wanted = REQUESTS[drawing.kind]
         if drawing.of_performer and drawing.kind == HEIGHT:
             wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
-        request = KEYS.format(request=wanted)
-        context.workspace.status_text_set(request)
+        context.workspace.status_text_set(KEYS.format(request=wanted))
         redraw_footage(context)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
@@ -187,10 +182,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         show(None)
-        if context.window is not None:  # None while Blender closes it or opens another file
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
-            redraw_footage(context)
+        stop_asking(context)
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:

@@ -202,9 +202,7 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        if context.window is not None:
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
+        stop_asking(context)
 
     def run(self, context: bpy.types.Context) -> None:
         """Vouch for the seen point that is nearest to the click: points by hand are the performer's."""
