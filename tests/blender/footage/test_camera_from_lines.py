@@ -23,8 +23,7 @@ from keymark.operators.shell.takes import placement_is_guess
 
 pytestmark = pytest.mark.usefixtures("registered")
 SIZE = (160, 120)
-SCALE = 10.0
-"""Region pixels within which an end is taken, and of a footage pixel."""
+SCALE = 10.0  # Region pixels within which an end is taken, and of a footage pixel
 
 
 def known_camera() -> Camera:

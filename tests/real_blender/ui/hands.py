@@ -9,14 +9,11 @@ from driver import Steps, expect, turns, until
 
 ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
-STEP_PX = 16
-"""Buttons are about 20 px high."""
+STEP_PX = 16  # Buttons are about 20 px high
 NOTCHES = 15
 """Of the wheel, of about 40 px each: nearly all that a sidebar shows, so that nothing is passed over."""
-MARGIN_PX = 6
-"""Beside what panels show, in the sidebar still."""
-PAGES = 10
-"""More than any sidebar is long."""
+MARGIN_PX = 6  # Beside what panels show, in the sidebar still
+PAGES = 10  # More than any sidebar is long
 
 
 class Hands:
@@ -24,10 +21,8 @@ class Hands:
 
     def __init__(self) -> None:
         self.x = self.y = 0
-        self.clicks = 0
-        """Presses of the left mouse button so far."""
-        self.keys = 0
-        """Presses of keys so far; written text counts letter by letter."""
+        self.clicks = 0  # Presses of the left mouse button so far
+        self.keys = 0  # Presses of keys so far; written text counts letter by letter
         self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
         """Where the mouse last saw what, by area, kind of text and text."""
 

@@ -8,14 +8,11 @@ from driver import Steps, expect, turns
 from numpy.typing import NDArray
 from person import Person, keymark
 
-KNOWN_M = 1.2
-"""Height of something that stands on the floor, wholly in the picture."""
+KNOWN_M = 1.2  # Height of something that stands on the floor, wholly in the picture
 ASIDE_M = (0.9, 0.7, 0.5, 0.3)
 """How far beside the performer a line is drawn: as far as the picture shows it well."""
-SHOWN = 0.5
-"""Least share of such a line that the picture shows."""
-EDGE = 0.03
-"""Share of the picture at its edges in which nothing is drawn."""
+SHOWN = 0.5  # Least share of such a line that the picture shows
+EDGE = 0.03  # Share of the picture at its edges in which nothing is drawn
 TILT_DEGREES, HEIGHT_M = 3.0, 0.2
 """How far the camera found may be from the true one, drawn by the pixel with a guessed lens."""
 

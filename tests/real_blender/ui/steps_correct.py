@@ -6,8 +6,7 @@ from driver import Steps, expect, turns, until
 from person import Person, keymark
 
 DRAGGED_PX = 42.0
-NEAR_PX = 3.0
-"""How near to the mouse a dragged joint must be seen."""
+NEAR_PX = 3.0  # How near to the mouse a dragged joint must be seen
 MOVED_M = 0.03
 
 

@@ -10,8 +10,7 @@ from person import Person
 from steps_prepare import choose_file
 from steps_reconstruct import job
 
-FRAMES_SEEN = 12
-"""As many pictures of the motion are waited for; a virtual screen draws a few a second."""
+FRAMES_SEEN = 12  # As many pictures of the motion are waited for; a virtual screen draws a few a second
 
 
 def sidebar(person: Person) -> Steps[None]:

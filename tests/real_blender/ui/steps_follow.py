@@ -6,10 +6,8 @@ from driver import Steps, expect
 from person import Person, keymark
 from steps_prepare import browse, click_pixel
 
-POINTS = ("wrist.L", "wrist.R")
-"""Clicked on one after the other, in the order in which they are asked for."""
-NEAR_PX = 2.0
-"""How far a click may land from where the person meant to click, in pixels of the footage."""
+POINTS = ("wrist.L", "wrist.R")  # Clicked on one after the other, in the order in which they are asked for
+NEAR_PX = 2.0  # How far a click may land from where the person meant to click, in pixels of the footage
 
 
 def keypoints(person: Person) -> Steps[None]:

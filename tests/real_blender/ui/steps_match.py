@@ -5,8 +5,7 @@ from person import Person, keymark
 from steps_finish import shown_points, write_points
 from steps_reconstruct import cancelled, job
 
-OTHER = 1
-"""Candidate that is tried instead of the first one."""
+OTHER = 1  # Candidate that is tried instead of the first one
 
 
 def match(person: Person, library: str) -> Steps[None]:

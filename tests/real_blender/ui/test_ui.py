@@ -15,8 +15,7 @@ from keymark.core.take.take_file import read_take
 
 pytestmark = pytest.mark.ui
 
-UNPOSED_MM = 200.0
-"""Error with hips aligned beyond which a motion is no likeness of the performer's."""
+UNPOSED_MM = 200.0  # Error with hips aligned beyond which a motion is no likeness of the performer's
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
@@ -36,8 +35,7 @@ MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
-CLICKS_MM = 4.0
-"""What a clicked point and a track in a single frame may change."""
+CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
 PATIENCE_S = 3000.0
