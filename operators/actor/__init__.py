@@ -1,8 +1,4 @@
 """Step 3, the actor: the performer's armature, built from a height or measured in the footage."""
 
 PROPERTIES = ("properties",)
-MODULES = (
-    "build_actor",
-    "measure_actor",
-    "panel",
-)
+MODULES = ("build_actor", "panel")

@@ -1,16 +1,22 @@
-"""Build the performer's armature from a body height."""
+"""Make the performer's armature: from a body height, from lengths, or measured in the footage."""
 
 import bpy
 
 from ...core.body.actor import Actor
-from ..shell.base_operator import BaseOperator
+from ..follow.evidence import scene_evidence
+from ..overlays.tools import Clicks, show_clicks
+from ..shell.base_operator import BaseOperator, warn
+from ..shell.footage_clicks import NAVIGATION, footage_is_shown
+from ..shell.footage_view import pixel_under, stop_asking
+from ..shell.job_operator import cancel_click
 from ..shell.notices import give_notices
-from ..shell.requirements import actor, bones_editable, idle
-from ..shell.takes import active_take, ensure_take, find_take, has_lost_actor
-from .properties import panel_lengths
+from ..shell.requirements import actor, bones_editable, camera, footage, idle
+from ..shell.results import reading_of
+from ..shell.takes import active_take, ensure_take, find_take, footage_of, has_lost_actor, redraw_footage
+from .properties import Stature, panel_lengths
 
 
-class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_idname = "keymark.build_actor"
@@ -18,15 +24,6 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (bones_editable, idle)
 
-    stature: bpy.props.FloatProperty(
-        name="Height",
-        description="The performer's body height",
-        subtype="DISTANCE",
-        precision=4,
-        default=1.75,
-        min=0.5,
-        max=3.0,
-    )
     place: bpy.props.BoolProperty(
         name="Stand in the Footage",
         description="Stand the actor where markers or keypoints show the performer in this frame, facing the "
@@ -35,7 +32,6 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Use the height in the panel."""
         take = find_take(context.scene)
         if take is not None:
             self.stature = take.stature
@@ -55,26 +51,17 @@ class KEYMARK_OT_build_actor(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now; its keyframes are kept")
             return
         stance = performers_stance(context.scene, take, body) if self.place else None
+        said = "The actor stands at the world's origin"
         if stance is not None:
-            write_posture(take.armature, stance[0])
-        self._report_stance(had_actor, stance is not None, stance is not None and stance[1])
-
-    def _report_stance(self, had_actor: bool, stands: bool, is_seen: bool) -> None:
-        if is_seen:
-            self.report({"INFO"}, "The actor stands where the performer is seen in this frame")
-        elif stands:
-            self.report(
-                {"INFO"},
-                "The actor stands in the middle of the picture; with markers or keypoints it would "
-                "stand at the performer",
-            )
+            posture, is_seen = stance
+            write_posture(take.armature, posture)
+            said = "The actor stands where the performer is seen in this frame"
+            if not is_seen:
+                said = "The actor stands in the middle of the picture"
+                said += "; with markers or keypoints it would stand at the performer"
         elif had_actor:
-            self.report({"INFO"}, f"The actor is {self.stature:.4g} m tall now")
-        else:
-            self.report({"INFO"}, "The actor stands at the world's origin")
-
-
-# --- Give the actor the lengths in the panel
+            said = f"The actor is {self.stature:.4g} m tall now"
+        self.report({"INFO"}, said)
 
 
 def any_actor(context: bpy.types.Context) -> str | None:
@@ -107,9 +94,100 @@ class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_build_actor,
-        KEYMARK_OT_apply_lengths,
+class KEYMARK_OT_measure_actor(Stature, BaseOperator, bpy.types.Operator):
+    """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
+
+    bl_idname = "keymark.measure_actor"
+    bl_label = "Measure Actor"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, camera, bones_editable, idle)
+
+    head_pixel: bpy.props.FloatVectorProperty(
+        name="Top of Head",
+        description="In pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
     )
+    floor_pixel: bpy.props.FloatVectorProperty(
+        name="Floor",
+        description="The floor between the feet, in pixels of the footage from its top left corner",
+        size=2,
+        options={"SKIP_SAVE"},
+    )
+    arms_stretched: bpy.props.BoolProperty(
+        name="Arms Stretched Sideways",
+        description="The performer holds both arms out sideways, so that their lengths are measured as well",
+        default=False,
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        take = active_take(context.scene)
+        self.stature = take.stature
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        self._clicks = Clicks()
+        show_clicks(self._clicks)
+        context.window.cursor_modal_set("CROSSHAIR")
+        self._ask(context)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if cancel_click(self, context, event):
+            return {"CANCELLED"}
+        if event.type == "MOUSEMOVE":
+            self._clicks.mouse = event.mouse_x, event.mouse_y
+            redraw_footage(context)
+        if event.type != "LEFTMOUSE" or event.value != "PRESS":
+            return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
+        pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
+        if pixel is None:
+            self.report({"WARNING"}, "That is not on the footage; click in the picture")
+            return {"RUNNING_MODAL"}
+        if self._clicks.head is None:
+            self._clicks.head = pixel
+            self._ask(context)
+            return {"RUNNING_MODAL"}
+        self.head_pixel, self.floor_pixel = self._clicks.head, pixel
+        self.cancel(context)
+        return self.execute(context)
+
+    def _ask(self, context: bpy.types.Context) -> None:
+        first = self._clicks.head is None
+        wanted = "Click on the top of the head" if first else "Now click on the floor between the feet"
+        context.workspace.status_text_set(f"{wanted}   |   Esc: Cancel")
+        redraw_footage(context)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        show_clicks(None)
+        stop_asking(context)
+
+    def run(self, context: bpy.types.Context) -> None:
+        """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
+        from ..bridge.pose import write_posture
+        from ..bridge.single_frame_fit import frame_in_footage, measured_in_frame
+        from .take_actor import has_keyframes, size_actor
+
+        take = active_take(context.scene)
+        frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
+        measured = measured_in_frame(
+            frame, self.stature, tuple(self.head_pixel), tuple(self.floor_pixel), self.arms_stretched
+        )
+        size_actor(context, take, measured.body)
+        take.stature = self.stature
+        if not has_keyframes(take):
+            write_posture(take.armature, measured.posture)
+        if not measured.stands:
+            sentence = (
+                "The footage does not fit a performer who stands upright, so the lengths are little "
+                "better than average; go to a frame in which the performer stands, and check the height"
+            )
+            give_notices(take, "actor", "lengths", (warn(self, sentence),))
+        else:
+            distance = f"The performer stands {measured.distance_m:.2f} m from the camera"
+            self.report({"INFO"}, f"{distance}; unseen lengths are average")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_OT_build_actor, KEYMARK_OT_apply_lengths, KEYMARK_OT_measure_actor)
 )

@@ -17,16 +17,13 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How tall the actor is."""
         return "" if take.armature is None else f"{take.stature:.4g} m"
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        """Whether the actor is gone, or none of Keymark's."""
         return has_lost_actor(take) or (take.armature is not None and not is_actor(take.armature))
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw height, operators and armature."""
         take, column = active_take(context.scene), self.column()
         if has_lost_actor(take):
             _draw_lost(column, context, take)
@@ -65,11 +62,9 @@ class KEYMARK_PT_actor_lengths(TakePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is an actor."""
         return super().poll(context) and active_take(context.scene).armature is not None
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the lengths: of the middle, and of one side or both."""
         lengths, column = active_take(context.scene).lengths, self.column()
         column.prop(lengths, "symmetric")
         for name in MIDDLE:

@@ -62,6 +62,20 @@ def _length(name: str) -> "bpy.types.AnyType":
     )
 
 
+class Stature:
+    """Mixin of operators that make an actor: the performer's body height."""
+
+    stature: bpy.props.FloatProperty(
+        name="Height",
+        description="The performer's body height",
+        subtype="DISTANCE",
+        precision=4,
+        default=1.75,
+        min=0.5,
+        max=3.0,
+    )
+
+
 class KEYMARK_PG_lengths(bpy.types.PropertyGroup):
     """Lengths of the performer's segments."""
 

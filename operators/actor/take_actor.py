@@ -1,4 +1,4 @@
-"""Bringing an actor back that was deleted or replaced: its keyframes and its motion belong to the take."""
+"""A take's actor in its scene: built, sized, placed, and brought back with its keyframes and its motion."""
 
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,6 @@ from .properties import length_names, length_property, panel_lengths
 
 if TYPE_CHECKING:
     from ...core.body.posture import Posture
-    from ...core.footage.region_tracks import RegionTracks
 
 
 def restore_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
@@ -85,13 +84,6 @@ def _action_of(animated: bpy.types.Object) -> bpy.types.Action | None:
     return None if data is None else data.action
 
 
-# --- A take's actor in its scene
-
-
-SYMMETRY_TOLERANCE_M = 5e-4
-"""Left and right count as equally long within this."""
-
-
 def add_actor(context: bpy.types.Context, take: bpy.types.PropertyGroup, body: Body) -> bpy.types.Object:
     """Build a take's armature, selected and active, and return the armature object."""
     armature_object = new_actor(context, take, body)
@@ -124,9 +116,7 @@ def show_lengths(take: bpy.types.PropertyGroup, body: Body) -> None:
     give_notices(take, "actor", "lengths")  # of other lengths
     lengths = take.lengths
     pairs = [(f"{part}.L", f"{part}.R") for part in {name.split(".")[0] for name in segments if "." in name}]
-    lengths.symmetric = all(
-        abs(segments[left] - segments[right]) < SYMMETRY_TOLERANCE_M for left, right in pairs
-    )
+    lengths.symmetric = all(abs(segments[left] - segments[right]) < 5e-4 for left, right in pairs)
     for name in length_names():
         setattr(lengths, length_property(name), segments[name])
 
@@ -142,7 +132,7 @@ def performers_stance(
 
     if take.clip is None or take.camera is None:
         return None
-    regions: RegionTracks | None = None
+    regions = None
     try:
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         keypoints = frame.keypoints(body)

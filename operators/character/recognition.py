@@ -7,7 +7,7 @@ import bpy
 
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.character import ROLES
-from ..library import library_files as user_folder
+from ..library import registry
 from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.requirements import idle
 from .characters import (
@@ -165,7 +165,7 @@ def suggest_map(character: bpy.types.PropertyGroup) -> None:
 
 def map_folders() -> list[Path]:
     """Folders in which character maps are looked for: that of the user's keyframe libraries."""
-    return [user_folder.own_folder()]
+    return [registry.own_folder()]
 
 
 def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:

@@ -16,7 +16,7 @@ def library_folders() -> list[Path]:
     folders = [Path(folder) for folder in os.environ.get(VARIABLE, "").split(os.pathsep) if folder]
     blender = sys.modules.get("bpy")
     if blender is not None and blender.app.binary_path:  # where users keep libraries of their own
-        from ..library.library_files import own_folder
+        from ..library.registry import own_folder
 
         folders.append(own_folder())
     return [*folders, SHIPPED]

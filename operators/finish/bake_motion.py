@@ -1,4 +1,4 @@
-"""A motion marked as an asset with the details that the animator entered."""
+"""The final Action: baked, marked as an asset, and exported."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,14 +30,9 @@ def mark_motion_asset(
     pictured: bpy.types.Action | None,
     actor: bpy.types.Object | None = None,
 ) -> None:
-    """Add the catalog to its file, then mark an Action.
+    """Add the catalog to its file, then mark an Action with the details that the take's finish has.
 
-    Args:
-        context: Its asset browsers are refreshed.
-        take: The take, whose details of the finish are the asset's.
-        action: The Action to mark.
-        pictured: The actor's Action that the picture is drawn from; None keeps the present picture.
-        actor: The actor that it moves; the take's by default.
+    The picture is drawn from the pictured Action of the actor, the take's by default; None keeps the present.
 
     Raises:
         InputError: The catalog is unusable, or the pictured Action is not the actor's.
@@ -56,15 +51,11 @@ def mark_motion_asset(
     refresh_asset_browsers(context)
 
 
-# --- Finish a reconstructed motion
-
-
 @dataclass(frozen=True, eq=False)
 class FinishedTake:
     """A finished motion of a take."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     finished: "Finished"
 
 
@@ -77,7 +68,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[FinishedTake]":
-        """Read the motion and finish it, with the options at the start of the job."""
         from ..bridge.finish_motion import FinishOptions, finish_motion
 
         take = active_take(scene)
@@ -93,7 +83,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         return FinishedTake(identifier, (yield from job))
 
     def finish(self, scene: bpy.types.Scene, result: FinishedTake) -> None:
-        """Write the final Action and assign it to the actor."""
         take, finished = take_by_identifier(scene, result.take), result.finished
         settings, armature_object = take.finish, actor_of(take)
         if take.motion_action is None:
@@ -115,9 +104,6 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
         )
 
 
-# --- Mark a take's motion as an asset
-
-
 class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
 
@@ -127,15 +113,11 @@ class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
     requirements = (actor, motion, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Mark the Action, with the details in the panel."""
         take = active_take(context.scene)
         action = take.finish.action or take.motion_action
         mark_motion_asset(context, take, action, action)
         warn_if_outdated(self, take)
         self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
-
-
-# --- Write a take's motion for another program
 
 
 class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
@@ -159,11 +141,9 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """The chosen format's own tooltip."""
         return FORMATS[properties.format].description
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file."""
         folder = "//" if bpy.data.filepath else ""
         name = bpy.path.clean_name(active_take(context.scene).name)
         self.filepath = bpy.path.abspath(folder + name + FORMATS[self.format].suffix)
@@ -171,14 +151,12 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Give the file's name the suffix of the format."""
         path = bpy.path.ensure_ext(self.filepath, FORMATS[self.format].suffix)
         changed = path != self.filepath
         self.filepath = path
         return changed
 
     def run(self, context: bpy.types.Context) -> None:
-        """Write the file."""
         from ..bridge.actor_lengths import read_body
         from ..bridge.rig import motion_frames
 
@@ -199,9 +177,5 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_bake_motion,
-        KEYMARK_OT_mark_asset,
-        KEYMARK_OT_export_motion,
-    )
+    (KEYMARK_OT_bake_motion, KEYMARK_OT_mark_asset, KEYMARK_OT_export_motion)
 )

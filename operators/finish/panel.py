@@ -3,6 +3,7 @@
 import bpy
 
 from ..bridge.export_formats import FORMATS
+from ..reconstruct.panel import draw_shown_action
 from ..shell.base_operator import capitalized
 from ..shell.panel import TakePanel, draw_sentence
 from ..shell.step_panel import StepPanel
@@ -17,17 +18,14 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How many keys the final Action has."""
         done = take.finish.action is not None
         return f"{take.finish.keys_after} keys" if done else ""
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        """Whether the motion is newer than the final Action."""
         return bool(take.finish.outdated)
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the button, the options, and the result."""
         take, column = active_take(context.scene), self.column()
         settings = take.finish
         row = column.row()
@@ -51,27 +49,17 @@ def _draw_result(
 ) -> None:
     """Draw the result of the last bake, and the switch between it and the motion."""
     settings = take.finish
-    data = take.armature.animation_data
-    shown = data.action if data else None
     column.separator()
-    row = column.row(align=True)
-    for which, action, text in (
-        ("MOTION", take.motion_action, "Motion"),
-        ("FINAL", settings.action, "Final"),
-    ):
-        depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
+    draw_shown_action(column, take, {"MOTION": take.motion_action, "FINAL": settings.action})
     lines = column.column(align=True)
     if settings.outdated:
         draw_sentence(lines, context, "The motion is newer: bake again", "ERROR")
     kept = f"{settings.keys_after} keys instead of {settings.keys_before}"
     draw_sentence(lines, context, kept, "KEYFRAME_HLT")
     if settings.furthest_mm > 0.0:
-        off = f"At most {settings.furthest_mm:.1f} mm off"
-        draw_sentence(lines, context, off, "DRIVER_DISTANCE")
+        draw_sentence(lines, context, f"At most {settings.furthest_mm:.1f} mm off", "DRIVER_DISTANCE")
     if settings.rests:
-        rests = f"Feet planted: {settings.rests} rests"
-        draw_sentence(lines, context, rests, "PINNED")
+        draw_sentence(lines, context, f"Feet planted: {settings.rests} rests", "PINNED")
 
 
 class FinishPart(TakePanel):
@@ -87,7 +75,6 @@ class KEYMARK_PT_asset(FinishPart, bpy.types.Panel):
     bl_label = "Asset"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the details of the asset, and the button."""
         settings, column = active_take(context.scene).finish, self.column()
         for name in ("catalog", "tags", "author", "license", "description"):
             column.prop(settings, name)
@@ -100,7 +87,6 @@ class KEYMARK_PT_export(FinishPart, bpy.types.Panel):
     bl_label = "Export"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw a button for each format; one that this Blender cannot write is gray, with the reason."""
         column = self.column()
         for kind, listed in FORMATS.items():
             missing = listed.missing()
@@ -117,7 +103,6 @@ class KEYMARK_PT_learn(FinishPart, bpy.types.Panel):
     bl_label = "Keyframe Library"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the button, and its purpose."""
         column = self.column()
         lines = column.column(align=True)
         lines.scale_y = 0.85

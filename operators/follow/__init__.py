@@ -3,12 +3,10 @@
 PROPERTIES = ("marker_properties", "keypoint_properties")
 MODULES = (
     "marker_list",
-    "check_markers",
     "pick_marker_color",
-    "pick_markers",
     "ignore_region",
+    "panel",
     "marker_panel",
-    "detect_keypoints",
     "load_keypoints",
     "click_points",
     "tracks",

@@ -1,4 +1,4 @@
-"""Moments in which a take's keypoints show the performer upright, to find the camera by."""
+"""Find the camera from lines drawn over the footage, and from the performer upright at several places."""
 
 from contextlib import suppress
 from dataclasses import replace
@@ -24,7 +24,7 @@ from ..footage.found_camera import fit_take, values, write_fit
 from ..footage.properties import KINDS, still_camera
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import FootageView, view_of_footage_under
+from ..shell.footage_view import FootageView, stop_asking, view_of_footage_under
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import camera, footage, idle
 from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
@@ -33,10 +33,6 @@ from .evidence import has_keypoints, scene_evidence
 if TYPE_CHECKING:
     from ...core.footage.camera_evidence import Uprights
     from ...core.footage.camera_fit import CameraFit
-
-
-FEWEST = 2
-"""Moments without which nothing is told."""
 
 
 def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Uprights":
@@ -56,17 +52,11 @@ def standing_performer(take: bpy.types.PropertyGroup, stature_m: float) -> "Upri
         tracks = RegionTracks.unmarked(time_s, (source.clip.size[0], source.clip.size[1]))
         keypoints = keypoints_without_keyframes(source, scene_evidence(take), tracks, stature_m)
         found = standing_keypoints(keypoints, Body(Actor.from_stature(stature_m)), source.rate)
-        if len(found) >= FEWEST:
+        if len(found) >= 2:  # fewer tell nothing
             return found
     return Uprights.none()
 
 
-# --- Find the camera from lines that are drawn over the footage, and from the performer at several places
-
-
-DONE = {"RET", "NUMPAD_ENTER"}
-REMOVE = {"X", "DEL"}
-BACK = "BACK_SPACE"
 REQUESTS = {
     "VERTICAL": "Draw along something plumb: a door frame, the corner of a wall",
     "LEVEL": "Draw lines on the floor or a wall that are level and parallel to each other",
@@ -93,13 +83,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
     )
 
     _drawing: Any = None
-    _upright: Any = None
-    """Body height, and moments in which keypoints show somebody of that height upright."""
+    _upright: Any = None  # Body height, and moments in which keypoints show somebody of that height upright
     _place: tuple[int, int] = (0, 0)
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Describe the button by the lines it begins with."""
         if properties.kind == HEIGHT:
             return (
                 "Find the camera from the performer: click on the floor between the feet, then on the "
@@ -109,7 +97,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return "Find the camera from lines that you draw over the picture; the floor's grid shows the result"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for lines, beginning with those that were drawn before."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -125,32 +112,29 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Draw and drag lines until Enter; Esc forgets them."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         self._place = event.mouse_x, event.mouse_y
         drawing, pressed = self._drawing, event.value == "PRESS"
-        if pressed and event.type in DONE:
+        if pressed and event.type in {"RET", "NUMPAD_ENTER"}:
             return self._finish(context)
         if event.type == "MOUSEMOVE" or event.type == "LEFTMOUSE":
             return self._point(context, event)
         if pressed and event.type == "TAB":
             drawing.next_kind()
-        elif pressed and event.type in REMOVE:
+        elif pressed and event.type in {"X", "DEL"}:
             drawing.remove(self._distance_of_line(context))
-        elif pressed and event.type == BACK:
+        elif pressed and event.type == "BACK_SPACE":
             if not drawing.type("\b"):
                 drawing.remove(self._distance_of_line(context))
         elif pressed and event.unicode and event.unicode in "0123456789.":
             drawing.type(event.unicode)
         else:
-            # Navigation: the animator may zoom in, or go to other frames.
             return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
         self._find(context)
         return {"RUNNING_MODAL"}
 
     def _point(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Let the mouse begin, move or end a line."""
         drawing, view = self._drawing, self._view(context)
         if view is None:
             return {"PASS_THROUGH"} if event.type == "MOUSEMOVE" else {"RUNNING_MODAL"}
@@ -163,14 +147,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
             drawing.press(pixel, context.scene.frame_current, self._distance(view))
         elif event.value == "RELEASE":
             drawing.move(pixel)
-            drawing.release(
-                lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)),
-            )
+            drawing.release(lambda one, other: _apart(view, one, other) / (CLICKED_PX * _scale(context)))
         self._find(context)
         return {"RUNNING_MODAL"}
 
     def _find(self, context: bpy.types.Context) -> None:
-        """Find the camera anew, show it, and ask for the next line."""
         drawing = self._drawing
         drawing.fit = None
         try:
@@ -180,8 +161,7 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         wanted = REQUESTS[drawing.kind]
         if drawing.of_performer and drawing.kind == HEIGHT:
             wanted = PERFORMER_REQUEST if drawing.lines or drawing.fit is None else WALK_REQUEST
-        request = KEYS.format(request=wanted)
-        context.workspace.status_text_set(request)
+        context.workspace.status_text_set(KEYS.format(request=wanted))
         redraw_footage(context)
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
@@ -201,20 +181,11 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return done
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
         show(None)
-        if context.window is not None:  # None while Blender closes it or opens another file
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
-            redraw_footage(context)
+        stop_asking(context)
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
-        """Find the camera from the lines that the take keeps, or the performer's keypoints, and set it.
-
-        Raises:
-            InputError: There is neither, or they say nothing of the camera.
-        """
         take = active_take(context.scene)
         fit = self._fit(take, read_lines(take), take.stature)
         if fit is None:
@@ -234,7 +205,6 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return fit_take(take, evidence) if lines or len(evidence.uprights) else None
 
     def _view(self, context: bpy.types.Context) -> FootageView | None:
-        """The view of the footage under the mouse."""
         return view_of_footage_under(context, active_take(context.scene), *self._place)
 
     def _pixel(self, view: FootageView) -> Pixel:
@@ -243,12 +213,10 @@ class KEYMARK_OT_camera_from_lines(BaseOperator, bpy.types.Operator):
         return float(x), float(y)
 
     def _distance(self, view: FootageView) -> Any:
-        """Return the function that gives the distance of a pixel from the mouse."""
         scale = NEAR_PX * _scale(bpy.context)
         return lambda pixel: _apart(view, pixel, self._pixel(view)) / scale
 
     def _distance_of_line(self, context: bpy.types.Context) -> Any:
-        """Return the function that gives the distance of a line from the mouse."""
         view = self._view(context)
         if view is None:
             return lambda line: np.inf

@@ -1,4 +1,4 @@
-"""The points that were clicked on in the frames of a take: adding, finding and removing them."""
+"""Points of the body that a person clicks on in the frames of a take."""
 
 from typing import Any
 
@@ -14,22 +14,11 @@ from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, pixel_under, side_of, stop_asking
 from ..shell.job_operator import cancel_click
 from ..shell.requirements import footage, idle
-from ..shell.takes import active_take, footage_of, redraw_footage, redraw_sidebars_soon
-from .evidence import keypoint_files
+from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
+from .evidence import clicked_here, clip_frame, keypoint_files
 from .frame_keypoints import keypoints_at
-from .tracks import body_point_items, point_title
-
-
-def clip_frame(take: bpy.types.PropertyGroup) -> int:
-    """The scene's current frame, counted from the clip's first."""
-    scene = take.id_data
-    return int(scene.frame_current - footage_of(scene, take).first_frame)
-
-
-def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
-    """The points that were clicked on in the current frame."""
-    here = clip_frame(take)
-    return [click.point for click in take.follow.clicks if click.frame == here]
+from .marker_properties import segment_title
+from .tracks import body_point_items
 
 
 def set_click(
@@ -49,9 +38,6 @@ def remove_click(take: bpy.types.PropertyGroup, point: str, frame: int) -> bool:
     for index in reversed(found):
         clicks.remove(index)
     return bool(found)
-
-
-# --- Click on points of the body in the footage, frame by frame, where no detector finds them
 
 
 KEYS = "Tab: Next Point   |   Backspace: Previous   |   Enter: Done   |   Esc: Cancel"
@@ -81,7 +67,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for clicks on the footage, beginning with the point that is chosen in the panel."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -89,17 +74,14 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return self.wait_for_clicks(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take clicks until Enter, or a click beside the footage; Esc takes all of them back."""
         return self.take_event(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        """The point that is chosen in the panel."""
         point = active_take(context.scene).follow.clicked_point
-        title = f"Click on: {point_title(point)}"
+        title = f"Click on: {segment_title(point)}"
         return FootageRequest(title, side_of(point)), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
-        """Set the point, and ask for the next one; the same points may be clicked on in other frames."""
         take = active_take(context.scene)
         set_click(take, take.follow.clicked_point, pixel)
         _choose_next(take)
@@ -107,7 +89,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def go_on(self, context: bpy.types.Context) -> None:
-        """Choose the next point that has no click in this frame."""
         _choose_next(active_take(context.scene))
 
     def go_back(self, context: bpy.types.Context) -> None:
@@ -127,7 +108,6 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and clicks; Blender calls this as well."""
         if self._before is not None:
             follow = active_take(context.scene).follow
             follow.clicked_point, clicks = self._before
@@ -140,18 +120,12 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
         redraw_sidebars_soon()
 
     def run(self, context: bpy.types.Context) -> None:
-        """Set one point in the current frame.
-
-        Raises:
-            InputError: The pixel lies outside the footage.
-        """
         take = active_take(context.scene)
         width, height = take.clip.size
         if not (0.0 <= self.pixel[0] <= width and 0.0 <= self.pixel[1] <= height):
             x, y = self.pixel
-            raise InputError(
-                f"pixel ({x:g}, {y:g}) lies outside the footage, which is {width} x {height} pixels"
-            )
+            extent = f"{width} x {height} pixels"
+            raise InputError(f"pixel ({x:g}, {y:g}) lies outside the footage, which is {extent}")
         set_click(take, self.point, tuple(self.pixel))
         redraw_footage(context)
 
@@ -168,9 +142,6 @@ def _choose_next(take: bpy.types.PropertyGroup) -> None:
     take.follow.clicked_point = next((point for point in order if point not in done), order[0])
 
 
-# --- Remove points that were clicked on in the current frame
-
-
 class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     """Remove this point in this frame, or all points that were clicked on in this frame"""
 
@@ -184,7 +155,6 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Remove them; those of other frames stay."""
         take = active_take(context.scene)
         here = clip_frame(take)
         points = [self.point] if self.point else clicked_here(take)
@@ -194,9 +164,6 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         redraw_footage(context)
         return None
-
-
-# --- Click on the performer where a detector sees several people
 
 
 class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
@@ -215,7 +182,6 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage."""
         if not footage_is_shown(self, context, active_take(context.scene)):
             return {"CANCELLED"}
         context.window.cursor_modal_set("CROSSHAIR")
@@ -224,7 +190,6 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take one click."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         if event.type == "LEFTMOUSE" and event.value == "PRESS":
@@ -237,28 +202,19 @@ class KEYMARK_OT_click_performer(BaseOperator, bpy.types.Operator):
         return {"PASS_THROUGH"} if event.type in NAVIGATION else {"RUNNING_MODAL"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
-        if context.window is not None:
-            context.window.cursor_modal_restore()
-            context.workspace.status_text_set(None)
+        stop_asking(context)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Vouch for the seen point that is nearest to the click: points by hand are the performer's.
-
-        Raises:
-            InputError: Nobody is seen in this frame.
-        """
+        """Vouch for the seen point that is nearest to the click: points by hand are the performer's."""
         take = active_take(context.scene)
         found = nearest_point(take, context.scene.frame_current, np.array(self.pixel))
         if found is None:
-            raise InputError(
-                f"no detector sees anybody in frame {context.scene.frame_current}; go to one in which "
-                "the performer is seen"
-            )
+            nobody = f"no detector sees anybody in frame {context.scene.frame_current}"
+            raise InputError(f"{nobody}; go to one in which the performer is seen")
         point, pixel = found
         set_click(take, point, pixel)
         redraw_footage(context)
-        self.report({"INFO"}, f"The performer is known by the point {point_title(point)}")
+        self.report({"INFO"}, f"The performer is known by the point {segment_title(point)}")
 
 
 def nearest_point(
@@ -279,9 +235,5 @@ def nearest_point(
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_click_point,
-        KEYMARK_OT_remove_clicks,
-        KEYMARK_OT_click_performer,
-    )
+    (KEYMARK_OT_click_point, KEYMARK_OT_remove_clicks, KEYMARK_OT_click_performer)
 )

@@ -1,14 +1,15 @@
 """What a take follows in its footage, as far as it is switched on."""
 
+from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import bpy
 
 from ..bridge.footage_camera import may_move
-from ..bridge.scene_evidence import ClickedPoint, SceneEvidence
-from ..shell.takes import find_take
+from ..bridge.scene_evidence import ClickedPoint, SceneEvidence, file_state
+from ..shell.takes import find_take, footage_of
 from .ignored_regions import ignored_regions
-from .keypoint_paths import keypoint_path
 from .marker_styles import marker_styles
 from .tracks import assigned_tracks
 
@@ -36,11 +37,7 @@ def scene_evidence(take: bpy.types.PropertyGroup) -> SceneEvidence:
 
 
 def followed_markers(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
-    """The styles of a take's markers, none where these are switched off.
-
-    Raises:
-        InputError: Two markers have one name or one segment.
-    """
+    """The styles of a take's markers, none where these are switched off."""
     return marker_styles(take) if take.follow.use_markers else ()
 
 
@@ -59,6 +56,18 @@ def has_keypoints(take: bpy.types.PropertyGroup) -> bool:
 def has_contours(take: bpy.types.PropertyGroup) -> bool:
     """Whether a take's contours can be followed: they are switched on, and the camera stands still."""
     return bool(take.follow.use_contours and take.camera is not None and not may_move(take.camera))
+
+
+def clip_frame(take: bpy.types.PropertyGroup) -> int:
+    """The scene's current frame, counted from the clip's first."""
+    scene = take.id_data
+    return int(scene.frame_current - footage_of(scene, take).first_frame)
+
+
+def clicked_here(take: bpy.types.PropertyGroup) -> list[str]:
+    """The points that were clicked on in the current frame."""
+    here = clip_frame(take)
+    return [click.point for click in take.follow.clicks if click.frame == here]
 
 
 # --- Requirements of operators that follow the footage
@@ -90,3 +99,63 @@ def points_to_follow(context: bpy.types.Context) -> str | None:
 
 def _has_points(take: bpy.types.PropertyGroup) -> bool:
     return bool((take.follow.use_markers and len(take.markers)) or has_keypoints(take))
+
+
+# --- Keypoint files on disk
+
+
+LOOKED_S = 2.0  # Time for which a file's state counts as it was: drawing reads no folder each time
+
+_states: dict[Path, tuple[float, str | None]] = {}
+"""Time at which a path was looked at [s], and the state it had."""
+
+
+def recent_state(path: Path) -> str | None:
+    """A file's state as of a moment ago (see `file_state`); None where it is missing."""
+    now = monotonic()
+    looked, state = _states.get(path, (-LOOKED_S, None))
+    if now - looked >= LOOKED_S:
+        state = file_state(path)
+        _states[path] = now, state
+    return state
+
+
+def forget_states() -> None:
+    """Look at every file anew."""
+    _states.clear()
+
+
+def keypoint_path(entry: bpy.types.PropertyGroup) -> Path:
+    """The path of a file of keypoints, which may be missing.
+
+    Blender keeps relative paths of its own in step when a .blend is saved elsewhere, those of extensions not:
+    so the one from the root is used where nothing, or another file, lies at the relative one.
+    """
+    relative, absolute = Path(bpy.path.abspath(entry.filepath)), Path(entry.absolute_path)
+    if not entry.absolute_path or relative == absolute:
+        return relative
+    state = recent_state(relative)
+    if state is None or (state != entry.contents and recent_state(absolute) == entry.contents):
+        return absolute if recent_state(absolute) is not None else relative
+    return relative
+
+
+def add_keypoint_file(take: bpy.types.PropertyGroup, path: Path, replace: bool = False) -> None:
+    """Add a file of keypoints to a take, switched on and chosen; one that it has is not added twice.
+
+    With `replace` it takes the place of the chosen one.
+    """
+    from ...core.files.control_characters import real_path
+    from ..bridge.footage_to_scene import stored_path
+
+    follow = take.follow
+    known = [keypoint_path(entry) for entry in follow.files]
+    if path in known:
+        follow.active_file = known.index(path)
+    elif not (replace and follow.active_file < len(follow.files)):
+        follow.files.add()
+        follow.active_file = len(follow.files) - 1
+    entry = follow.files[follow.active_file]
+    entry.is_used = True
+    entry.filepath, entry.absolute_path = stored_path(path), str(real_path(path))
+    entry.contents = file_state(path) or ""

@@ -11,33 +11,27 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.footage.keypoints.keypoints import People
+from ..bridge.footage_camera import may_move
 from ..bridge.scene_evidence import CLICKS, TRACKS, read_keypoint_file, tracks_at
 from ..shell.footage_view import clip_index
 from ..shell.results import LruCache
 from ..shell.takes import footage_of
-from .evidence import clicked_points
-from .keypoint_paths import forget_states, keypoint_path, recent_state
+from .evidence import clicked_here, clicked_points, forget_states, keypoint_path, recent_state
 from .tracks import assigned_tracks
-
-MOST_FILES = 12
 
 
 @dataclass(frozen=True, eq=False)
 class KeypointReading:
     """A file of keypoints as it is on disk."""
 
-    people: People | None
-    """Everyone in it, frame by frame of the file; None where it cannot be read."""
-    problem: str = ""
-    """Why it cannot be read, for people."""
+    people: People | None  # Everyone in it, frame by frame of the file; None where it cannot be read
+    problem: str = ""  # Why it cannot be read, for people
     is_missing: bool = False
-    has_changed: bool = False
-    """Whether it has been written since it was loaded."""
-    has_hints: bool = False
-    """Whether it guesses depths."""
+    has_changed: bool = False  # Whether it has been written since it was loaded
+    has_hints: bool = False  # Whether it guesses depths
 
 
-_readings: LruCache[KeypointReading] = LruCache(MOST_FILES)
+_readings: LruCache[KeypointReading] = LruCache(12)
 
 
 def keypoint_reading(take: bpy.types.PropertyGroup, entry: bpy.types.PropertyGroup) -> KeypointReading:
@@ -66,9 +60,6 @@ def clear_readings() -> None:
     forget_states()
 
 
-# --- The keypoints that a take's sources see in one frame, with or without a motion
-
-
 Seen = list[tuple[str, tuple[float, float], float]]
 """Body point, place [px] and score of each point of the performer."""
 
@@ -77,17 +68,12 @@ Seen = list[tuple[str, tuple[float, float], float]]
 class FrameKeypoints:
     """What one source sees in a frame: H people with N body points each."""
 
-    source: str
-    """Name of the detector; `clicks` and `tracks` for what a person clicked on or tracked."""
-    names: tuple[str, ...]
-    """(N,) the body points; those of clicks and tracks are the ones seen here."""
-    pixel: Array
-    """(H, N, 2) [px] of the footage as it is, NaN where a point is not seen."""
-    score: Array
-    """(H, N) confidence, 0 to 1; 0 where not seen."""
+    source: str  # Name of the detector; `clicks` and `tracks` for what a person clicked on or tracked
+    names: tuple[str, ...]  # (N,) the body points; those of clicks and tracks are the ones seen here
+    pixel: Array  # (H, N, 2) [px] of the footage as it is, NaN where a point is not seen
+    score: Array  # (H, N) confidence, 0 to 1; 0 where not seen
 
-    is_tracked: bool = False
-    """Whether they are motion tracks of the clip."""
+    is_tracked: bool = False  # Whether they are motion tracks of the clip
 
     @property
     def seen_count(self) -> int:
@@ -141,3 +127,55 @@ def _one_person(source: str, seen: Seen, is_tracked: bool = False) -> FrameKeypo
     pixel = np.array([place for _, place, _ in seen], dtype=np.float64).reshape(1, len(seen), 2)
     score = np.array([value for _, _, value in seen], dtype=np.float64).reshape(1, len(seen))
     return FrameKeypoints(source, tuple(point for point, _, _ in seen), pixel, score, is_tracked)
+
+
+# --- Labels of the panels
+
+
+def seen_label(frame: FrameKeypoints) -> str:
+    """What a source sees in a frame, of the person of whom it sees most: `27 of 33 points, score 0.91`."""
+    seen = np.isfinite(frame.pixel).all(axis=-1)
+    if not seen.any():
+        return "Nobody in this frame"
+    row = int(seen.sum(axis=-1).argmax())
+    return (
+        f"{int(seen[row].sum())} of {len(frame.names)} points, score "
+        f"{float(frame.score[row][seen[row]].mean()):.2f}"
+    )
+
+
+def keypoints_label(take: bpy.types.PropertyGroup) -> str:
+    """How many points all files and clicks see in the current frame, as in `27 of 33`; empty without any."""
+    if not take.follow.use_keypoints:
+        return "Off"
+    sources = [each for each in keypoints_at(take, take.id_data.frame_current) if not each.is_tracked]
+    if not sources:
+        return ""
+    seen = sum(each.seen_count for each in sources)
+    return f"{seen} of {sum(len(each.names) for each in sources)}"
+
+
+def tracks_label(take: bpy.types.PropertyGroup) -> str:
+    """How many of the assigned tracks are seen in the current frame: `4 of 6`; empty without any."""
+    if not take.follow.use_tracks:
+        return "Off"
+    assigned = assigned_tracks(take)
+    if not assigned:
+        return ""
+    scene = take.id_data
+    seen = len(tracks_at(footage_of(scene, take), scene.frame_current, assigned))
+    return f"{seen} of {len(assigned)}"
+
+
+def contours_label(take: bpy.types.PropertyGroup) -> str:
+    """Whether contours can be followed."""
+    if not take.follow.use_contours:
+        return "Off"
+    if take.camera is None:
+        return ""
+    return "Camera moves" if may_move(take.camera) else "Camera stands still"
+
+
+def clicked_label(take: bpy.types.PropertyGroup) -> str:
+    """How many points were clicked on in the current frame, and in all."""
+    return f"{len(clicked_here(take))} here, {len(take.follow.clicks)} in all"

@@ -1,4 +1,4 @@
-"""The brush over the footage: its strokes while it is at work, for the operator and for the overlay."""
+"""Regions of the picture that are never a marker: the brush over the footage, and still areas."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -12,9 +12,9 @@ from ..shell.footage_clicks import ClickSequence, footage_is_shown
 from ..shell.footage_view import FootageRequest, follow_mouse, pixel_under, stop_asking
 from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle, markers
-from ..shell.takes import active_take, redraw_footage
+from ..shell.takes import active_take, find_take, redraw_footage
 from .marker_properties import clear_readouts
-from .marker_styles import LeftOut, leave_out, some_ignored, still_areas, write_left_out
+from .marker_styles import MarkerSearch, search_markers, write_search
 from .mask_previews import preview_of, show_masks, update_masks
 
 if TYPE_CHECKING:
@@ -24,52 +24,40 @@ if TYPE_CHECKING:
 
 Pixel = tuple[float, float]
 
-STEP = 0.25
-"""Distance between points of a stroke, in radii: more would not be seen."""
-GROWTH = 1.25
-"""Factor between sizes of the brush."""
-USUAL = 0.03
-"""The first radius as a share of the picture's width."""
-SMALLEST_PX, LARGEST = 1.0, 0.5
-"""The smallest radius, and the largest one as a share of the picture's width."""
+SMALLEST_PX = 1.0  # Smallest radius of the brush
 
 
 @dataclass
 class Brush:
     """A brush at work."""
 
-    width: int
-    """Width of the footage in px."""
-    radius_px: float = 0.0
-    """Its radius in pixels of the footage; 0 for the usual one."""
+    width: int  # Width of the footage in px
+    radius_px: float = 0.0  # Its radius in pixels of the footage; 0 for the usual one
     strokes: "list[tuple[float, list[Pixel]]]" = field(default_factory=list)
     """Radius and points of each stroke."""
     is_down: bool = False
 
     def __post_init__(self) -> None:
-        """Begin with the usual size."""
-        self.radius_px = self.radius_px or max(USUAL * self.width, SMALLEST_PX)
+        self.radius_px = self.radius_px or max(0.03 * self.width, SMALLEST_PX)
 
     def press(self, pixel: Pixel) -> None:
-        """Begin a stroke."""
         self.strokes.append((self.radius_px, [pixel]))
         self.is_down = True
 
     def move(self, pixel: Pixel, most_points: int) -> None:
         """Go on with the stroke; a long one goes on as another."""
         radius, points = self.strokes[-1]
-        if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < STEP * radius:
-            return
+        if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < 0.25 * radius:
+            return  # nearer points would not be seen
         if len(points) >= most_points:
             self.strokes.append((radius, [points[-1]]))
         self.strokes[-1][1].append(pixel)
 
     def grow(self, steps: int) -> None:
         """Make it larger, or smaller with fewer than no steps."""
-        self.radius_px = float(np.clip(self.radius_px * GROWTH**steps, SMALLEST_PX, LARGEST * self.width))
+        self.radius_px = float(np.clip(self.radius_px * 1.25**steps, SMALLEST_PX, 0.5 * self.width))
 
     def regions(self) -> "tuple[IgnoredRegion, ...]":
-        """What was brushed."""
         from ...core.footage.ignored_regions import IgnoredRegion
 
         return tuple(IgnoredRegion(stroke=tuple(points), radius_px=radius) for radius, points in self.strokes)
@@ -89,7 +77,18 @@ def brush_at_work() -> Brush | None:
     return _brush
 
 
-# --- Brush over what is never a marker, as a wall of a marker's color
+def still_areas(context: bpy.types.Context) -> str | None:
+    """Some still area of a marker's color is known that is surely no marker."""
+    take = find_take(context.scene)
+    if take and any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers):
+        return None
+    return "Check the markers first; no still area of a marker's color is known"
+
+
+def some_ignored(context: bpy.types.Context) -> str | None:
+    """Some region of the picture is ignored."""
+    take = find_take(context.scene)
+    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
 
 
 KEYS = "[  ]: Brush Size   |   Backspace: Back   |   Enter: Done   |   Esc: Cancel"
@@ -120,13 +119,11 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    _masks_before: bool | None = None
-    """Whether masks were shown before; None in a script."""
+    _masks_before: bool | None = None  # Whether masks were shown before; None in a script
     _brushed: Any = None
     """The regions that were brushed; None in a script. Blender would evaluate a type named here."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the brush, over the masks of what is taken for markers now."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -157,14 +154,12 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         return self.take_event(context, event)
 
     def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
-        """What to brush over."""
         brush = brush_at_work()
         radius = 0.0 if brush is None else brush.radius_px
         detail = "as a wall or a chair of a marker's color"
         return FootageRequest("Brush over what is no marker", detail, radius), KEYS
 
     def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
-        """Begin a stroke."""
         brush = brush_at_work()
         if brush is not None:
             brush.press(pixel)
@@ -172,14 +167,12 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def go_back(self, context: bpy.types.Context) -> None:
-        """Take the last stroke back."""
         brush = brush_at_work()
         if brush is not None and brush.strokes:
             brush.strokes.pop()
             brush.is_down = False
 
     def done(self, context: bpy.types.Context) -> set[str]:
-        """Look for the markers without what was brushed; without a stroke nothing has happened."""
         brush = brush_at_work()
         self._brushed = () if brush is None else brush.regions()
         if brush is None or not brush.strokes:
@@ -194,29 +187,24 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Put the brush away, restore masks, and close the job; Blender calls this as well."""
         take_brush(None)
         stop_asking(context)
         if self._masks_before is not None:
             show_masks(context, self._masks_before)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[LeftOut]":
-        """Return the job that looks for the markers without the brushed regions."""
-        return leave_out(
-            scene, self._from_path(active_take(scene)) if self._brushed is None else self._brushed
-        )
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        brushed = self._from_path(active_take(scene)) if self._brushed is None else self._brushed
+        return search_markers(scene, more=brushed)
 
-    def finish(self, scene: bpy.types.Scene, result: LeftOut) -> None:
-        """Store the regions and the readouts."""
-        if self._masks_before is not None and result.check is not None:
-            show_masks(bpy.context, True)
-        for sentence in write_left_out(scene, result):
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(
+            scene, result, masks=bool(self._masks_before is not None and result.check)
+        ):
             warn(self, sentence)
         self.report({"INFO"}, f"Brushed regions are never a marker: {len(result.more)} more")
 
     def _move(self, context: bpy.types.Context, brush: Brush, event: bpy.types.Event) -> None:
-        """Go on with the stroke; beside the picture it pauses."""
         from ...core.footage.ignored_regions import MOST_POINTS
 
         pixel = pixel_under(context, active_take(context.scene), event.mouse_x, event.mouse_y)
@@ -224,7 +212,6 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
             brush.move(pixel, MOST_POINTS)
 
     def _keep_path(self, brush: Brush) -> None:
-        """Keep the strokes as the operator's properties, for scripts and for repeating it."""
         self.path.clear()
         self.radius = brush.radius_px
         for number, (_, points) in enumerate(brush.strokes):
@@ -233,11 +220,7 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
                 point.loc, point.time = pixel, number
 
     def _from_path(self, take: bpy.types.PropertyGroup) -> "tuple[IgnoredRegion, ...]":
-        """The strokes that the properties say.
-
-        Raises:
-            InputError: There are none.
-        """
+        """The strokes that the properties say."""
         if not len(self.path):
             raise InputError("path is empty; give at least one pixel of the footage")
         brush, stroke = Brush(take.clip.size[0], self.radius), None
@@ -250,9 +233,6 @@ class KEYMARK_OT_ignore_region(JobOperator, ClickSequence, bpy.types.Operator):
         return brush.regions()
 
 
-# --- Leave out the still areas that have a marker's color and are surely none
-
-
 class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     """Leave out what keeps a marker's color in the same pixels while the marker moves: it is surely none"""
 
@@ -261,8 +241,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     requirements = (footage, markers, still_areas, idle)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[LeftOut]":
-        """Return the job that looks for the markers without the areas."""
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
         from ...core.footage.ignored_regions import IgnoredRegion
 
         take = active_take(scene)
@@ -272,16 +251,12 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
             if marker.has_readout(take)
             for area in marker.still_areas
         ]
-        return leave_out(scene, tuple(IgnoredRegion(box=box) for box in dict.fromkeys(boxes)))
+        return search_markers(scene, more=tuple(IgnoredRegion(box=box) for box in dict.fromkeys(boxes)))
 
-    def finish(self, scene: bpy.types.Scene, result: LeftOut) -> None:
-        """Store the areas and the readouts."""
-        for sentence in write_left_out(scene, result):
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(scene, result):
             warn(self, sentence)
         self.report({"INFO"}, f"Still areas are never a marker: {len(result.more)} more")
-
-
-# --- Let a region of the picture be searched for markers again
 
 
 class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
@@ -293,7 +268,6 @@ class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
     requirements = (some_ignored, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the region; the one before it becomes active."""
         take = active_take(context.scene)
         index = min(take.active_ignored, len(take.ignored_regions) - 1)
         take.ignored_regions.remove(index)
@@ -303,9 +277,5 @@ class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_ignore_region,
-        KEYMARK_OT_ignore_still_areas,
-        KEYMARK_OT_remove_ignored_region,
-    )
+    (KEYMARK_OT_ignore_region, KEYMARK_OT_ignore_still_areas, KEYMARK_OT_remove_ignored_region)
 )

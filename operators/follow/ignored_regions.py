@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from ...core.footage.ignored_regions import IgnoredRegion
 
 
-PLACES = 2
-"""Decimals of a pixel that files keep: Blender's own numbers are of single precision."""
+PLACES = 2  # Decimals of a pixel that files keep: Blender's own numbers are of single precision
 BRUSHED, BOXED = "Brushed", "Still Area"
 
 

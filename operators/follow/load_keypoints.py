@@ -1,5 +1,7 @@
-"""Load keypoints that a detector has found in the clip."""
+"""Files of keypoints of a take: loaded, removed, and made by Keymark's own network."""
 
+from dataclasses import dataclass
+from os import W_OK, X_OK, access
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,15 +10,16 @@ import bpy
 from ...core.errors import InputError
 from ...core.progress import run
 from ..shell.base_operator import BaseOperator, browse, chosen_path, warn
+from ..shell.job_operator import JobOperator
 from ..shell.requirements import footage, idle
 from ..shell.results import reading_of
-from ..shell.takes import active_take, footage_of, redraw_footage
-from .evidence import keypoint_files, scene_evidence
+from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
+from .evidence import add_keypoint_file, keypoint_files, keypoint_path, scene_evidence
 from .frame_keypoints import clear_readings
-from .keypoint_paths import add_keypoint_file
 
 if TYPE_CHECKING:
     from ...core.footage.keypoints.keypoints import People
+    from ...core.progress import Job
 
 
 class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
@@ -44,7 +47,6 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, beginning beside the clip, unless a file was dropped or is loaded again."""
         if self.filepath:
             return self.execute(context)
         clip = active_take(context.scene).clip
@@ -61,19 +63,13 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
         redraw_footage(context)
         for note in people.notes:
             warn(self, note)
-        self.report(
-            {"INFO"},
-            f"Loaded {len(people.names)} points of {people.source}, in "
-            f"{sum(len(frame.pixel) > 0 for frame in people.frames)} of {len(people.frames)} frames",
-        )
+        loaded = f"Loaded {len(people.names)} points of {people.source}"
+        seen = sum(len(frame.pixel) > 0 for frame in people.frames)
+        self.report({"INFO"}, f"{loaded}, in {seen} of {len(people.frames)} frames")
 
 
 def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> "People":
-    """Read keypoints and hold them against the clip.
-
-    Raises:
-        InputError: The clip or the file is missing or unusable, or they do not belong together.
-    """
+    """Read keypoints and hold them against the clip."""
     from ..bridge.scene_evidence import read_keypoint_file
     from ..bridge.take_from_scene import clip_frames
 
@@ -84,11 +80,7 @@ def _read(scene: bpy.types.Scene, take: bpy.types.PropertyGroup, path: Path) -> 
 
 
 def _whole(path: Path) -> Path:
-    """The folder of a detector that writes a file a frame, where one of its files was chosen.
-
-    Raises:
-        InputError: It is no file that can be read.
-    """
+    """The folder of a detector that writes a file a frame, where one of its files was chosen."""
     from ...core.files.json_file import read_json_value
     from ...core.footage.keypoints.frame_folder import is_one_frame
     from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
@@ -100,9 +92,6 @@ def _whole(path: Path) -> Path:
     return path.parent if is_one_frame(read_json_value(path, LARGEST_BYTES)) else path
 
 
-# --- Remove a file of keypoints from a take
-
-
 class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     """Remove the chosen keypoints from the take; their file stays on disk"""
 
@@ -112,7 +101,6 @@ class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
     requirements = (keypoint_files, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove them; those before become the chosen ones."""
         follow = active_take(context.scene).follow
         index = min(follow.active_file, len(follow.files) - 1)
         follow.files.remove(index)
@@ -120,9 +108,66 @@ class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
         redraw_footage(context)
 
 
+KEYPOINT_FILE = "keypoints.json"
+
+
+@dataclass(frozen=True, eq=False)
+class Detected:
+    """Result of the job."""
+
+    take: str  # The take's identifier
+    output: Path  # The file to write
+    people: "People"
+    fps: float
+    frame_start: int
+
+
+class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
+    """Find points of the body of everybody in the whole clip"""
+
+    bl_idname = "keymark.detect_keypoints"
+    bl_label = "Detect Keypoints"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[Detected]":
+        from ...core.footage.pose_network import PoseNetwork
+        from ...core.footage.pose_tracking import find_people
+        from ...core.take.clip_check import LONGEST_FRAMES, open_footage
+
+        take = active_take(scene)
+        identifier, source = take.identifier, footage_of(scene, take)
+        output, first = _output(take, source.path), source.first_frame
+        clip = open_footage(source.path, source.rate)
+        people = yield from find_people(clip, PoseNetwork(), LONGEST_FRAMES)
+        return Detected(identifier, output, people, clip.fps, first)
+
+    def finish(self, scene: bpy.types.Scene, result: Detected) -> None:
+        from ...core.footage.keypoints.keypoint_file import write_keypoints
+
+        take = take_by_identifier(scene, result.take)
+        people = result.people
+        write_keypoints(result.output, people, result.frame_start, result.fps)
+        add_keypoint_file(take, result.output)
+        take.follow.use_keypoints = True
+        clear_readings()
+        redraw_footage(bpy.context)
+        seen = f"Somebody is seen in {people.seen_frames} of {len(people.frames)} frames"
+        self.report({"INFO"}, f"{seen}; the keypoints are in {result.output.name}")
+
+
+def _output(take: bpy.types.PropertyGroup, clip: Path) -> Path:
+    """The file that the keypoints go into: beside the clip, where nothing else lies."""
+    from ...core.take.description import sidecar_file
+
+    wanted = sidecar_file(clip, KEYPOINT_FILE)
+    if not access(wanted.parent, W_OK | X_OK):
+        raise InputError(f"{wanted.parent}: cannot be written; the keypoints belong beside the clip")
+    known = {keypoint_path(entry) for entry in take.follow.files}
+    names = [wanted, *(sidecar_file(clip, f"keypoints{number}.json") for number in range(2, 1000))]
+    return next((name for name in names if name in known or not name.exists()), wanted)
+
+
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_load_keypoints,
-        KEYMARK_OT_remove_keypoints,
-    )
+    (KEYMARK_OT_load_keypoints, KEYMARK_OT_remove_keypoints, KEYMARK_OT_detect_keypoints)
 )

@@ -19,14 +19,9 @@ def next_segment(take: bpy.types.PropertyGroup) -> str | None:
     return next((segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked), None)
 
 
-def free_name(take: bpy.types.PropertyGroup, segment: str) -> str:
-    """Return a unique name for a marker: the segment's, with a number if another marker has it."""
-    return unique_name(segment, (marker.name for marker in take.markers))
-
-
 def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.PropertyGroup:
-    """Add a marker named after its segment, and make it the active one."""
-    name = free_name(take, segment)
+    """Add a marker with a unique name after its segment, and make it the active one."""
+    name = unique_name(segment, (marker.name for marker in take.markers))
     marker = take.markers.add()
     marker.segment, marker.name = segment, name
     marker.named_after = segment
@@ -34,7 +29,13 @@ def append_marker(take: bpy.types.PropertyGroup, segment: str) -> bpy.types.Prop
     return marker
 
 
-# --- Remove a colored marker
+def append_usual_markers(take: bpy.types.PropertyGroup) -> None:
+    """Add those of the usual five that are missing; the first of them becomes the active one."""
+    marked, first = {marker.segment for marker in take.markers}, len(take.markers)
+    for segment in USUAL_SEGMENTS:
+        if segment not in marked:
+            append_marker(take, segment)
+    take.active_marker = first
 
 
 class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
@@ -46,16 +47,12 @@ class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
     requirements = (markers,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the marker; the one before it becomes active."""
         take = active_take(context.scene)
         index = min(take.active_marker, len(take.markers) - 1)
         if take.markers[index].is_picked:
             clear_readouts(take)
         take.markers.remove(index)
         take.active_marker = max(0, index - 1)
-
-
-# --- Show or hide the masks of the markers' colors
 
 
 class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
@@ -67,7 +64,6 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
     requirements = (footage, markers, picked_color, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Toggle the masks; markers that were not checked in this session are checked first."""
         manager = context.window_manager
         if not manager.keymark_show_masks:
             if preview_of(active_take(context.scene)) is None:
@@ -78,18 +74,11 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
 
 
 def _check_markers() -> None:
-    """Run the check of the markers, on a timer in the user interface.
-
-    Raises:
-        InputError: The markers cannot be checked.
-    """
+    """Run the check of the markers, on a timer in the user interface."""
     try:
         bpy.ops.keymark.check_markers("INVOKE_DEFAULT")
     except RuntimeError as error:
         raise InputError(str(error).removeprefix("Error: ").strip()) from error
-
-
-# --- Add a colored marker
 
 
 class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
@@ -100,7 +89,6 @@ class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Add the marker and make it the active one."""
         take = ensure_take(context.scene)
         segment = next_segment(take)
         if segment is None:
@@ -108,9 +96,6 @@ class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         append_marker(take, segment)
         return None
-
-
-# --- Add the five usual markers
 
 
 class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
@@ -121,25 +106,14 @@ class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Add the missing ones; the first of them becomes the active marker."""
         take = ensure_take(context.scene)
-        marked = {marker.segment for marker in take.markers}
-        missing = [segment for segment in USUAL_SEGMENTS if segment not in marked]
-        if not missing:
+        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
             self.report({"INFO"}, "Trunk, forearms and shins have markers already")
             return {"CANCELLED"}
-        first = len(take.markers)
-        for segment in missing:
-            append_marker(take, segment)
-        take.active_marker = first
+        append_usual_markers(take)
         return None
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_remove_marker,
-        KEYMARK_OT_show_masks,
-        KEYMARK_OT_add_marker,
-        KEYMARK_OT_add_usual_markers,
-    )
+    (KEYMARK_OT_remove_marker, KEYMARK_OT_show_masks, KEYMARK_OT_add_marker, KEYMARK_OT_add_usual_markers)
 )

@@ -1,85 +1,11 @@
-"""The panel of step 2, What to Follow, in the viewport and the Movie Clip editor.
-
-A take is held against markers, keypoints, tracks and contours; each has a switch in its header, and beside it
-what it sees in this frame.
-"""
+"""The markers in step 2, in the sidebars of the 3D viewport and of the Movie Clip editor."""
 
 import bpy
 
-from ..shell.panel import (
-    ClipFollowPanel,
-    FollowPanel,
-    RowList,
-    draw_progress,
-    draw_readout,
-    draw_sentence,
-    draw_switch,
-    is_roomy,
-    property_column,
-    side_by_side,
-)
-from ..shell.step_panel import StepPanel
-from ..shell.takes import active_take, find_take
+from ..shell.panel import RowList, draw_progress, draw_sentence, is_roomy, property_column, side_by_side
+from ..shell.takes import active_take
 from .marker_styles import markers_label
-
-
-class KEYMARK_PT_follow(StepPanel, bpy.types.Panel):
-    """What the motion is held against in the footage."""
-
-    bl_label = "What to Follow"
-    step = "follow"
-
-    @classmethod
-    def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """What is followed, beside the contours."""
-        follow = take.follow
-        used = (
-            ("Markers", follow.use_markers and len(take.markers)),
-            ("Keypoints", follow.use_keypoints and (len(follow.files) or len(follow.clicks))),
-        )
-        return ", ".join(name for name, is_used in used if is_used)
-
-    def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw what to begin with, until there is something."""
-        _draw_hint(self.body, context)
-
-
-class KEYMARK_PT_clip_follow(bpy.types.Panel):
-    """The same in the Movie Clip editor."""
-
-    bl_label = "What to Follow"
-    bl_space_type = "CLIP_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Keymark"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is a take."""
-        return find_take(context.scene) is not None
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the same, or that the editor shows something else."""
-        if context.space_data.clip != active_take(context.scene).clip:
-            self.layout.label(text="The editor shows another clip", icon="INFO")
-        _draw_hint(self.layout, context)
-
-
-def _draw_hint(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    take = active_take(context.scene)
-    if len(take.markers) or len(take.follow.files) or len(take.follow.clicks):
-        return
-    hint = "Any clothes will do: detect or load keypoints. Five strong colors tell most"
-    draw_sentence(layout, context, hint, "INFO")
-
-
-# --- The markers in step 2, in the sidebars of the 3D viewport and of the Movie Clip editor
-
-
-IGNORING = ("keymark.ignore_region", "keymark.ignore_still_areas")
-SWATCH_UNITS, NARROW_SWATCH_UNITS = 1.6, 0.8
-"""Width of a marker's color in the list, which leaves a narrow sidebar to the names."""
-LABEL_SHARE = 0.4
-"""Share of the width that Blender gives to the labels of its two columns."""
+from .panel import evidence_panels
 
 
 class KEYMARK_UL_markers(RowList, bpy.types.UIList):
@@ -88,11 +14,10 @@ class KEYMARK_UL_markers(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one marker: color, name, status, and the eyedropper that picks this one alone."""
         row = layout.row(align=True)
         swatch = row.row()
         roomy = is_roomy(context)
-        swatch.ui_units_x = SWATCH_UNITS if roomy else NARROW_SWATCH_UNITS
+        swatch.ui_units_x = 1.6 if roomy else 0.8  # a narrow sidebar is left to the names
         swatch.enabled = item.is_picked
         swatch.prop(item, "color", text="")
         row.prop(item, "name", text="", emboss=False)
@@ -117,7 +42,6 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one region."""
         row = layout.row(align=True)
         row.prop(item, "name", text="", emboss=False, icon="BRUSH_DATA" if len(item.stroke) else "MESH_PLANE")
         status = row.row()
@@ -126,40 +50,10 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
         status.label(text=text, translate=False)
 
 
-class Markers:
-    """Mixin of the panels: a switch in the header, how many are seen in this frame, and the list."""
-
-    layout: bpy.types.UILayout
-
-    def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw the switch."""
-        draw_switch(self.layout, context, "use_markers")
-
-    def draw_header_preset(self, context: bpy.types.Context) -> None:
-        """Draw what is seen in this frame."""
-        draw_readout(self.layout, markers_label(active_take(context.scene)))
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list and the active marker."""
-        self.layout.active = active_take(context.scene).follow.use_markers
-        draw_markers(self.layout, context)
-
-
-class KEYMARK_PT_markers(Markers, FollowPanel, bpy.types.Panel):
-    """The list of markers, and the active one."""
-
-    bl_label = "Markers"
-
-
-class KEYMARK_PT_clip_markers(Markers, ClipFollowPanel, bpy.types.Panel):
-    """The same in the Movie Clip editor."""
-
-    bl_label = "Markers"
-
-
-def draw_markers(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+def _draw_markers(
+    layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
+) -> None:
     """Draw the list, the active marker, and the operators of both."""
-    take = active_take(context.scene)
     if not len(take.markers):
         _draw_pick(layout, context, "Pick Markers")
         layout.operator("keymark.add_usual_markers", icon="COMMUNITY")
@@ -195,7 +89,8 @@ def _draw_ignored(
     layout: bpy.types.UILayout, context: bpy.types.Context, take: bpy.types.PropertyGroup
 ) -> None:
     """Draw what is never a marker: the brush, the list of regions, and the frames of the chosen one."""
-    if not any(draw_progress(layout, context, job) for job in IGNORING):
+    jobs = ("keymark.ignore_region", "keymark.ignore_still_areas")
+    if not any(draw_progress(layout, context, job) for job in jobs):
         row = layout.row(align=True)
         row.operator("keymark.ignore_region", icon="BRUSH_DATA")
         if any(marker.has_readout(take) and len(marker.still_areas) for marker in take.markers):
@@ -228,11 +123,7 @@ def _draw_marker(
     if not marker.has_readout(take):
         return
     readout = layout.column(align=True)
-    _row(
-        readout,
-        "Found In",
-        f"{marker.found} of {marker.sampled} frames",
-    )
+    _row(readout, "Found In", f"{marker.found} of {marker.sampled} frames")
     _row(readout, "Area", f"{marker.area:.0f} px ({100.0 * marker.area_share:.2f}%)")
     _row(readout, "Distinct", f"{100.0 * marker.distinctness:.0f}%")
     for sentence in marker.warning.splitlines():
@@ -241,7 +132,7 @@ def _draw_marker(
 
 def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
     """Draw a name and a value in the two columns of properties."""
-    row = layout.split(factor=LABEL_SHARE)
+    row = layout.split(factor=0.4)
     left = row.row()
     left.alignment = "RIGHT"
     left.label(text=name)
@@ -250,11 +141,8 @@ def _row(layout: bpy.types.UILayout, name: str, value: str) -> None:
 
 register, unregister = bpy.utils.register_classes_factory(
     (
-        KEYMARK_PT_follow,
-        KEYMARK_PT_clip_follow,
         KEYMARK_UL_markers,
         KEYMARK_UL_ignored_regions,
-        KEYMARK_PT_markers,
-        KEYMARK_PT_clip_markers,
+        *evidence_panels("markers", markers_label, _draw_markers),
     )
 )

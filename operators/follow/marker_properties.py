@@ -1,4 +1,4 @@
-"""Properties of a region of the picture that is never a marker: a box, or the stroke of a brush."""
+"""Properties of colored markers, and of regions of the picture that are never a marker."""
 
 import bpy
 
@@ -10,8 +10,7 @@ def _changed(region: bpy.types.PropertyGroup, context: bpy.types.Context) -> Non
     """What was found of the markers depends on what is ignored."""
     for take in region.id_data.keymark.takes:
         if any(other == region for other in take.ignored_regions):
-            for marker in take.markers:
-                marker.sampled = 0
+            clear_readouts(take)
 
 
 def _clip_start(region: bpy.types.PropertyGroup) -> int:
@@ -90,28 +89,14 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     )
 
 
-# --- Properties of a colored marker, and the switch that shows masks
-
-
-WHOLE_TRUNK = "trunk"
-WITHOUT_VOLUME = "girdle"
-SEGMENTS = (
-    WHOLE_TRUNK,
-    *(segment.name for segment in HUMAN.segments if not segment.name.startswith(WITHOUT_VOLUME)),
-)
-"""Segments that a marker can be bound to."""
+SEGMENTS = ("trunk", *(each.name for each in HUMAN.segments if not each.name.startswith("girdle")))
+"""Segments that a marker can be bound to: the whole trunk, and all that have a volume."""
 
 
 def segment_title(segment: str) -> str:
     """Return a segment's label."""
     part, _, side = segment.partition(".")
     return part.replace("_", " ").title() + {"L": " Left", "R": " Right", "": ""}[side]
-
-
-def _take_of(marker: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
-    """Return the take that a marker belongs to."""
-    takes = marker.id_data.keymark.takes
-    return next((take for take in takes if any(other == marker for other in take.markers)), None)
 
 
 def clear_readouts(take: bpy.types.PropertyGroup) -> None:
@@ -121,9 +106,9 @@ def clear_readouts(take: bpy.types.PropertyGroup) -> None:
 
 
 def _on_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    take = _take_of(marker)
-    if take is not None and marker.is_picked:
-        clear_readouts(take)
+    for take in marker.id_data.keymark.takes:
+        if marker.is_picked and any(other == marker for other in take.markers):
+            clear_readouts(take)
 
 
 def _on_segment_changed(marker: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -164,8 +149,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         name="Area", description="Area that the marker usually covers, in pixels of the footage"
     )
     area_share: bpy.props.FloatProperty(
-        name="Share of the Picture",
-        description="Share of the picture that the marker usually covers",
+        name="Share of the Picture", description="Share of the picture that the marker usually covers"
     )
     distinctness: bpy.props.FloatProperty(
         name="Distinctness",
@@ -183,7 +167,6 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
 
     @property
     def is_picked(self) -> bool:
-        """Whether the marker has a color."""
         return bool(self.is_property_set("color"))
 
     def has_readout(self, take: bpy.types.PropertyGroup) -> bool:
@@ -192,35 +175,20 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
         return bool(self.sampled and take.clip is not None and self.checked_clip == contents)
 
 
-def _register_properties() -> None:
-    """Register the marker, and the switch for masks, which no file keeps."""
-    bpy.utils.register_class(KEYMARK_PG_marker)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_stroke_point, KEYMARK_PG_ignored_region, KEYMARK_PG_marker)
+)
+
+
+def register() -> None:
+    """Register the groups, and the switch for masks, which no file keeps."""
+    _register_classes()
     bpy.types.WindowManager.keymark_show_masks = bpy.props.BoolProperty(
         name="Show Masks", description="Highlight the markers' colors over the footage", default=False
     )
 
 
-def _unregister_properties() -> None:
-    """Remove both."""
-    del bpy.types.WindowManager.keymark_show_masks
-    bpy.utils.unregister_class(KEYMARK_PG_marker)
-
-
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PG_stroke_point,
-        KEYMARK_PG_ignored_region,
-    )
-)
-
-
-def register() -> None:
-    """Register all of this module."""
-    _register_classes()
-    _register_properties()
-
-
 def unregister() -> None:
     """Take it all back."""
-    _unregister_properties()
+    del bpy.types.WindowManager.keymark_show_masks
     _unregister_classes()

@@ -1,4 +1,4 @@
-"""What is asked for where a marker is to be clicked on."""
+"""Styles of a take's markers, and the search for the markers in its footage."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,11 +13,11 @@ from ..footage.take_footage import update_clip_digest
 from ..shell.base_operator import capitalized
 from ..shell.footage_view import FootageRequest, clip_index, side_of
 from ..shell.results import reading_of
-from ..shell.takes import active_take, find_take, footage_of, redraw_footage, take_by_identifier
+from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
 from .ignored_regions import add_ignored_regions, ignored_regions
-from .marker_list import USUAL_SEGMENTS
+from .marker_list import USUAL_SEGMENTS, append_usual_markers
 from .marker_properties import segment_title
-from .mask_previews import keep_preview, update_shown_masks
+from .mask_previews import keep_preview, show_masks, update_shown_masks
 
 if TYPE_CHECKING:
     from ...core.footage.clips.clip import ClipSamples
@@ -29,17 +29,10 @@ if TYPE_CHECKING:
 
 def request_for(segment: str) -> FootageRequest:
     """The request for the marker on a segment; left and right are the performer's own."""
-    title = f"Click on: {segment_title(segment)}"
-    return FootageRequest(title, side_of(segment))
+    return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment))
 
 
-# --- Marker styles
-
-
-FULL_SCALE = 255
-
-Rgb = tuple[int, int, int]
-"""Red, green, blue in 0 to 255."""
+Rgb = tuple[int, int, int]  # Red, green, blue in 0 to 255
 
 
 def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
@@ -48,37 +41,32 @@ def marker_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
     Raises:
         InputError: Two markers have one name or one segment.
     """
-    styles = tuple(_style(marker.name, marker.segment, _to_bytes(marker.color)) for marker in take.markers)
+    from ...core.footage.region_tracks import MarkerStyle
+
+    styles = []
+    for marker in take.markers:
+        red, green, blue = (round(float(value) * 255) for value in marker.color)
+        styles.append(MarkerStyle(marker.name, marker.segment, (red, green, blue)))
     for kind, values in (("name", [s.name for s in styles]), ("segment", [s.segment for s in styles])):
         twice = next((value for value in values if values.count(value) > 1), None)
         if twice is not None:
             raise InputError(f"two markers have the {kind} '{twice}'; each needs its own")
-    return styles
-
-
-def picked_styles(take: bpy.types.PropertyGroup) -> "tuple[MarkerStyle, ...]":
-    """Return the styles of a take's markers that have a color.
-
-    Raises:
-        InputError: Two markers have one name or one segment.
-    """
-    pairs = zip(take.markers, marker_styles(take), strict=True)
-    return tuple(style for marker, style in pairs if marker.is_picked)
+    return tuple(styles)
 
 
 def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb]) -> "tuple[MarkerStyle, ...]":
-    """The styles of a take's markers that have a color, once some are given new ones.
+    """The styles of a take's markers that have a color, once some are given new ones by their names.
 
-    Args:
-        take: The take; without a marker it counts as one with the usual five.
-        colors: The new colors, by the markers' names.
+    A take without markers counts as one with the usual five.
 
     Raises:
         InputError: Two markers have one name or one segment, or there is no marker of a name.
     """
+    from ...core.footage.region_tracks import MarkerStyle
+
     styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
     if not styles:
-        styles = tuple(_style(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
+        styles = tuple(MarkerStyle(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
     unknown = set(colors) - {style.name for style in styles}
     if unknown:
         known = ", ".join(style.name for style in styles)
@@ -92,21 +80,7 @@ def styles_with_colors(take: bpy.types.PropertyGroup, colors: Mapping[str, Rgb])
 
 def set_marker_color(marker: bpy.types.PropertyGroup, color_srgb: Rgb) -> None:
     """Set a marker's color from bytes."""
-    marker.color = [value / FULL_SCALE for value in color_srgb]
-
-
-def _style(name: str, segment: str, color_srgb: Rgb) -> "MarkerStyle":
-    from ...core.footage.region_tracks import MarkerStyle
-
-    return MarkerStyle(name, segment, color_srgb)
-
-
-def _to_bytes(color: bpy.types.bpy_prop_array) -> Rgb:
-    red, green, blue = (round(float(value) * FULL_SCALE) for value in color)
-    return red, green, blue
-
-
-# --- How many of a take's markers are seen in the current frame, as a label
+    marker.color = [value / 255 for value in color_srgb]
 
 
 def markers_label(take: bpy.types.PropertyGroup) -> str:
@@ -122,28 +96,14 @@ def markers_label(take: bpy.types.PropertyGroup) -> str:
     return f"{int(reading.tracks.visible[index].sum())} of {count}"
 
 
-# --- Readouts of a take's markers
-
-
-MOST_CLIPS = 2
-"""Clips whose sampled frames are cached, some megabytes each, so that another color is checked at once."""
-SAMPLING_SHARE = 0.7
-
 _samples: "dict[str, ClipSamples]" = {}
-"""By the digest of the clip's file, the least recently used first."""
+"""Sampled frames of the last two clips, some megabytes each, by the digest of the file: the latest last."""
 
 
 def find_markers(
     footage: Footage, styles: "tuple[MarkerStyle, ...]", ignored: "tuple[IgnoredRegion, ...]"
 ) -> "Job[MarkerCheck]":
-    """Find markers in frames sampled over a clip, which are decoded once a session.
-
-    Yields:
-        Progress.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Find markers in frames sampled over a clip, which are decoded once a session."""
     from ...core.footage.clips.clip import sample_clip
     from ...core.footage.marker_check import check_markers
     from ...core.footage.reading import footage_digest
@@ -152,22 +112,12 @@ def find_markers(
     samples = _samples.pop(key, None)
     if samples is None:
         job = sample_clip(footage.open())
-        samples = yield from within("Looking at frames of the clip", job, 0.0, SAMPLING_SHARE)
-    _samples[key] = samples  # the most recently used one last
-    while len(_samples) > MOST_CLIPS:
+        samples = yield from within("Looking at frames of the clip", job, 0.0, 0.7)
+    _samples[key] = samples
+    while len(_samples) > 2:
         del _samples[next(iter(_samples))]
     check = check_markers(samples, styles, ignored=ignored)
-    return (yield from within("Finding the markers", check, SAMPLING_SHARE, 1.0))
-
-
-def check_unchanged(now: object, then: object) -> None:
-    """Refuse a result if the markers, or what is ignored, were changed while the job ran.
-
-    Raises:
-        InputError: They were.
-    """
-    if now != then:
-        raise InputError("the markers were changed while they were looked for; nothing was stored, try again")
+    return (yield from within("Finding the markers", check, 0.7, 1.0))
 
 
 def write_readouts(
@@ -193,56 +143,47 @@ def write_readouts(
     return [capitalized(sentence) for readout in check.readouts for sentence in readout.warnings]
 
 
-# --- Requirements of the operators of markers
-
-
-def still_areas(context: bpy.types.Context) -> str | None:
-    """Some still area of a marker's color is known that is surely no marker."""
-    take = find_take(context.scene)
-    known = take is not None and any(
-        marker.has_readout(take) and len(marker.still_areas) for marker in take.markers
-    )
-    return None if known else "Check the markers first; no still area of a marker's color is known"
-
-
-def some_ignored(context: bpy.types.Context) -> str | None:
-    """Some region of the picture is ignored."""
-    take = find_take(context.scene)
-    return None if take and len(take.ignored_regions) else "No region of the picture is left out"
-
-
-# --- The job of operators that leave regions of the picture out
-
-
 @dataclass(frozen=True, eq=False)
-class LeftOut:
-    """Result of the job."""
+class MarkerSearch:
+    """What a job was told of a take's markers, and what it found of them."""
 
-    take: str
-    """The take's identifier."""
-    before: "tuple[IgnoredRegion, ...]"
-    """What was ignored before."""
-    more: "tuple[IgnoredRegion, ...]"
+    take: str  # The take's identifier
+    colors: dict[str, Rgb]  # New colors, by the markers' names
+    more: "tuple[IgnoredRegion, ...]"  # Regions to be ignored from now on
     styles: "tuple[MarkerStyle, ...]"
-    check: "MarkerCheck | None"
-    """None where no marker has a color yet."""
+    ignored: "tuple[IgnoredRegion, ...]"  # What was ignored before
+    check: "MarkerCheck | None"  # None where no marker has a color
 
 
-def leave_out(scene: bpy.types.Scene, more: "tuple[IgnoredRegion, ...]") -> "Job[LeftOut]":
-    """Look for the active take's markers without more regions of the picture."""
-    take = active_take(scene)
-    source, identifier = footage_of(scene, take), take.identifier
-    styles, before = picked_styles(take), ignored_regions(take)
-    check = (yield from find_markers(source, styles, (*before, *more))) if styles else None
-    return LeftOut(identifier, before, more, styles, check)
+def search_markers(
+    scene: bpy.types.Scene, colors: Mapping[str, Rgb] | None = None, more: "tuple[IgnoredRegion, ...]" = ()
+) -> "Job[MarkerSearch]":
+    """Look for the active take's markers with new colors, or without more regions of the picture."""
+    take, new = active_take(scene), dict(colors or {})
+    source, identifier, ignored = footage_of(scene, take), take.identifier, ignored_regions(take)
+    styles = styles_with_colors(take, new)
+    check = (yield from find_markers(source, styles, (*ignored, *more))) if styles else None
+    return MarkerSearch(identifier, new, more, styles, ignored, check)
 
 
-def write_left_out(scene: bpy.types.Scene, result: LeftOut) -> list[str]:
-    """Store the regions and what was found of the markers; return all warnings."""
-    take = take_by_identifier(scene, result.take)
-    check_unchanged((picked_styles(take), ignored_regions(take)), (result.styles, result.before))
-    add_ignored_regions(take, result.more)
-    warnings = [] if result.check is None else write_readouts(take, result.styles, result.check)
+def write_search(scene: bpy.types.Scene, found: MarkerSearch, masks: bool = False) -> list[str]:
+    """Store colors, regions and what was found of the markers, with their masks shown; return all warnings.
+
+    Raises:
+        InputError: The markers, or what is ignored, were changed while the job ran.
+    """
+    take = take_by_identifier(scene, found.take)
+    if (styles_with_colors(take, found.colors), ignored_regions(take)) != (found.styles, found.ignored):
+        raise InputError("the markers were changed while they were looked for; nothing was stored, try again")
+    if found.colors and not len(take.markers):
+        append_usual_markers(take)
+    for marker in take.markers:
+        if marker.name in found.colors:
+            set_marker_color(marker, found.colors[marker.name])
+    add_ignored_regions(take, found.more)
+    warnings = [] if found.check is None else write_readouts(take, found.styles, found.check)
+    if masks:
+        show_masks(bpy.context, True)
     update_shown_masks(scene)
     redraw_footage(bpy.context)
     return warnings

@@ -23,21 +23,16 @@ if TYPE_CHECKING:
 
 Key = tuple[str, tuple[tuple[str, tuple[float, ...]], ...], tuple[object, ...]]
 
-MOST_PREVIEWS = 4
-
 
 @dataclass(frozen=True, eq=False)
 class ColorMask:
     """Mask of one color in a frame."""
 
-    label: str
-    """Name of the marker, or names of all markers of this color."""
-    color: tuple[float, float, float]
-    """The marker's color in sRGB, 0 to 1."""
+    label: str  # Name of the marker, or names of all markers of this color
+    color: tuple[float, float, float]  # The marker's color in sRGB, 0 to 1
     coverage: SingleArray
     """(rows, columns) share of each pixel that has the color, 0 to 1, at the resolution of segmentation."""
-    outlines: list[Array]
-    """Closed outlines (N, 2) in footage pixels, the longest first."""
+    outlines: list[Array]  # Closed outlines (N, 2) in footage pixels, the longest first
 
 
 @dataclass(eq=False)
@@ -48,8 +43,7 @@ class Preview:
     labels: tuple[str, ...]
     colors: tuple[tuple[float, float, float], ...]
     reader: "FrameReader | None" = None
-    time_s: float | None = None
-    """Time of the masks' frame, from the clip's first [s]."""
+    time_s: float | None = None  # Time of the masks' frame, from the clip's first [s]
     masks: tuple[ColorMask, ...] = field(default=())
 
 
@@ -64,7 +58,7 @@ def keep_preview(
     """Cache the learned colors of a take's markers."""
     _previews.pop(key := _key(take), None)
     _previews[key] = _preview(styles, check)
-    while len(_previews) > MOST_PREVIEWS:
+    while len(_previews) > 4:
         del _previews[next(iter(_previews))]
 
 
@@ -92,18 +86,13 @@ def clear_previews() -> None:
 
 
 def update_masks(scene: bpy.types.Scene) -> Preview | None:
-    """Make the masks of the current frame, unless they are made already; return their preview.
-
-    Raises:
-        InputError: The clip is missing or cannot be read.
-    """
+    """Make the masks of the current frame, unless they are made already; return their preview."""
     take = find_take(scene)
     preview = preview_of(take) if take is not None else None
     if preview is None or is_of_frame(preview, scene):
         return preview
     footage = footage_of(scene, take)
-    ignored = ignored_mask(take)
-    preview.masks = _masks(preview, footage, ignored)
+    preview.masks = _masks(preview, footage, ignored_mask(take))
     preview.time_s = footage.shown_s
     return preview
 

@@ -1,47 +1,193 @@
-"""Pick a marker's color from the footage, and check at once how well the marker is found."""
+"""Pick the colors of markers, of all one after the other or of one, and check how well they are found."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Generator
+from time import monotonic
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ...core.errors import InputError
 from ..shell.base_operator import reported, warn
-from ..shell.footage_clicks import NAVIGATION, footage_is_shown
-from ..shell.footage_view import ask, follow_mouse, pixel_under, stop_asking
-from ..shell.job_operator import JobOperator, cancel_click
-from ..shell.requirements import footage, idle, markers
+from ..shell.footage_clicks import NAVIGATION, ClickSequence, footage_is_shown
+from ..shell.footage_view import FootageRequest, ask, follow_mouse, pixel_under, stop_asking
+from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator, cancel_click
+from ..shell.requirements import footage, idle, markers, picked_color
 from ..shell.takes import active_take, footage_of, take_by_identifier
 from .ignored_regions import ignored_regions
+from .marker_list import USUAL_SEGMENTS
 from .marker_styles import (
-    Rgb,
-    check_unchanged,
+    MarkerSearch,
     find_markers,
     request_for,
-    set_marker_color,
+    search_markers,
     styles_with_colors,
-    write_readouts,
+    write_search,
 )
-from .mask_previews import show_masks, update_shown_masks
+from .mask_previews import end_picked, show_masks, show_picked, update_masks
 
 if TYPE_CHECKING:
-    from ...core.footage.ignored_regions import IgnoredRegion
     from ...core.footage.marker_check import MarkerCheck
     from ...core.footage.region_tracks import MarkerStyle
     from ...core.progress import Job
 
 
-@dataclass(frozen=True, eq=False)
-class Picked:
-    """Result of the job."""
+KEYS = "{number} of {count}   |   Backspace: Back   |   Tab: Skip   |   Enter: Done   |   Esc: Cancel"
 
-    take: str
-    """The take's identifier."""
-    marker: str
-    """Name of the marker that is given the color."""
-    color: Rgb
-    styles: "tuple[MarkerStyle, ...]"
-    ignored: "tuple[IgnoredRegion, ...]"
-    check: "MarkerCheck"
+
+class KEYMARK_OT_pick_markers(JobOperator, ClickSequence, bpy.types.Operator):
+    """Click on one marker after the other in the footage; without a list they are the usual five"""
+
+    bl_idname = "keymark.pick_markers"
+    bl_label = "Pick Markers"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, idle)
+    cursor = "EYEDROPPER"
+
+    clicks: bpy.props.CollectionProperty(
+        name="Clicks",
+        description="A click a marker: its name, the pixel of the footage, and the scene frame as time",
+        type=bpy.types.OperatorMousePath,
+        options={"SKIP_SAVE"},
+    )
+
+    _masks_before: bool | None = None  # Whether masks were shown before; None in a script
+    _asked: Any = ()
+    """Names and segments of the markers that are asked for, in order; Blender would evaluate a type."""
+    _here: int = 0  # Which of them is asked for now
+    _colors: Any = None
+    """Picked colors by the markers' names, in the order of the clicks; None in a script. The scene stays as
+    it was until all are picked: going to another frame is a step of undo."""
+    _looking: Generator[Any, None, Any] | None = None
+    """The search for the colors picked so far, whose masks are then shown."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for the markers without a color, for all where each has one, or for the usual five."""
+        take = active_take(context.scene)
+        if not footage_is_shown(self, context, take):
+            return {"CANCELLED"}
+        markers = [marker for marker in take.markers if not marker.is_picked] or list(take.markers)
+        usual = [(segment, segment) for segment in USUAL_SEGMENTS]
+        self._asked = [(marker.name, marker.segment) for marker in markers] or usual
+        self._here, self._colors = 0, {}
+        self._masks_before = bool(context.window_manager.keymark_show_masks)
+        self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
+        context.window_manager.keymark_progress.show("", 0.0)
+        return self.wait_for_clicks(context)
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if self._job is not None:
+            return super().modal(context, event)
+        if event.type == "TIMER":
+            self._look(context)
+            return {"PASS_THROUGH"}
+        return self.take_event(context, event)
+
+    def request(self, context: bpy.types.Context) -> tuple[FootageRequest, str]:
+        keys = KEYS.format(number=len(self._colors) + 1, count=len(self._asked))
+        return request_for(self._asked[self._here][1]), keys
+
+    def clicked(self, context: bpy.types.Context, pixel: tuple[float, float]) -> set[str]:
+        from ..bridge.footage import footage_color
+
+        name = self._asked[self._here][0]
+        with reported(self):
+            color = footage_color(footage_of(context.scene, active_take(context.scene)), pixel)
+            self._colors[name] = color
+            click = self.clicks.add()
+            click.name, click.loc, click.time = name, pixel, context.scene.frame_current
+            if len(self._colors) == len(self._asked):
+                return self.done(context)
+            self._begin_to_look(context)
+            self.go_on(context)
+        self.ask(context)
+        return {"RUNNING_MODAL"}
+
+    def go_on(self, context: bpy.types.Context) -> None:
+        count = len(self._asked)
+        after = [(self._here + step) % count for step in range(1, count + 1)]
+        self._here = next((one for one in after if self._asked[one][0] not in self._colors), self._here)
+
+    def go_back(self, context: bpy.types.Context) -> None:
+        if not self._colors:
+            return
+        name, _ = self._colors.popitem()
+        self.clicks.remove(len(self.clicks) - 1)
+        self._here = [asked for asked, _ in self._asked].index(name)
+        if self._colors:
+            self._begin_to_look(context)
+        else:
+            self._stop_looking()
+            show_masks(context, False)
+
+    def done(self, context: bpy.types.Context) -> set[str]:
+        """Look for all markers with a color; without a click nothing has happened."""
+        if not self._colors:
+            self.cancel(context)
+            return {"CANCELLED"}
+        self._stop_looking()
+        stop_asking(context)
+        context.window_manager.event_timer_remove(self._timer)
+        self._timer = None
+        with reported(self):
+            self.begin(context)
+            return {"RUNNING_MODAL"}
+        self.cancel(context)
+        return {"CANCELLED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        self._stop_looking()
+        end_picked()
+        stop_asking(context)
+        if self._masks_before is not None:
+            show_masks(context, self._masks_before)
+        super().cancel(context)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        from ..bridge.footage import footage_color
+
+        source, colors = footage_of(scene, active_take(scene)), self._colors
+        if colors is None:
+            colors = {one.name: footage_color(source, one.loc, round(one.time)) for one in self.clicks}
+        if not colors:
+            raise InputError("clicks is empty; click on at least one marker")
+        return (yield from search_markers(scene, colors))
+
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        for sentence in write_search(scene, result, masks=self._colors is not None):
+            warn(self, sentence)
+        self.report({"INFO"}, f"{len(result.colors)} markers are picked")
+
+    def _begin_to_look(self, context: bpy.types.Context) -> None:
+        self._stop_looking()
+        take = active_take(context.scene)
+        styles = styles_with_colors(take, self._colors)
+        search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
+        self._looking = _seen(take.identifier, styles, search)
+
+    def _look(self, context: bpy.types.Context) -> None:
+        """Go on looking for the colors picked so far; at the end show their masks."""
+        if self._looking is None:
+            return
+        until = monotonic() + SHORTEST_SLICE_S
+        with reported(self):
+            try:
+                while monotonic() < until:
+                    next(self._looking)
+                return
+            except StopIteration:
+                update_masks(context.scene)
+                show_masks(context, True)
+        self._looking = None
+
+    def _stop_looking(self) -> None:
+        if self._looking is not None:
+            self._looking.close()
+            self._looking = None
+
+
+def _seen(identifier: str, styles: "tuple[MarkerStyle, ...]", search: "Job[MarkerCheck]") -> "Job[None]":
+    """Look for markers, then let what was found be the preview of the take with an identifier."""
+    show_picked(identifier, styles, (yield from search))
 
 
 class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
@@ -69,7 +215,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
     """Whether masks were shown before the eyedropper; None in a script, which shows none."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage."""
         take = active_take(context.scene)
         if not footage_is_shown(self, context, take):
             return {"CANCELLED"}
@@ -82,7 +227,6 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on the footage, then run the job that it starts."""
         if self._job is not None:
             return super().modal(context, event)
         if cancel_click(self, context, event):
@@ -108,49 +252,52 @@ class KEYMARK_OT_pick_marker_color(JobOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and masks, and close the job; Blender calls this as well."""
         stop_asking(context)
         if self._masks_before is not None:
             show_masks(context, self._masks_before)
         super().cancel(context)
 
-    def start(self, scene: bpy.types.Scene) -> "Job[Picked]":
-        """Return the job that reads the pixel from the clip's file and looks for its color.
-
-        The viewport's own pixel has gone through color management.
-        """
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        """The color is read from the clip's file: the viewport's has gone through color management."""
         from ..bridge.footage import footage_color
 
         take = active_take(scene)
-        source, identifier, name = footage_of(scene, take), take.identifier, self._marker(take).name
-        color = footage_color(source, self.pixel)
-        styles, ignored = styles_with_colors(take, {name: color}), ignored_regions(take)
-        check = yield from find_markers(source, styles, ignored)
-        return Picked(identifier, name, color, styles, ignored, check)
+        name, color = self._marker(take).name, footage_color(footage_of(scene, take), self.pixel)
+        return (yield from search_markers(scene, {name: color}))
 
-    def finish(self, scene: bpy.types.Scene, result: Picked) -> None:
-        """Give the marker its color, and store the readouts of all markers."""
-        take = take_by_identifier(scene, result.take)
-        styles = styles_with_colors(take, {result.marker: result.color})
-        check_unchanged((styles, ignored_regions(take)), (result.styles, result.ignored))
-        marker = next(marker for marker in take.markers if marker.name == result.marker)
-        set_marker_color(marker, result.color)
-        write_readouts(take, result.styles, result.check)
-        if self._masks_before is not None:  # picked by a click: its mask is shown at once
-            show_masks(bpy.context, True)
-        update_shown_masks(scene)
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        write_search(scene, result, masks=self._masks_before is not None)
+        ((name, color),) = result.colors.items()
+        marker = next(each for each in take_by_identifier(scene, result.take).markers if each.name == name)
         for sentence in marker.warning.splitlines():
             warn(self, sentence)
-        self.report(
-            {"INFO"},
-            f"Marker {marker.name} has the color {result.color}, found in {marker.found} of "
-            f"{marker.sampled} frames",
-        )
+        found = f"found in {marker.found} of {marker.sampled} frames"
+        self.report({"INFO"}, f"Marker {name} has the color {color}, {found}")
 
     def _marker(self, take: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup:
-        """The marker whose color is picked."""
         row = int(take.active_marker) if self.row < 0 else self.row
         return take.markers[min(row, len(take.markers) - 1)]
 
 
-register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_pick_marker_color,))
+class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
+    """Look for the markers in frames all over the clip: how large, distinct and reliably found each one is"""
+
+    bl_idname = "keymark.check_markers"
+    bl_label = "Check Markers"
+    bl_options = {"REGISTER", "UNDO"}
+    requirements = (footage, markers, picked_color, idle)
+
+    def start(self, scene: bpy.types.Scene) -> "Job[MarkerSearch]":
+        return search_markers(scene)
+
+    def finish(self, scene: bpy.types.Scene, result: MarkerSearch) -> None:
+        warnings = write_search(scene, result)
+        for sentence in warnings:
+            warn(self, sentence)
+        if not warnings:
+            self.report({"INFO"}, f"All {len(result.styles)} markers with a color are found well")
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (KEYMARK_OT_pick_marker_color, KEYMARK_OT_check_markers, KEYMARK_OT_pick_markers)
+)

@@ -15,22 +15,15 @@ from .marker_properties import segment_title
 
 def assigned_tracks(take: bpy.types.PropertyGroup) -> tuple[AssignedTrack, ...]:
     """The motion tracks of a take's clip that follow a body point."""
-    if take.clip is None:
-        return ()
-    chosen = _chosen(take)
-    found = []
-    for owner, track in clip_tracks(take.clip):
-        point = chosen.get((owner, track.name))
-        point = (named_point(track.name) or "") if point is None else point
-        if point:
-            found.append(AssignedTrack(owner, track.name, point))
-    return tuple(found)
+    tracks = [(owner, track.name) for owner, track in clip_tracks(take.clip)] if take.clip is not None else []
+    points = [(owner, name, point_of(take, owner, name)) for owner, name in tracks]
+    return tuple(AssignedTrack(*each) for each in points if each[-1])
 
 
 def point_of(take: bpy.types.PropertyGroup, owner: str, track: str) -> str:
     """The body point that a motion track follows; empty for none."""
-    point = _chosen(take).get((owner, track))
-    return (named_point(track) or "") if point is None else point
+    choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
+    return choices.get((owner, track), named_point(track) or "")
 
 
 def assign(take: bpy.types.PropertyGroup, owner: str, track: str, point: str) -> None:
@@ -42,13 +35,6 @@ def assign(take: bpy.types.PropertyGroup, owner: str, track: str, point: str) ->
     if point != (named_point(track) or ""):
         choice = choices.add()
         choice.owner, choice.track, choice.point = owner, track, point
-
-
-def _chosen(take: bpy.types.PropertyGroup) -> dict[tuple[str, str], str]:
-    return {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
-
-
-# --- Menu of the points of the body, in columns
 
 
 Item = tuple[str, str, str]
@@ -63,24 +49,12 @@ NO_POINT = "NONE"
 
 
 def body_point_items(without: str = "") -> list[Item]:
-    """Items of a menu of the body points.
-
-    Args:
-        without: Label of an entry for none; empty for a menu without it.
-    """
+    """Items of a menu of the body points; with an entry for none where that has a label."""
     items: list[Item] = [(NO_POINT, without, "")] if without else []
     for heading, points in COLUMNS:
         items.append(("", heading, ""))
         items += [(point, segment_title(point), "") for point in points]
     return items
-
-
-def point_title(point: str) -> str:
-    """Label of a body point."""
-    return segment_title(point)
-
-
-# --- Assign a motion track of the clip to the body point that it follows
 
 
 class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
@@ -102,11 +76,6 @@ class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Store the choice with the take.
-
-        Raises:
-            InputError: The clip has no such track.
-        """
         take = active_take(context.scene)
         if (self.owner, self.track) not in {(owner, track.name) for owner, track in clip_tracks(take.clip)}:
             raise InputError(f"clip '{take.clip.name}' has no track '{self.track}' of object '{self.owner}'")

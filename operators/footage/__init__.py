@@ -1,7 +1,4 @@
 """Step 1, the footage: the clip, the camera it was filmed with, and how a viewport shows it."""
 
 PROPERTIES = ("properties",)
-MODULES = (
-    "load_footage",
-    "panel",
-)
+MODULES = ("load_footage", "panel")

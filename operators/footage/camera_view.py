@@ -9,15 +9,11 @@ from bpy.app import timers
 
 from ..shell.takes import find_take
 
-MARGIN_PX = 12.0
-"""Margin between the picture and the panels around it."""
-LEAST_SHARE = 0.3
-"""Least free share of a viewport; with less, the picture fills the whole viewport."""
-ZOOMS = (-30.0, 600.0)
-"""Blender's limits."""
+MARGIN_PX = 12.0  # Margin between the picture and the panels around it
+LEAST_SHARE = 0.3  # Least free share of a viewport; with less, the picture fills the whole viewport
+ZOOMS = (-30.0, 600.0)  # Blender's limits
 
-Box = tuple[float, float, float, float]
-"""Left, bottom, right, top [px]."""
+Box = tuple[float, float, float, float]  # Left, bottom, right, top [px]
 View = tuple[float, float, float]
 """Zoom and offset of a camera view, as Blender keeps them in single precision."""
 
@@ -40,10 +36,7 @@ def fitting_view(
     view = area.spaces.active.region_3d
     if region is None or view is None or min(region.width, region.height) < 2:
         return None
-    size = (
-        render.resolution_x * render.pixel_aspect_x,
-        render.resolution_y * render.pixel_aspect_y,
-    )
+    size = (render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y)
     picture = picture_at_factor_one((region.width, region.height), size, camera.sensor_fit)
     zoom, offset = camera_view((region.width, region.height), free_box(area, region), picture)
     return zoom, *offset
@@ -77,10 +70,7 @@ def picture_at_factor_one(
 ) -> tuple[float, float]:
     """Return width and height [px] of the camera's picture with one side as long as the region's: factor one.
 
-    Args:
-        region_size: Width and height [px].
-        picture: Width and height; only their ratio counts.
-        sensor_fit: The side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
+    The sensor fit tells the side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
     """
     if sensor_fit == "AUTO":
         scale = max(region_size) / max(picture)
@@ -97,11 +87,6 @@ def camera_view(
 
     Blender draws the picture scaled by a factor, the square of (sqrt(2) + zoom / 50) / 2; an offset is a
     share of twice the region's size times that factor.
-
-    Args:
-        region_size: Width and height [px].
-        free: The part of the region.
-        picture: Width and height of the picture at factor one [px].
     """
     left, bottom, right, top = free
     room = max(right - left - 2.0 * MARGIN_PX, 1.0), max(top - bottom - 2.0 * MARGIN_PX, 1.0)
@@ -109,10 +94,7 @@ def camera_view(
     zoom = min(max((2.0 * sqrt(factor) - sqrt(2.0)) * 50.0, ZOOMS[0]), ZOOMS[1])
     factor = ((sqrt(2.0) + zoom / 50.0) / 2.0) ** 2
     away = (0.5 * (region_size[0] - left - right), 0.5 * (region_size[1] - bottom - top))
-    return zoom, (
-        away[0] / (2.0 * factor * region_size[0]),
-        away[1] / (2.0 * factor * region_size[1]),
-    )
+    return zoom, (away[0] / (2.0 * factor * region_size[0]), away[1] / (2.0 * factor * region_size[1]))
 
 
 def viewports(manager: bpy.types.WindowManager) -> Iterator[bpy.types.SpaceView3D]:
@@ -131,14 +113,9 @@ def look_through(space: bpy.types.SpaceView3D, scene: bpy.types.Scene, camera: b
     space.region_3d.view_perspective = "CAMERA"
 
 
-# --- A viewport keeps the footage beside its sidebar
+SAME = 1e-4  # Difference within which views are one; Blender keeps them in single precision
 
-
-SAME = 1e-4
-"""Difference within which views are one; Blender keeps them in single precision."""
-
-_fitted: dict[int, View] = {}
-"""The view that was fitted last, by the pointer of an area."""
+_fitted: dict[int, View] = {}  # The view that was fitted last, by the pointer of an area
 
 
 def keep_beside_sidebar(context: bpy.types.Context) -> None:

@@ -16,15 +16,8 @@ if TYPE_CHECKING:
     from ...core.footage.camera_fit import CameraFit
 
 VERTICAL, LEVEL, ACROSS, HEIGHT = KINDS = ("VERTICAL", "LEVEL", "ACROSS", "HEIGHT")
-PAIR = 2
-"""Lines of a kind after which the next kind is asked for."""
-NEAR_PX = 12.0
-"""Distance in the region within which an end is taken [px at a UI scale of 1]."""
-CLICKED_PX = 6.0
-"""Length below which a line is not drawn yet: its other end follows at the next click."""
-
-LOWEST_M, TALLEST_M = 0.5, 3.0
-"""Limits of a performer's height."""
+NEAR_PX = 12.0  # Distance in the region within which an end is taken [px at a UI scale of 1]
+CLICKED_PX = 6.0  # Length below which a line is not drawn yet: its other end follows at the next click
 
 Pixel = tuple[float, float]
 
@@ -34,43 +27,29 @@ class DrawnLine:
     """A line over the footage."""
 
     kind: str
-    ends: list[Pixel]
-    """Both ends [px of the footage]."""
-    frame: int
-    """Scene frame in which it was drawn."""
-    length: float = 0.0
-    """Known length [m]; 0 for the performer's height."""
+    ends: list[Pixel]  # Both ends [px of the footage]
+    frame: int  # Scene frame in which it was drawn
+    length: float = 0.0  # Known length [m]; 0 for the performer's height
 
 
 @dataclass
 class Drawing:
     """The lines of a running tool."""
 
-    kind: str
-    """Kind of the next line."""
-    stays: bool
-    """Whether the kind stays the same after each line."""
+    kind: str  # Kind of the next line
+    stays: bool  # Whether the kind stays the same after each line
     lines: list[DrawnLine] = field(default_factory=list)
-    held: tuple[int, int] | None = None
-    """Index of the line whose end follows the mouse, and of that end."""
-    last: int | None = None
-    """Index of the line that was drawn or moved last."""
-    typed: str = ""
-    """Digits of a length that is being typed."""
-    fit: "CameraFit | None" = None
-    """What the lines say of the camera; None before there is any."""
-    stature_m: float = 0.0
-    """The performer's height [m]."""
-    of_performer: bool = False
-    """Whether a length that is typed is the performer's height."""
+    held: tuple[int, int] | None = None  # Index of the line whose end follows the mouse, and of that end
+    last: int | None = None  # Index of the line that was drawn or moved last
+    typed: str = ""  # Digits of a length that is being typed
+    fit: "CameraFit | None" = None  # What the lines say of the camera; None before there is any
+    stature_m: float = 0.0  # The performer's height [m]
+    of_performer: bool = False  # Whether a length that is typed is the performer's height
 
     def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
         """Take the end of a line that is near, or begin a new line.
 
-        Args:
-            pixel: Where the mouse is in the footage [px].
-            frame: The scene frame shown.
-            near: Distance in the region from the mouse to a pixel of the footage, as a share of `NEAR_PX`.
+        `near` tells the distance in the region from the mouse to a pixel, as a share of `NEAR_PX`.
         """
         if self.held is not None:  # the second click of a line that is drawn by two
             self.move(pixel)
@@ -90,7 +69,6 @@ class Drawing:
         self.last = self.held[0]
 
     def move(self, pixel: Pixel) -> None:
-        """Let the held end follow the mouse."""
         if self.held is not None:
             number, which = self.held
             self.lines[number].ends[which] = pixel
@@ -98,8 +76,7 @@ class Drawing:
     def release(self, far: Callable[[Pixel, Pixel], float]) -> bool:
         """Let go of the held end, unless its line is too short to be one; return whether it was let go.
 
-        Args:
-            far: Distance in the region between two pixels of the footage, as a share of `CLICKED_PX`.
+        `far` tells the distance in the region between two pixels, as a share of `CLICKED_PX`.
         """
         if self.held is None:
             return False
@@ -109,19 +86,17 @@ class Drawing:
         is_new = self.held == (len(self.lines) - 1, 1) and line.kind == self.kind
         self.held = None
         drawn = sum(other.kind == self.kind for other in self.lines)
-        if is_new and not self.stays and drawn >= PAIR and self.kind in (VERTICAL, LEVEL):
+        if is_new and not self.stays and drawn >= 2 and self.kind in (VERTICAL, LEVEL):
             self.kind = LEVEL if self.kind == VERTICAL else HEIGHT
         return True
 
     def next_kind(self) -> None:
-        """Choose the next kind of line."""
         self.kind, self.stays = KINDS[(KINDS.index(self.kind) + 1) % len(KINDS)], True
 
     def remove(self, near: Callable[[DrawnLine], float]) -> None:
         """Remove the line under the mouse, else the last one; a line that is being drawn first.
 
-        Args:
-            near: Distance in the region from the mouse to a line, as a share of `NEAR_PX`.
+        `near` tells the distance in the region from the mouse to a line, as a share of `NEAR_PX`.
         """
         if not self.lines:
             return
@@ -145,7 +120,7 @@ class Drawing:
             length = 0.0
         if not self.of_performer:
             self.lines[self.last].length = length
-        elif LOWEST_M <= length <= TALLEST_M:
+        elif 0.5 <= length <= 3.0:  # limits of a performer's height [m]
             self.stature_m = length
         return True
 
@@ -155,7 +130,6 @@ class Drawing:
 
     @property
     def complete(self) -> list[DrawnLine]:
-        """The lines with two ends apart."""
         return [line for line in self.lines if line.ends[0] != line.ends[1]]
 
 

@@ -22,6 +22,7 @@ HINTS = {
     "lens": "Lens is kept: level lines that run away from a tilted camera would tell it",
 }
 """What would determine each part of the camera that a picture does not determine."""
+UNITS = {"height": (2, " m"), "tilt": (1, "°"), "roll": (1, "°"), "lens": (1, " mm")}  # Decimals and unit
 MOST_EXCESS = 3.0
 """Ratio of the variance of the distances to the expected one beyond which lines contradict each other."""
 NOTHING_FOUND = (
@@ -32,11 +33,7 @@ CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is sa
 
 
 def fit_take(take: bpy.types.PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
-    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
+    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept."""
     from ...core.footage.camera_fit import fit_camera
 
     camera = still_camera(footage_of(take.id_data, take))
@@ -49,11 +46,7 @@ def is_found(fit: "CameraFit") -> bool:
 
 
 def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
-    """Give the take's camera what was found, and keep in words how sure it is.
-
-    Raises:
-        InputError: Nothing was found; or there is no camera or clip.
-    """
+    """Give the take's camera what was found, and keep in words how sure it is."""
     if not is_found(fit):
         raise InputError(NOTHING_FOUND)
     lens_was_guess = lens_is_guess(take)
@@ -69,24 +62,30 @@ def write_fit(take: bpy.types.PropertyGroup, fit: "CameraFit") -> None:
 def values(fit: "CameraFit") -> str:
     """The camera found, with the deviations of what the picture determines."""
     placement = fit.placement
-    parts = (
-        _value(fit, "height", "Height", "{:.2f}{} m", placement.height_m),
-        _value(fit, "tilt", "Tilt", "{:.1f}{}°", np.degrees(placement.tilt_rad)),
-        _value(fit, "roll", "Roll", "{:.1f}{}°", np.degrees(placement.roll_rad)),
-        _value(fit, "lens", "Lens", "{:.1f}{} mm", fit.camera.lens_mm),
-    )
+    found = {
+        "height": placement.height_m,
+        "tilt": float(np.degrees(placement.tilt_rad)),
+        "roll": float(np.degrees(placement.roll_rad)),
+        "lens": fit.camera.lens_mm,
+    }
+    parts = []
+    for name, value in found.items():
+        digits, unit = UNITS[name]
+        spread, sure = (f" ± {_spread(fit, name)}", "") if name not in fit.kept else ("", " (kept)")
+        parts.append(f"{name.title()} {value:.{digits}f}{spread}{unit}{sure}")
     return "   ".join(parts)
 
 
 def deviations(fit: "CameraFit") -> str:
     """The deviations alone, of what the picture determines."""
-    shown = {
-        "height": f"height ± {fit.std['height']:.2f} m",
-        "tilt": f"tilt ± {np.degrees(fit.std['tilt']):.1f}°",
-        "roll": f"roll ± {np.degrees(fit.std['roll']):.1f}°",
-        "lens": f"lens ± {fit.std['lens']:.1f} mm",
-    }
-    return f"Found: {', '.join(shown[name] for name in shown if name not in fit.kept)}"
+    found = (f"{name} ± {_spread(fit, name)}{UNITS[name][1]}" for name in UNITS if name not in fit.kept)
+    return f"Found: {', '.join(found)}"
+
+
+def _spread(fit: "CameraFit", name: str) -> str:
+    """Standard deviation of a part of the camera in its unit; those of angles are in radians."""
+    digits, unit = UNITS[name]
+    return f"{np.degrees(fit.std[name]) if unit == '°' else fit.std[name]:.{digits}f}"
 
 
 def doubts(fit: "CameraFit", lens_is_guess: bool) -> list[str]:
@@ -96,10 +95,3 @@ def doubts(fit: "CameraFit", lens_is_guess: bool) -> list[str]:
     if fit.excess > MOST_EXCESS:
         sentences.insert(0, CONTRADICTION.format(px=fit.misfit_px))
     return sentences
-
-
-def _value(fit: "CameraFit", name: str, title: str, form: str, value: float) -> str:
-    spread = fit.std[name] if name in ("height", "lens") else float(np.degrees(fit.std[name]))
-    digits = 2 if name == "height" else 1
-    sure = f" ({'kept'})" if name in fit.kept else ""
-    return f"{title} {form.format(value, '' if name in fit.kept else f' ± {spread:.{digits}f}')}{sure}"

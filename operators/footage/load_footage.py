@@ -1,4 +1,4 @@
-"""Use a clip that is in the .blend file already."""
+"""A take's footage: loaded, found again or used from this file, and its guessed camera confirmed."""
 
 from pathlib import Path
 
@@ -48,14 +48,11 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Put the clip behind the take's camera."""
         scene, clips = context.scene, bpy.data.movieclips
         clip = clips.get(self.clip) if self.clip else scene.active_clip or clips[0]
         if clip is None:
-            self.report(
-                {"ERROR"},
-                f"This file has no clip '{self.clip}'; it has {', '.join(each.name for each in clips)}",
-            )
+            names = ", ".join(each.name for each in clips)
+            self.report({"ERROR"}, f"This file has no clip '{self.clip}'; it has {names}")
             return {"CANCELLED"}
         take = None if self.as_new_take else find_take(scene)
         take = take or add_take(scene, take_name(Path(bpy.path.abspath(clip.filepath, library=clip.library))))
@@ -63,9 +60,6 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         look_through_camera(context, take)
         show_range(context)
         return None
-
-
-# --- Confirm the guessed lens
 
 
 def guessed_lens(context: bpy.types.Context) -> str | None:
@@ -83,14 +77,10 @@ class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
     requirements = (guessed_lens,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Clear the guess in every take with this camera."""
         camera = active_take(context.scene).camera
         for take in context.scene.keymark.takes:
             if take.camera == camera:
                 take.guessed_lens_mm = 0.0
-
-
-# --- Confirm the place of the camera that was guessed
 
 
 def guessed_placement(context: bpy.types.Context) -> str | None:
@@ -108,31 +98,17 @@ class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
     requirements = (guessed_placement,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Clear the guess in every take with this camera."""
         confirm_placement(active_take(context.scene))
 
 
-# --- The cube of Blender's startup file, which stands where the performer does
-
-
-NAME, CORNERS = "Cube", 8
-SIZE_M = 2.0
-
-
 def hide_startup_cube(context: bpy.types.Context) -> None:
-    """Hide the cube of Blender's startup file, where nobody has touched it; Alt H brings it back."""
-    cube = context.view_layer.objects.get(NAME)
-    if cube is not None and _is_untouched(cube):
+    """Hide the cube of Blender's startup file where nobody has touched it; Alt H brings it back."""
+    cube = context.view_layer.objects.get("Cube")
+    if cube is None or cube.type != "MESH" or len(cube.data.vertices) != 8:
+        return
+    changed = len(cube.modifiers) or cube.animation_data is not None or cube.location.length >= 1e-4
+    if not changed and all(abs(length - 2.0) < 1e-4 for length in cube.dimensions):
         cube.hide_set(True)
-
-
-def _is_untouched(cube: bpy.types.Object) -> bool:
-    plain = cube.type == "MESH" and len(cube.data.vertices) == CORNERS and not len(cube.modifiers)
-    same_size = all(abs(length - SIZE_M) < 1e-4 for length in cube.dimensions)
-    return bool(plain and same_size and cube.location.length < 1e-4 and cube.animation_data is None)
-
-
-# --- Load a clip as a take's footage, behind its camera
 
 
 PATTERNS = ";".join(f"*{extension}" for extension in VIDEOS + IMAGES)
@@ -170,7 +146,6 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         return self.execute(context)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Load the clip and put it behind the camera."""
         from ..bridge.footage_to_scene import load_footage
 
         scene = context.scene
@@ -182,23 +157,14 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
         hide_startup_cube(context)
         look_through_camera(context, take)
         show_range(context)
-        self._report_footage(context, take)
-
-    def _report_footage(self, context: bpy.types.Context, take: bpy.types.PropertyGroup) -> None:
-        clip = take.clip
-        self.report(
-            {"INFO"},
-            f"Loaded {clip.name}: {clip.frame_duration} frames of {clip.size[0]} x {clip.size[1]} pixels",
+        clip, extent = (
+            take.clip,
+            f"{take.clip.frame_duration} frames of {take.clip.size[0]} x {take.clip.size[1]}",
         )
+        self.report({"INFO"}, f"Loaded {clip.name}: {extent} pixels")
         if lens_is_guess(take):
-            self.report(
-                {"INFO"},
-                f"The lens is a guess: {take.guessed_lens_mm:.1f} mm; set it in the Footage panel if "
-                "you know it",
-            )
-
-
-# --- Relocate a clip whose file was moved
+            guess = f"The lens is a guess: {take.guessed_lens_mm:.1f} mm"
+            self.report({"INFO"}, f"{guess}; set it in the Footage panel if you know it")
 
 
 class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
@@ -219,7 +185,6 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, beginning at the clip's old path."""
         self.filepath = bpy.path.abspath(active_take(context.scene).clip.filepath)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
@@ -244,9 +209,8 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
             for other in scene.keymark.takes:
                 if other.clip == clip and scene.library is None:
                     update_clip_state(other)
-        differs = all(size) and (found.size != size or clip.frame_duration != count)
-        if not differs:
-            give_notices(take, "footage", "clip")
+        give_notices(take, "footage", "clip")
+        if not all(size) or (found.size == size and clip.frame_duration == count):
             self.report({"INFO"}, f"Found {clip.name}")
             return
         sentence = (

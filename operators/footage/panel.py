@@ -59,9 +59,6 @@ def _draw_guess(column: bpy.types.UILayout, text: str, operator: str) -> None:
     row.operator(operator, text="", icon="CHECKMARK")
 
 
-# --- The panel of step 1
-
-
 class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     """Clip, camera and the take's files."""
 
@@ -70,16 +67,13 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How long the clip is."""
         return f"{take.clip.frame_duration} frames" if take.clip is not None else ""
 
     @classmethod
     def is_wrong(cls, take: bpy.types.PropertyGroup) -> bool:
-        """Whether the clip's file is missing."""
         return bool(take.clip_state.missing)
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw clip, camera and the take's files."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "clip")
         if take.clip is not None:
@@ -104,7 +98,6 @@ class KEYMARK_MT_clips(bpy.types.Menu):
     bl_label = "Use Clip of This File"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw one entry a clip."""
         take = find_take(context.scene)
         for clip in bpy.data.movieclips:
             entry = self.layout.operator("keymark.use_clip", text=clip.name, translate=False, icon="TRACKER")

@@ -1,6 +1,8 @@
 """Height, tilt and roll of a take's camera as fields: they read and write the camera object."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import bpy
 
@@ -8,8 +10,7 @@ from ..bridge.camera_placement import fixed_reason, read_placement, write_placem
 from ..shell.base_operator import capitalized
 from ..shell.takes import NO_GUESS, find_take
 
-DECIMALS = 5
-"""Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0."""
+DECIMALS = 5  # Digits that are shown: Blender's own matrices have about as many, and a level camera shows 0
 
 
 def still_camera(context: bpy.types.Context) -> str | None:
@@ -26,45 +27,20 @@ def confirm_placement(take: bpy.types.PropertyGroup) -> None:
             other.guessed_placement = NO_GUESS
 
 
-def get_height(take: bpy.types.PropertyGroup) -> float:
-    """Height of the take's camera above the floor [m]."""
-    return 0.0 if take.camera is None else round(read_placement(take.camera).height_m, DECIMALS)
+def placement_accessors(field: str) -> dict[str, Callable[..., Any]]:
+    """Getter and setter of a property for a field of the placement of a take's camera."""
 
+    def get(take: bpy.types.PropertyGroup) -> float:
+        return 0.0 if take.camera is None else round(getattr(read_placement(take.camera), field), DECIMALS)
 
-def set_height(take: bpy.types.PropertyGroup, value: float) -> None:
-    """Raise or lower the take's camera."""
-    _change(take, height_m=value)
+    def change(take: bpy.types.PropertyGroup, value: float) -> None:
+        """What was entered is no guess, whatever the number."""
+        if fixed_reason(take.camera) is None:
+            write_placement(take.camera, replace(read_placement(take.camera), **{field: value}))
+            confirm_placement(take)
+            take.camera_findings = ""
 
-
-def get_tilt(take: bpy.types.PropertyGroup) -> float:
-    """Angle of the camera's view above the horizon [rad]."""
-    return 0.0 if take.camera is None else round(read_placement(take.camera).tilt_rad, DECIMALS)
-
-
-def set_tilt(take: bpy.types.PropertyGroup, value: float) -> None:
-    """Tilt the take's camera."""
-    _change(take, tilt_rad=value)
-
-
-def get_roll(take: bpy.types.PropertyGroup) -> float:
-    """Turn of the camera about its view [rad]."""
-    return 0.0 if take.camera is None else round(read_placement(take.camera).roll_rad, DECIMALS)
-
-
-def set_roll(take: bpy.types.PropertyGroup, value: float) -> None:
-    """Turn the take's camera about its view."""
-    _change(take, roll_rad=value)
-
-
-def _change(take: bpy.types.PropertyGroup, **change: float) -> None:
-    """Change the camera's placement: one that was entered is no guess, whatever the number."""
-    if fixed_reason(take.camera) is None:
-        write_placement(take.camera, replace(read_placement(take.camera), **change))
-        confirm_placement(take)
-        take.camera_findings = ""
-
-
-# --- Properties of a take's footage
+    return {"get": get, "set": change}
 
 
 class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
@@ -77,15 +53,10 @@ class KEYMARK_PG_clip_state(bpy.types.PropertyGroup):
         name="Contents", description="Digest of the clip's file", options={"HIDDEN"}
     )
     rate: bpy.props.FloatProperty(
-        name="Rate",
-        description="Frames per second of the clip on the timeline",
-        min=0.0,
-        options={"HIDDEN"},
+        name="Rate", description="Frames per second of the clip on the timeline", min=0.0, options={"HIDDEN"}
     )
     variable_rate: bpy.props.BoolProperty(
-        name="Variable Rate",
-        description="The clip's frames are unevenly spaced in time",
-        options={"HIDDEN"},
+        name="Variable Rate", description="The clip's frames are unevenly spaced in time", options={"HIDDEN"}
     )
 
 

@@ -13,22 +13,19 @@ from ..shell.results import clear_review
 from ..shell.takes import NO_GUESS, as_numbers, find_take, footage_of
 from .camera_view import fit_beside_sidebar, look_through
 
-GENERIC_STEM = "clip"
-"""File name, without its extension, of the clip in every saved take's folder."""
-SAMPLED_FRAMES = 90
-"""Frames whose times are checked for a variable rate; a phone's rate varies from the start."""
+GENERIC_STEM = "clip"  # File name, without its extension, of the clip in every saved take's folder
 VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v", ".mpg", ".mts")
-IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
-"""Extensions of the files that footage is loaded from."""
+IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")  # Extensions of the files that footage is loaded from
 
 
 def give_footage(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> None:
     """Put a clip behind a take's camera; the scene's size, rate and range follow."""
     scene = take.id_data
     attached = attach_footage(scene, clip, _camera_for(take, clip), take.guessed_lens_mm)
-    take.guessed_lens_mm = attached.guessed_lens_mm or _guess_of_others(take, attached.camera)
+    shared = [other for other in scene.keymark.takes if other != take and other.camera == attached.camera]
+    take.guessed_lens_mm = attached.guessed_lens_mm or (shared[0].guessed_lens_mm if shared else 0.0)
     if attached.camera != take.camera:
-        take.guessed_placement = _guessed_placement_of_others(take, attached.camera)
+        take.guessed_placement = tuple(shared[0].guessed_placement) if shared else NO_GUESS
     if attached.guessed_placement is not None:
         take.guessed_placement = as_numbers(attached.guessed_placement)
     take.camera = attached.camera
@@ -152,24 +149,10 @@ def _camera_for(take: bpy.types.PropertyGroup, clip: bpy.types.MovieClip) -> bpy
     return None
 
 
-def _guess_of_others(take: bpy.types.PropertyGroup, camera: bpy.types.Object) -> float:
-    """Return the guessed focal length of another take with the same camera; 0 for none."""
-    takes = take.id_data.keymark.takes
-    return next((other.guessed_lens_mm for other in takes if other != take and other.camera == camera), 0.0)
-
-
-def _guessed_placement_of_others(
-    take: bpy.types.PropertyGroup, camera: bpy.types.Object
-) -> tuple[float, ...]:
-    """Return the guessed placement of another take with the same camera; zeros for none."""
-    takes = take.id_data.keymark.takes
-    others = (tuple(other.guessed_placement) for other in takes if other != take and other.camera == camera)
-    return next(others, NO_GUESS)
-
-
 def _has_variable_rate(take: bpy.types.PropertyGroup) -> bool:
     try:
         stamps = footage_of(take.id_data, take).open().source.time_stamps()
-        return is_variable_frame_rate(list(islice(stamps, SAMPLED_FRAMES)))
+        # A phone's rate varies from the start.
+        return is_variable_frame_rate(list(islice(stamps, 90)))
     except (InputError, ModuleNotFoundError):  # reported when the clip is read
         return False

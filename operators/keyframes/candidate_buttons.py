@@ -51,9 +51,6 @@ def _limbs(names: list[str]) -> list[str]:
     return words
 
 
-# --- The candidates of a frame as buttons in their figures' colors, keyed already or offered
-
-
 PERCENT_UNITS = 2.1
 
 
@@ -76,13 +73,9 @@ def draw_candidates_head(
 def draw_candidates(
     layout: bpy.types.UILayout, match: bpy.types.PropertyGroup, operator: str, is_shown: bool = True
 ) -> None:
-    """Draw a row for each candidate, whose button calls an operator with its index.
+    """Draw a row for each candidate of a frame, whose button calls an operator with its index.
 
-    Args:
-        layout: Where they are drawn.
-        match: Their frame.
-        operator: The operator.
-        is_shown: Whether the frame has one of them; if not, it was posed in another way.
+    None is marked where the frame was posed in another way.
     """
     for index, candidate in enumerate(match.candidates):
         row = layout.row(align=True)

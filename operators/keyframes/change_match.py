@@ -1,4 +1,4 @@
-"""Jump to the next or previous found keyframe, or to a doubtful one."""
+"""Found keyframes: jump to them, accept, remove and replace them."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from ..shell.requirements import actor, idle, matches
 from ..shell.takes import active_take, find_take
 from .candidate_buttons import candidate_title
 from .found_keyframes import chosen_match, undecided_matches
-from .improve_neighbors import improve_neighbors
+from .store_keyframe import improve_neighbors
 
 
 class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
@@ -35,19 +35,15 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the direction."""
         if properties.only_doubtful:
             return (
                 "Go to the most doubtful found keyframe: first those in which something that is seen "
                 "contradicts, then the least sure ones. Accept it, take another candidate, or correct "
                 "the pose and store it; pressed once more, it goes on to the next"
             )
-        if properties.direction == "NEXT":
-            return "Go to the next found keyframe"
-        return "Go to the previous found keyframe"
+        return f"Go to the {properties.direction.lower()} found keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Choose it in the list, which goes there."""
         take = active_take(context.scene)
         invalidate_keyed_frames()
         wanted = self._doubtful(take) if self.only_doubtful else self._in_order(context.scene, take)
@@ -75,9 +71,6 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         return next((place for place in reversed(places) if frames[place] < now - 1e-3), places[-1])
 
 
-# --- Accept a found keyframe as the animator's own
-
-
 class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     """Count this frame as posed by you: it is trusted as much, and finding again leaves it alone"""
 
@@ -87,7 +80,6 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Turn its keys into the animator's."""
         from ..bridge.keyframes import take_over
 
         take = active_take(context.scene)
@@ -101,17 +93,9 @@ class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
         note_contradictions(take, frame, ())
         invalidate_keyed_frames()
         improved = improve_neighbors(context, take, frame)
-        if improved:
-            self.report(
-                {"INFO"},
-                f"Frame {frame:g} counts as posed now; {improved} found ones around it were posed anew",
-            )
-        else:
-            self.report({"INFO"}, f"Frame {frame:g} counts as posed now")
+        also = f"; {improved} found ones around it were posed anew" if improved else ""
+        self.report({"INFO"}, f"Frame {frame:g} counts as posed now{also}")
         return None
-
-
-# --- Remove a found keyframe
 
 
 class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
@@ -123,7 +107,6 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
     requirements = (actor, matches, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the next in the list is chosen."""
         from ..bridge.keyframes import remove_keyframes
 
         scene = context.scene
@@ -139,9 +122,6 @@ class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
         matching.matches.remove(removed)
         matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
         self.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
-
-
-# --- Remove all found keyframes that the animator has not decided on
 
 
 class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
@@ -166,9 +146,6 @@ class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
         return None
 
 
-# --- Replace the posture of a found keyframe by another candidate
-
-
 class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
     """Key this posture instead; what is keyed at the frame is replaced"""
 
@@ -186,7 +163,6 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the candidate's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         matching = take.matching if take is not None else None
         if matching is None or matching.shown_match >= len(matching.matches):
@@ -198,17 +174,14 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         return f"{said}. Key this posture instead; what is keyed at the frame is replaced"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Key the candidate, and go to its frame."""
         from .match_edits import key_candidate
 
         take = active_take(context.scene)
         match = chosen_match(take)
         if self.candidate >= len(match.candidates):
-            self.report(
-                {"ERROR"},
-                f"Frame {match.frame:g} has {len(match.candidates)} candidates; candidate must be 0 to "
-                f"{len(match.candidates) - 1}",
-            )
+            count = len(match.candidates)
+            sentence = f"Frame {match.frame:g} has {count} candidates; candidate must be 0 to {count - 1}"
+            self.report({"ERROR"}, sentence)
             return {"CANCELLED"}
         match.chosen, match.by_hand = self.candidate, True
         key_candidate(take, match)
@@ -216,13 +189,8 @@ class KEYMARK_OT_replace_match(BaseOperator, bpy.types.Operator):
         frame, number = float(match.frame), self.candidate + 1
         note_contradictions(take, frame, ())
         improved = improve_neighbors(context, take, frame)  # moves the entries of others in memory
-        if improved:
-            self.report(
-                {"INFO"},
-                f"Frame {frame:g} shows candidate {number}; {improved} found ones around it were posed anew",
-            )
-        else:
-            self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}")
+        also = f"; {improved} found ones around it were posed anew" if improved else ""
+        self.report({"INFO"}, f"Frame {frame:g} shows candidate {number}{also}")
         return None
 
 

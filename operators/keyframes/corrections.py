@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 import bpy
+import numpy as np
 
 from ...core.body.human import HUMAN
 from ...core.errors import InputError
@@ -13,7 +14,7 @@ from ..shell.keyed_frames import SAME_FRAME, has_frame, invalidate_keyed_frames,
 from ..shell.requirements import actor, camera, footage, idle, keyframes
 from ..shell.results import reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage
-from .flip_ways import TITLES, limb_selected, selected_limbs
+from .flip_ways import TITLES, limb_selected, next_way, selected_limbs
 from .found_keyframes import known_matches
 from .store_keyframe import key_pose
 
@@ -37,13 +38,7 @@ def shown_pose(take: bpy.types.PropertyGroup) -> "tuple[Body, Posture]":
 
 
 def camera_now(scene: bpy.types.Scene, take: bpy.types.PropertyGroup) -> "Camera":
-    """The take's camera as it stands in the current frame.
-
-    Raises:
-        InputError: There is no camera or clip, or the camera is of an unsupported type.
-    """
-    import numpy as np
-
+    """The take's camera as it stands in the current frame."""
     from ..bridge.camera_placement import read_camera
 
     return read_camera(footage_of(scene, take), np.array([scene.frame_current_final]))
@@ -72,9 +67,6 @@ def set_corrected(
         operator.report({"INFO"}, f"{improved} found keyframes around this one were posed anew")
 
 
-# --- Copy the pose of the keyframe before or after this frame
-
-
 DIRECTIONS = (
     ("PREVIOUS", "Previous", "Copy the pose of the keyframe before this frame; the performer stays in place"),
     ("NEXT", "Next", "Copy the pose of the keyframe after this frame; the performer stays in place"),
@@ -95,7 +87,6 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         return next(text for name, _, text in DIRECTIONS if name == properties.direction)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
@@ -108,10 +99,8 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         invalidate_keyed_frames()
         neighbor = _neighbor(keyframes_of(take), scene.frame_current_final, self.direction)
         if neighbor is None:
-            if self.direction == "NEXT":
-                self.report({"INFO"}, "There is no keyframe after this frame")
-            else:
-                self.report({"INFO"}, "There is no keyframe before this frame")
+            side = "after" if self.direction == "NEXT" else "before"
+            self.report({"INFO"}, f"There is no keyframe {side} this frame")
             return {"CANCELLED"}
         body, here = shown_pose(take)
         with showing_action(take.armature, take.keyframe_action), at_scene_frame(scene) as go_to:
@@ -129,10 +118,6 @@ def _neighbor(frames: tuple[float, ...], here: float, direction: str) -> float |
     return max((frame for frame in frames if frame < here - SAME_FRAME), default=None)
 
 
-# --- Turn the performer to face the camera, left, right or away
-
-
-AUTOMATIC = "AUTO"
 FACINGS = (
     ("CAMERA", "Camera", "The performer faces the camera"),
     ("LEFT", "Left", "The performer faces the left of the picture"),
@@ -140,7 +125,7 @@ FACINGS = (
     ("AWAY", "Away", "The performer faces away from the camera"),
 )
 SIDES = (
-    (AUTOMATIC, "Automatic", "Whatever explains the footage best, or else the most natural posture"),
+    ("AUTO", "Automatic", "Whatever explains the footage best, or else the most natural posture"),
     ("STAY", "Stay in the Picture", "Each arm and leg stays where it is seen; the trunk turns between them"),
     ("EXCHANGE", "Change Places", "Left and right arms and legs change places, so that the outline stays"),
     ("TURN", "Turn with the Trunk", "The pose stays and turns as a whole, as on a turntable"),
@@ -167,18 +152,16 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         said = next(text for name, _, text in FACINGS if name == properties.facing)
         return f"{said}, at the same place; the pose is fitted to the footage again"
 
     def run(self, context: bpy.types.Context) -> None:
-        """Turn the pose, fit it, and set the likeliest."""
         from ...core.posing.turned import Facing, Sides, facing_of, turned
 
         take, scene = active_take(context.scene), context.scene
         seen = camera_now(scene, take)
         body, posture = shown_pose(take)
-        wanted = list(Sides) if self.sides == AUTOMATIC else [Sides[self.sides]]
+        wanted = list(Sides) if self.sides == "AUTO" else [Sides[self.sides]]
         facing = Facing[self.facing]
         ways = [turned(body, posture, seen, facing, sides) for sides in wanted]
         found = _fitted(context, take, ways) if self.fit and points_to_follow(context) is None else []
@@ -187,10 +170,8 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         chosen = fitted or min(ways, key=lambda way: way.strain).posture
         set_corrected(self, context, take, chosen)
         said = next(name for value, name, _ in FACINGS if value == self.facing)
-        if fitted is None:
-            self.report({"INFO"}, f"Turned: {said}; not fitted to the footage")
-        else:
-            self.report({"INFO"}, f"Turned and fitted: {said}")
+        fits = f"Turned and fitted: {said}"
+        self.report({"INFO"}, fits if fitted is not None else f"Turned: {said}; not fitted to the footage")
 
 
 def _fitted(
@@ -219,12 +200,6 @@ def _fitted(
     return [posture for _, posture in sorted(found, key=lambda each: each[0])]
 
 
-# --- Flip a limb's depth
-
-
-SELECTED = "SELECTED"
-
-
 def limb_chosen(context: bpy.types.Context) -> str | None:
     """A limb is selected, or joints are being dragged, where the one under the mouse counts."""
     return None if job_is_running(context, DRAGGING) else limb_selected(context)
@@ -242,21 +217,18 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         name="Part",
         description="The part of the body that is flipped",
         items=[
-            (SELECTED, "Selected", "The part of which a bone is selected"),
+            ("SELECTED", "Selected", "The part of which a bone is selected"),
             *((name, title, "This part of the body") for name, title in TITLES.items()),
         ],
         options={"SKIP_SAVE"},
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Flip the parts, and say which of several ways they are shown in."""
         take, scene = active_take(context.scene), context.scene
-        limbs = selected_limbs(take) if self.limb == SELECTED else [self.limb]
+        limbs = selected_limbs(take) if self.limb == "SELECTED" else [self.limb]
         if not limbs:
             self.report({"WARNING"}, "Select a bone of an arm, a leg or the trunk first")
             return {"CANCELLED"}
-        from .flip_ways import next_way
-
         seen = camera_now(scene, take)
         body, posture = shown_pose(take)
         said = []
@@ -264,7 +236,9 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
             found = next_way(take.armature, scene.frame_current_final, limb, body, posture, seen)
             if found is not None:
                 posture, number, count = found
-                said.append(_said(limb, number, count))
+                said.append(
+                    f"{TITLES[limb]}: way {number} of {count}" if number else f"{TITLES[limb]} as it was"
+                )
         if not said:
             self.report(
                 {"WARNING"}, "The selected part lies flat in the picture, or its joints allow no other way"
@@ -275,17 +249,6 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
         return None
 
 
-def _said(limb: str, number: int, count: int) -> str:
-    title = TITLES[limb]
-    if number == 0:
-        return f"{title} as it was"
-    return f"{title}: way {number} of {count}"
-
-
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_copy_neighbor,
-        KEYMARK_OT_turn_performer,
-        KEYMARK_OT_flip_depth,
-    )
+    (KEYMARK_OT_copy_neighbor, KEYMARK_OT_turn_performer, KEYMARK_OT_flip_depth)
 )

@@ -1,4 +1,4 @@
-"""One drag of a joint in a 3D view: from movements of the mouse to the posture that follows."""
+"""Dragging the actor's joints in a 3D view: from movements of the mouse to the posture that follows."""
 
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -9,8 +9,8 @@ import numpy as np
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
 from ..bridge.object_space import joint_places
-from ..follow.tracks import point_title
-from ..overlays import tools
+from ..follow.marker_properties import segment_title
+from ..overlays.tools import Handles, show_handles
 from ..shell.base_operator import BaseOperator, reported
 from ..shell.footage_clicks import NAVIGATION, WorldInRegion, view_under
 from ..shell.job_progress import job_is_running
@@ -24,52 +24,32 @@ if TYPE_CHECKING:
     from ..bridge.scene_frames import Pose
 
 
-PRECISE = 0.1
-"""Share of the mouse's way that counts with Shift held, as in Blender's own transforms."""
-
-
 @dataclass
 class JointDrag:
     """A joint that is being dragged."""
 
     joint: str
     view: WorldInRegion
-    start: Array
-    """(3,) where the joint was [m]."""
-    position: Array
-    """(2,) where the view showed it [px]."""
+    start: Array  # (3,) where the joint was [m]
+    position: Array  # (2,) where the view showed it [px]
     body: "Body"
-    posture: "Posture"
-    """The posture at the beginning."""
-    pose: "Pose"
-    """The channels of the actor's bones at the beginning, to restore them."""
-    mouse: tuple[int, int]
-    """Where the mouse was last, in the window [px]."""
+    posture: "Posture"  # The posture at the beginning
+    pose: "Pose"  # The channels of the actor's bones at the beginning, to restore them
+    mouse: tuple[int, int]  # Where the mouse was last, in the window [px]
     moved: Array = field(default_factory=lambda: np.zeros(2))
     """How far it has been dragged across the view [px]."""
-    depth_m: float = 0.0
-    """How far it has been pushed away from the viewer [m]."""
+    depth_m: float = 0.0  # How far it has been pushed away from the viewer [m]
 
     def follow(self, event: bpy.types.Event) -> None:
         """Take a movement of the mouse: across the view, or in depth with Ctrl held, where up is away."""
         step = np.array([event.mouse_x - self.mouse[0], event.mouse_y - self.mouse[1]], dtype=np.float64)
         self.mouse = event.mouse_x, event.mouse_y
-        step *= PRECISE if event.shift else 1.0
+        step *= 0.1 if event.shift else 1.0  # as in Blender's own transforms
         if event.ctrl:
             aside = self.view.place(self.position + [1.0, 0.0], self.start)
             self.depth_m += float(step[1]) * float(np.linalg.norm(aside - self.start))
         else:
             self.moved = self.moved + step
-
-    @property
-    def has_moved(self) -> bool:
-        """Whether the joint was dragged anywhere."""
-        return bool(self.moved.any()) or self.depth_m != 0.0
-
-    @property
-    def pushed(self) -> bool:
-        """Whether it was dragged in depth."""
-        return self.depth_m != 0.0
 
     @property
     def sight(self) -> Array:
@@ -83,9 +63,6 @@ class JointDrag:
         return np.asarray(across + self.depth_m * self.sight)
 
 
-# --- Move a joint of the actor to a place, as dragging does
-
-
 class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     """Move a joint of the actor to a place; the limb follows, with its lengths and within its joint limits"""
 
@@ -97,7 +74,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     joint: bpy.props.EnumProperty(
         name="Joint",
         description="The joint; left and right are the performer's own",
-        items=[(name, point_title(name), "Move this joint") for name in HUMAN.point_names],
+        items=[(name, segment_title(name), "Move this joint") for name in HUMAN.point_names],
     )
     place: bpy.props.FloatVectorProperty(
         name="Place", description="Where to, in the world", subtype="TRANSLATION", size=3
@@ -114,7 +91,6 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Set the pose, and the keyframe of this frame if there is one."""
         from ...core.posing.dragged import dragged
 
         take = active_take(context.scene)
@@ -125,11 +101,6 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
         set_corrected(self, context, take, moved)
 
 
-# --- Drag the actor's joints in a 3D view
-
-
-GRAB_PX = 18.0
-"""Distance of the mouse from a joint below which a press takes hold of it."""
 ENDING = {"RET", "NUMPAD_ENTER", "RIGHTMOUSE", "ESC"}
 VIEWS = {*(f"NUMPAD_{digit}" for digit in range(10)), "NUMPAD_PERIOD", "ACCENT_GRAVE"}
 """Keys that change the view: depth is corrected from the side."""
@@ -151,19 +122,16 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     bl_label = "Drag Joints"
     bl_options = {"REGISTER"}  # each drag is a step of undo of its own
 
-    _drag: Any = None
-    """The running drag; Blender would evaluate a type named here."""
+    _drag: Any = None  # The running drag; Blender would evaluate a type named here
     _handles: Any = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether there is an actor, and no job runs."""
         return all_met(cls, context, actor, idle, not_dragging)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the joints, and wait for the mouse."""
-        self._handles = tools.Handles()
-        tools.show_handles(self._handles)
+        self._handles = Handles()
+        show_handles(self._handles)
         context.window_manager.modal_handler_add(self)
         _show_keys(context)
         return {"RUNNING_MODAL"}
@@ -173,7 +141,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         return {"CANCELLED"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Hover, drag, or end."""
         take = find_take(context.scene)
         if take is None or actor(context) is not None:
             self.cancel(context)
@@ -206,7 +173,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """End the tool; a drag that is not finished is taken back. Blender calls this as well."""
         self._restore(context)
-        tools.show_handles(None)
+        show_handles(None)
         if context.window is not None:  # None while Blender closes it or opens another file
             context.workspace.status_text_set(None)
             context.window.cursor_modal_restore()
@@ -220,7 +187,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         view: WorldInRegion | None,
         event: bpy.types.Event,
     ) -> None:
-        """Mark the joint under the mouse."""
         hovered = None if view is None else nearest_joint(take, view, event.mouse_x, event.mouse_y)
         if hovered == self._handles.hovered:
             return
@@ -234,7 +200,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         redraw_editors(context, "VIEW_3D")
 
     def _begin(self, take: bpy.types.PropertyGroup, view: WorldInRegion, event: bpy.types.Event) -> None:
-        """Take hold of the joint under the mouse."""
         joint = self._handles.hovered
         if joint is None:
             return
@@ -257,16 +222,10 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
             _show_keys(context)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self._restore(context)
-            if drag.has_moved:
+            if drag.moved.any() or drag.depth_m != 0.0:
                 # As an operator of its own, so that each drag is one step of undo.
-                bpy.ops.keymark.move_joint(
-                    "EXEC_DEFAULT",
-                    True,
-                    joint=drag.joint,
-                    place=drag.place,
-                    sight=drag.sight,
-                    pushed=drag.pushed,
-                )
+                ways = {"place": drag.place, "sight": drag.sight, "pushed": drag.depth_m != 0.0}
+                bpy.ops.keymark.move_joint("EXEC_DEFAULT", True, joint=drag.joint, **ways)
             _show_keys(context)
         elif event.type == "MOUSEMOVE":
             drag.follow(event)
@@ -276,7 +235,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _restore(self, context: bpy.types.Context) -> None:
-        """Give the actor the pose from before the drag."""
         drag, self._drag = self._drag, None
         take = find_take(context.scene) if context.scene is not None else None
         if drag is not None and take is not None and take.armature is not None:
@@ -295,7 +253,7 @@ def nearest_joint(
     positions = [view.position(place) for place in joint_places(take.armature)]
     away = [np.inf if each is None else float(np.linalg.norm(each - mouse)) for each in positions]
     nearest = int(np.argmin(away))
-    reach = GRAB_PX * (float(bpy.context.preferences.system.ui_scale) or 1.0)
+    reach = 18.0 * (float(bpy.context.preferences.system.ui_scale) or 1.0)
     return HUMAN.point_names[nearest] if away[nearest] <= reach else None
 
 
@@ -304,7 +262,7 @@ def _preview(take: bpy.types.PropertyGroup, drag: JointDrag) -> None:
     from ...core.posing.dragged import dragged
     from ..bridge.pose import write_posture
 
-    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.pushed)
+    moved = dragged(drag.body, drag.posture, drag.joint, drag.place, drag.sight, drag.depth_m != 0.0)
     write_posture(take.armature, moved)
 
 
@@ -312,14 +270,9 @@ def _show_keys(context: bpy.types.Context, joint: str = "", dragged: bool = Fals
     """Show in the status bar what keys do now, with no joint, over one or while it is dragged."""
     words = IDLE_KEYS
     if joint:
-        title = point_title(joint)
+        title = segment_title(joint)
         words = DRAG_KEYS.format(joint=title) if dragged else HOVER_KEYS.format(joint=title, keys=words)
     context.workspace.status_text_set(words)
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_move_joint,
-        KEYMARK_OT_drag_joints,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_move_joint, KEYMARK_OT_drag_joints))

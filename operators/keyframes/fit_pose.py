@@ -1,4 +1,4 @@
-"""Poses offered for a frame that is not keyed: what fitting it has found, the shown one first."""
+"""Fit the pose of a frame to the footage, and show the poses that it may have; nothing is keyed."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -32,9 +32,6 @@ def offer_poses(take: bpy.types.PropertyGroup, frame: float, candidates: Sequenc
         add_candidate(offered, each.posture, each.name, each.mirrored, each.confidence)
 
 
-# --- Pose the actor as another of the poses that the current frame may show
-
-
 class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
     """Pose the actor like this; nothing is keyed until you store it"""
 
@@ -49,7 +46,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the pose's whole name, which a narrow sidebar cuts off."""
         take = find_take(context.scene)
         offered = None if take is None else offered_at(take, context.scene.frame_current_final)
         if offered is None or properties.candidate >= len(offered.candidates):
@@ -58,7 +54,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
         return f"{said}. Pose the actor like this; nothing is keyed until you store it"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Set the pose."""
         from ..bridge.keyframes import candidate_posture
         from ..bridge.pose import write_posture
 
@@ -68,11 +63,9 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
             self.report({"ERROR"}, f"Frame {frame:g} offers no poses; fit it to the footage first")
             return {"CANCELLED"}
         if self.candidate >= len(offered.candidates):
-            self.report(
-                {"ERROR"},
-                f"Frame {frame:g} offers {len(offered.candidates)} poses; candidate must be 0 to "
-                f"{len(offered.candidates) - 1}",
-            )
+            count = len(offered.candidates)
+            sentence = f"Frame {frame:g} offers {count} poses; candidate must be 0 to {count - 1}"
+            self.report({"ERROR"}, sentence)
             return {"CANCELLED"}
         show_keyframes(take)
         write_posture(take.armature, candidate_posture(offered.candidates[self.candidate]))
@@ -80,9 +73,6 @@ class KEYMARK_OT_show_offered(BaseOperator, bpy.types.Operator):
             note_contradictions(take, frame, ())
         offered.chosen = self.candidate
         return None
-
-
-# --- Fit the actor's pose to the markers and keypoints of the current frame
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
@@ -121,7 +111,6 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         return finished
 
     def run(self, context: bpy.types.Context) -> None:
-        """Fit the pose, set it, offer the others that the frame may show, and say what contradicts."""
         from ..bridge.pose import write_posture
         from ..bridge.single_frame_fit import fit_to_frame, frame_in_footage
         from ..library.registry_files import all_libraries
@@ -130,42 +119,29 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         take = active_take(scene)
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
         libraries = () if self.start == "POSE" else all_libraries()
-        found = fit_to_frame(
-            frame,
-            take.armature,
-            take.keyframe_action,
-            self.start,
-            known_matches(take),
-            libraries,
-            _floor_m(take.matching),
-        )
+        known, floor_m = known_matches(take), _floor_m(take.matching)
+        actor_and_keys = take.armature, take.keyframe_action
+        found = fit_to_frame(frame, *actor_and_keys, self.start, known, libraries, floor_m)
         show_keyframes(take)
         write_posture(take.armature, found.candidates[0].posture)
         offer_poses(take, scene.frame_current_final, found.candidates)
         note_contradictions(take, scene.frame_current_final, found.contradictions)
         if found.contradictions:
-            self.report(
-                {"WARNING"},
-                f"No plausible pose explains {', '.join(found.contradictions)} here; check what else "
-                "looks like it, or pose the frame",
-            )
+            names = ", ".join(found.contradictions)
+            advice = "check what else looks like it, or pose the frame"
+            self.report({"WARNING"}, f"No plausible pose explains {names} here; {advice}")
         elif not np.isfinite(found.residual_px).any():
-            self.report(
-                {"WARNING"},
-                "Seen from the camera, the body hides the markers that this frame shows; check the pose",
+            sentence = (
+                "Seen from the camera, the body hides the markers that this frame shows; check the pose"
             )
+            self.report({"WARNING"}, sentence)
         elif len(found.candidates) > 1:
-            self.report(
-                {"INFO"},
-                f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the "
-                "panel; look at it from the side too, then store it",
-            )
+            sure = f"{found.candidates[0].confidence:.0%} sure, {len(found.candidates) - 1} more in the panel"
+            self.report({"INFO"}, f"{sure}; look at it from the side too, then store it")
         else:
-            self.report(
-                {"INFO"},
-                f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels; look at it from the side "
-                "too, as little tells the depth, then store it",
-            )
+            off = f"Off by {float(np.nanmean(found.residual_px)):.1f} pixels"
+            advice = "look at it from the side too, as little tells the depth, then store it"
+            self.report({"INFO"}, f"{off}; {advice}")
 
 
 def _floor_m(matching: bpy.types.PropertyGroup) -> float | None:
@@ -186,9 +162,4 @@ def _to_pose_mode(context: bpy.types.Context, armature_object: bpy.types.Object)
         bpy.ops.object.mode_set(mode="POSE")
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_show_offered,
-        KEYMARK_OT_fit_pose,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_show_offered, KEYMARK_OT_fit_pose))

@@ -53,25 +53,18 @@ def _is_selected(bone: bpy.types.PoseBone) -> bool:
     return bool(bone.select if hasattr(bone, "select") else bone.bone.select)
 
 
-# --- The ways of a flipped limb, gone through one by one
-
-
-SAME = 1e-3
-"""Difference of postures that comes from the precision of bones alone [m, rad]."""
+SAME = 1e-3  # Difference of postures that comes from the precision of bones alone [m, rad]
 
 
 @dataclass(frozen=True, eq=False)
 class Ways:
     """A posture and the ways to flip it, the most plausible first."""
 
-    key: tuple[int, float, str]
-    """Number of the armature in this session, scene frame, part of the body."""
-    postures: "tuple[Posture, ...]"
-    """The first is the one that was flipped."""
+    key: tuple[int, float, str]  # Number of the armature in this session, scene frame, part of the body
+    postures: "tuple[Posture, ...]"  # The first is the one that was flipped
 
 
-_last: dict[str, Ways] = {}
-"""The last ways by part of the body."""
+_last: dict[str, Ways] = {}  # The last ways by part of the body
 
 
 def next_way(

@@ -9,9 +9,6 @@ from ..shell.panel import RowList, TakePanel, draw_sentence
 from ..shell.takes import active_take
 from .candidate_buttons import PERCENT_UNITS, draw_candidates, draw_candidates_head, percent
 
-SURE = 0.8
-"""Confidence above which a found keyframe is ticked."""
-FRAME_UNITS = 1.6
 STATES = {"POSED": ("KEYFRAME_HLT", "posed"), "GONE": ("X", "no key")}
 """Icon and words of what is no found keyframe any more."""
 
@@ -22,13 +19,12 @@ class KEYMARK_UL_matches(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one, or that it is posed or has no key any more."""
         take = active_take(context.scene)
         state = state_of(take, item)
         row = layout.row(align=True)
         row.active = state != "GONE"
         number = row.row()
-        number.ui_units_x = FRAME_UNITS
+        number.ui_units_x = 1.6
         number.label(text=f"{item.frame:g}", translate=False)
         is_found = state == "FOUND"
         icon, words = how_sure(take, item) if is_found else STATES[state]
@@ -52,8 +48,7 @@ def how_sure(take: bpy.types.PropertyGroup, match: bpy.types.PropertyGroup) -> t
         return "ERROR", "contradicted"
     if match.confidence < DOUBTFUL:
         return "QUESTION", "doubtful"
-    sure = match.confidence >= SURE
-    return ("CHECKMARK", "sure") if sure else ("DOT", "likely")
+    return ("CHECKMARK", "sure") if match.confidence >= 0.8 else ("DOT", "likely")
 
 
 class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
@@ -63,7 +58,6 @@ class KEYMARK_PT_found(TakePanel, bpy.types.Panel):
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw how sure they are, the list, the candidates, and what finding assumes."""
         take, column = active_take(context.scene), self.column()
         matching = take.matching
         if len(matching.matches):
@@ -91,9 +85,7 @@ def _draw_counts(
 ) -> None:
     """Draw how many were found, how many of them are in doubt, and the reason that was given."""
     count, doubtful = count_found(take)
-    words = f"{count} found, none of them doubtful"
-    if doubtful:
-        words = f"{count} found, {doubtful} of them doubtful"
+    words = f"{count} found, {doubtful or 'none'} of them doubtful"
     layout.label(text=words, icon="QUESTION" if doubtful else "CHECKMARK", translate=False)
     if take.matching.reason:
         draw_sentence(layout, context, take.matching.reason, "BLANK1")

@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from ...core.prior.keyframes import Matched
 
 
-PLACE_VALUES = 6
-"""Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short."""
+PLACE_VALUES = 6  # Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short
 FLOORS = (
     ("AUTO", "Find from Footage", "How high the floor is follows from the performer's size in the footage"),
     ("HEIGHT", "Known Height", "The floor that the performer stands on is this high in the scene"),
@@ -22,8 +21,7 @@ FLOORS = (
 
 
 Entry = tuple[str, str, str, str, int]
-_entries: list[Entry] = []
-"""Items of the menu of libraries: Blender keeps no copy of the strings."""
+_entries: list[Entry] = []  # Items of the menu of libraries: Blender keeps no copy of the strings
 
 
 def _libraries(matching: bpy.types.PropertyGroup, context: bpy.types.Context | None) -> list[Entry]:
@@ -110,7 +108,6 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 
     @property
     def candidate(self) -> bpy.types.PropertyGroup:
-        """The candidate that the frame has."""
         return self.candidates[min(self.chosen, len(self.candidates) - 1)]
 
     @property
@@ -122,14 +119,12 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 
     @property
     def matched(self) -> "Matched":
-        """The match as core's `Matched`."""
         from ...core.prior.keyframes import Matched
 
         chosen = self.candidate
         return Matched(self.library, chosen.name, chosen.mirrored, min(max(self.confidence, 0.0), 1.0))
 
     def go_to(self, scene: bpy.types.Scene) -> None:
-        """Go to this frame in the scene."""
         whole = int(self.frame // 1.0)
         scene.frame_set(whole, subframe=self.frame - whole)
 

@@ -16,40 +16,30 @@ from ..shell.contradictions import note_contradictions
 from ..shell.keyed_frames import has_frame, invalidate_keyed_frames, posed_frames, state_of
 from ..shell.results import keep_reading, keep_speed
 from ..shell.takes import actor_of, take_by_identifier
-from .found_keyframes import undecided_matches
+from .found_keyframes import SceneClip, undecided_matches
 from .match_edits import add_candidate, add_match, key_matches
-from .scene_clip import SceneClip
 
 
 @dataclass(frozen=True, eq=False)
 class Proposals:
     """Frames proposed for keyframes, and what they were chosen by."""
 
-    indices: tuple[int, ...]
-    """Of frames of the clip, in order."""
-    speed: Array
-    """(F,) the performer's speed in the footage [px per frame]."""
+    indices: tuple[int, ...]  # Of frames of the clip, in order
+    speed: Array  # (F,) the performer's speed in the footage [px per frame]
 
 
 @dataclass(frozen=True, eq=False)
 class FoundResult:
     """What a job found in a take's footage, for the scene."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     clip: SceneClip
     found: FoundPoses
-    keyframes: tuple[Keyframe, ...]
-    """The found keyframes, in order."""
-    proposals: Proposals | None = None
-    """Where no frames were proposed before."""
+    keyframes: tuple[Keyframe, ...]  # The found keyframes, in order
+    proposals: Proposals | None = None  # Where no frames were proposed before
 
     def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Key what was found beside what is decided, in place of what was found earlier; returns the take.
-
-        Raises:
-            InputError: The take or its actor has been removed, or the actor lacks bones.
-        """
+        """Key what was found beside what is decided, in place of what was found earlier; returns the take."""
         take = take_by_identifier(scene, self.take)
         clear_found(take)
         matching, found = take.matching, self.found
@@ -106,14 +96,7 @@ def clear_found(take: bpy.types.PropertyGroup) -> int:
 def write_found(
     take: bpy.types.PropertyGroup, clip: SceneClip, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
-    """Key found postures and store what is known of them; none of their frames may have an entry.
-
-    Args:
-        take: The take.
-        clip: Its clip, as it was read.
-        keyframes: The found keyframes, in order of frame.
-        found: What was found, with the candidates of frames.
-    """
+    """Key found postures, in order of frame, and store what is known of them; none may have an entry yet."""
     candidates = {frame.index: frame.candidates for frame in found.frames}
     for keyframe in keyframes:
         said, frame = keyframe.matched, float(clip.frames[keyframe.index])

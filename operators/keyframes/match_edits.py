@@ -17,8 +17,7 @@ from ..shell.keyed_frames import invalidate_keyed_frames, new_keyframe_action, s
 from ..shell.takes import actor_of
 from .found_properties import PLACE_VALUES
 
-ANYBODY = Body(Actor.from_stature(1.7))
-"""The body on which candidates are compared; its size hardly matters."""
+ANYBODY = Body(Actor.from_stature(1.7))  # The body on which candidates are compared; its size hardly matters
 ELSEWHERE_M = 0.15
 """Distance between joints of two candidates above which anybody sees that a limb is elsewhere [m]."""
 

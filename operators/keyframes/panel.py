@@ -1,4 +1,4 @@
-"""The panel that corrects a pose by choosing and dragging."""
+"""The panels of step 4, the keyframes."""
 
 import bpy
 
@@ -27,7 +27,6 @@ class KEYMARK_PT_keyframes_correct(TakePanel, bpy.types.Panel):
     bl_parent_id = "KEYMARK_PT_keyframes"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the operators; the button that flips names what is selected."""
         take, column = active_take(context.scene), self.column()
         running = job_is_running(context, DRAGGING)
         column.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
@@ -49,13 +48,6 @@ def _flipped(take: bpy.types.PropertyGroup) -> str:
     return "Flip Depth"
 
 
-# --- The panels of step 4
-
-
-PROMINENT = 1.6
-"""Height of the button that does the step's whole work."""
-
-
 class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     """Jumping to a proposed frame, fitting a pose there, and storing it."""
 
@@ -64,14 +56,12 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """How many keyframes there are."""
         return f"{len(keyframes_of(take))} keyed" if take.keyframe_action else ""
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw posing all, the number of posed frames, the state of this frame, and the operators."""
         take, column = active_take(context.scene), self.column()
         everything = column.column()
-        everything.scale_y = PROMINENT
+        everything.scale_y = 1.6
         if not draw_progress(everything, context, "keymark.pose_all"):
             everything.operator("keymark.pose_all", icon="OUTLINER_OB_ARMATURE")
         if not len(take.proposals):
@@ -117,19 +107,15 @@ def _draw_posed(
     """Draw the numbers of proposed frames that are posed, of other posed frames, and of found ones."""
     proposed, left, posed = len(proposed_frames(take)), len(unposed_proposals(take)), len(posed_frames(take))
     found = len(matched_frames(take))
+    done = proposed - left
     if found:
         text = f"{posed} posed, {found} found"
-        draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
-        return
-    if not proposed:
+    elif proposed:
+        text = f"{done} of {proposed} posed" + (f", {posed - done} elsewhere" if posed > done else "")
+    else:
         text = f"{posed} posed; none proposed yet"
-        draw_sentence(layout, context, text, "INFO")
-        return
-    done = proposed - left
-    text = f"{done} of {proposed} posed"
-    if posed > done:
-        text = f"{done} of {proposed} posed, {posed - done} elsewhere"
-    draw_sentence(layout, context, text, "INFO" if left else "CHECKMARK")
+    ready = not left and (found or proposed)
+    draw_sentence(layout, context, text, "CHECKMARK" if ready else "INFO")
 
 
 def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyGroup) -> None:
@@ -144,11 +130,9 @@ def _draw_here(layout: bpy.types.UILayout, frame: int, take: bpy.types.PropertyG
     elif any(round(posed) == frame for posed in posed_frames(take)):
         layout.label(text=f"Frame {frame} is posed", icon="KEYFRAME_HLT", translate=False)
     elif has_frame(matched_frames(take), frame):
-        text = f"Frame {frame} is found, not posed"
-        layout.label(text=text, icon="KEYTYPE_GENERATED_VEC", translate=False)
+        layout.label(text=f"Frame {frame} is found, not posed", icon="KEYTYPE_GENERATED_VEC", translate=False)
     elif frame in proposed_frames(take):
-        text = f"Frame {frame} is proposed, not posed yet"
-        layout.label(text=text, icon="KEYFRAME", translate=False)
+        layout.label(text=f"Frame {frame} is proposed, not posed yet", icon="KEYFRAME", translate=False)
     else:
         layout.label(text=f"Frame {frame} is not posed", icon="DOT", translate=False)
 
@@ -162,7 +146,6 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
     bl_order = 1
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw number and button of the proposals, and the Action."""
         take, column = active_take(context.scene), self.column()
         column.prop(take, "keyframe_count")
         _draw_propose(column, context)
@@ -171,9 +154,5 @@ class KEYMARK_PT_keyframes_proposals(TakePanel, bpy.types.Panel):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PT_keyframes,
-        KEYMARK_PT_keyframes_proposals,
-        KEYMARK_PT_keyframes_correct,
-    )
+    (KEYMARK_PT_keyframes, KEYMARK_PT_keyframes_proposals, KEYMARK_PT_keyframes_correct)
 )

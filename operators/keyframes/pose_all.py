@@ -15,8 +15,8 @@ from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import count_found, doubtful_matches, proposed_frames
 from ..shell.requirements import actor, all_colors, camera, footage, idle
 from ..shell.takes import active_take
+from .found_keyframes import SceneClip, read_scene_clip
 from .found_properties import FloorSettings
-from .scene_clip import SceneClip, read_scene_clip
 
 if TYPE_CHECKING:
     from ...core.progress import Job
@@ -42,7 +42,6 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Take the floor from the panel."""
         matching = active_take(context.scene).matching
         self.floor, self.floor_height = matching.floor, matching.floor_height
         return super().invoke(context, event)
@@ -73,7 +72,6 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         return FoundResult(identifier, clip, found, found_keyframes(clip.take, found), proposals)
 
     def finish(self, scene: bpy.types.Scene, result: "FoundResult") -> None:
-        """Key what was found, go to the most doubtful frame, and say how many there are."""
         take = result.write(scene)
         scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
         for note in result.clip.notes:
@@ -82,10 +80,8 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
         count, doubtful = count_found(take)
         if doubtful:
             take.matching.shown_match = doubtful_matches(take)[0]
-            self.report(
-                {"WARNING"},
-                f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown",
-            )
+            said = f"{count} keyframes found, {doubtful} of them doubtful; the most doubtful one is shown"
+            self.report({"WARNING"}, said)
         else:
             self.report({"INFO"}, f"{count} keyframes found, none of them doubtful")
 
@@ -97,9 +93,8 @@ def _propose(clip: SceneClip, count: int | None) -> "Job[Proposals]":
     from .found_result import Proposals
 
     take, tracks = clip.take, clip.reading.tracks
-    moved = evidence_speed(
-        tracks, take.marker_segments, performer_keypoints(take, None, tracks), clip.reading.album
-    )
+    keypoints = performer_keypoints(take, None, tracks)
+    moved = evidence_speed(tracks, take.marker_segments, keypoints, clip.reading.album)
     speed = yield from within("Measuring the speed", moved, 0.0, 1.0)
     return Proposals(tuple(map(int, propose_keyframes(speed.values, count))), speed.values)
 

@@ -22,23 +22,18 @@ if TYPE_CHECKING:
     from ...core.progress import Job
 
 
-READ = 0.9
-"""Share of the job at which the clip is read."""
+READ = 0.9  # Share of the job at which the clip is read
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """Result of the job."""
 
-    take: str
-    """The take's identifier."""
+    take: str  # The take's identifier
     reading: "Reading"
-    frames: tuple[int, ...]
-    """Proposed scene frames."""
-    speed: "Array"
-    """(F,) the speed in the footage that they were chosen by [px per frame], ..."""
-    scene_frames: "Array"
-    """... at scene frames (F,)."""
+    frames: tuple[int, ...]  # Proposed scene frames
+    speed: "Array"  # (F,) the speed in the footage that they were chosen by [px per frame], ..
+    scene_frames: "Array"  # ... at scene frames (F,).
     note: str
     """What the speed was made from where neither markers nor keypoints tell it, for people; else empty."""
 
@@ -60,9 +55,8 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         take = active_take(scene)
         identifier, count, stature = take.identifier, take.keyframe_count or None, take.stature
         footage, evidence, reading = footage_of(scene, take), scene_evidence(take), reading_of(take)
-        styles = evidence.markers
+        styles, ignored = evidence.markers, evidence.ignored_regions
         clip, first, rate = footage.open(), footage.first_frame, footage.rate
-        ignored = evidence.ignored_regions
         key = reading_key(clip.path, clip.fps, styles, None, ignored)
         if reading is None or not of_same_footage(reading.key, key):
             job = read_clip(clip, styles, ignored=ignored)
@@ -77,7 +71,6 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         return Outcome(identifier, reading, proposed, speed.values, frames, speed.note)
 
     def finish(self, scene: bpy.types.Scene, result: Outcome) -> None:
-        """Store the proposals with the take, and cache the reading for the reconstruction."""
         take = take_by_identifier(scene, result.take)
         keep_reading(take, result.reading)
         keep_speed(take, result.scene_frames, result.speed)
@@ -87,9 +80,6 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         self.report({"INFO"}, f"{len(result.frames)} keyframes proposed")
         notes = [warn(self, result.note)] if result.note else []
         give_notices(take, "keyframes", "proposals", notes)
-
-
-# --- Go to the next or the previous proposed keyframe
 
 
 def proposals(context: bpy.types.Context) -> str | None:
@@ -121,15 +111,11 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip for the direction."""
         if properties.skip_posed:
             return "Go to the next proposed keyframe that is not posed yet"
-        if properties.direction == "NEXT":
-            return "Go to the next proposed keyframe"
-        return "Go to the previous proposed keyframe"
+        return f"Go to the {properties.direction.lower()} proposed keyframe"
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Go to the frame; if there is none, stay and report it."""
         scene, take = context.scene, find_take(context.scene)
         invalidate_keyed_frames()
         frames = unposed_proposals(take) if self.skip_posed else proposed_frames(take)
@@ -140,22 +126,16 @@ class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
         behind = [frame for frame in frames if frame < scene.frame_current]
         if self.skip_posed:  # wraps around the ends
             ahead, behind = ahead or frames, behind or frames
-        if self.direction == "NEXT" and ahead:
-            scene.frame_set(ahead[0])
-        elif self.direction == "PREVIOUS" and behind:
-            scene.frame_set(behind[-1])
-        elif self.direction == "NEXT":
-            self.report({"INFO"}, "There is no proposed keyframe after this frame")
+        is_next = self.direction == "NEXT"
+        if not (ahead if is_next else behind):
+            self.report(
+                {"INFO"}, f"There is no proposed keyframe {'after' if is_next else 'before'} this frame"
+            )
             return {"CANCELLED"}
-        else:
-            self.report({"INFO"}, "There is no proposed keyframe before this frame")
-            return {"CANCELLED"}
+        scene.frame_set(ahead[0] if is_next else behind[-1])
         return None
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_propose_keyframes,
-        KEYMARK_OT_jump_to_proposal,
-    )
+    (KEYMARK_OT_propose_keyframes, KEYMARK_OT_jump_to_proposal)
 )

@@ -1,8 +1,4 @@
 """Keyframe libraries: the registry of all at hand; loaded, saved, learned, and edited as pose assets."""
 
-PROPERTIES = ("registry_properties",)
-MODULES = (
-    "load_library",
-    "save_library",
-    "panel",
-)
+PROPERTIES = ("registry",)
+MODULES = ("load_library", "save_library", "panel")

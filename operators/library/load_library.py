@@ -37,7 +37,6 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, unless one was dropped."""
         return self.execute(context) if self.filepath else browse(self, context)
 
     def run(self, context: bpy.types.Context) -> None:
@@ -75,21 +74,6 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(KEYMARK_OT_import_library.bl_idname, text="Keymark Keyframe Library (.json/.blend)")
 
 
-def _register_import_library() -> None:
-    """Add the operator, and an entry to File > Import."""
-    bpy.utils.register_class(KEYMARK_OT_import_library)
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def _unregister_import_library() -> None:
-    """Remove both."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    bpy.utils.unregister_class(KEYMARK_OT_import_library)
-
-
-# --- Refresh the registry of keyframe libraries
-
-
 class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     """Read the folder of your libraries again, after other programs have changed its files"""
 
@@ -99,13 +83,9 @@ class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
     requirements = (idle,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Read the folders."""
         refresh()
         count = len(context.window_manager.keymark_shelf.libraries)
         self.report({"INFO"}, f"{count} keyframe libraries are at hand")
-
-
-# --- Bring a library into this file as pose assets
 
 
 class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
@@ -141,20 +121,17 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_refresh_shelf,
-        KEYMARK_OT_edit_library,
-    )
+    (KEYMARK_OT_import_library, KEYMARK_OT_refresh_shelf, KEYMARK_OT_edit_library)
 )
 
 
 def register() -> None:
-    """Register all of this module."""
+    """Register the operators, and add an entry to File > Import."""
     _register_classes()
-    _register_import_library()
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
 def unregister() -> None:
     """Take it all back."""
-    _unregister_import_library()
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     _unregister_classes()

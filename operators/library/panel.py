@@ -3,11 +3,9 @@
 import bpy
 
 from ..shell.panel import RowList, SubPanel, draw_sentence
-from .library_files import own_folder
-from .registry import chosen_entry
+from .registry import chosen_entry, own_folder
 
-MOST_LINES = 4
-"""Lines of a library's description, or of its problem."""
+MOST_LINES = 4  # Lines of a library's description, or of its problem
 
 
 class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
@@ -16,7 +14,6 @@ class KEYMARK_UL_shelf(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one library: title and number of postures."""
         row = layout.row(align=True)
         icon = "ERROR" if item.problem else "USER" if item.is_own else "PACKAGE"
         row.label(text=item.title, translate=False, icon=icon)
@@ -34,7 +31,6 @@ class KEYMARK_PT_libraries(SubPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the list, the facts of the chosen library, and its operators."""
         registry, layout = context.window_manager.keymark_shelf, self.layout
         row = layout.row()
         row.template_list(

@@ -5,19 +5,35 @@ was found then.
 """
 
 from contextlib import suppress
+from pathlib import Path
 from zlib import crc32
 
 import bpy
 from bpy.app import timers
 
+from ..shell.results import EXTENSION
 from ..shell.takes import redraw_sidebars
-from . import library_files as user_folder
 
-SOON_S = 0.1
-"""Delay before the folders are read, so that the panel is drawn first."""
 Item = tuple[str, str, str, str, int]
 _items: list[Item] = []
 """Items of the menu: Blender keeps no copy of the strings, which must live as long as it is shown."""
+
+
+def own_folder() -> Path:
+    """Folder of the user's libraries; created if missing."""
+    try:
+        return Path(bpy.utils.extension_path_user(EXTENSION, path="libraries", create=True))
+    except ValueError:  # not installed as an extension
+        folder = Path(bpy.app.tempdir) / "libraries"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+
+def folders() -> list[Path]:
+    """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
+    from ...core.prior.registry import SHIPPED
+
+    return [own_folder(), SHIPPED]
 
 
 def chosen_entry(context: bpy.types.Context) -> bpy.types.PropertyGroup | None:
@@ -53,15 +69,10 @@ def _number(identifier: str) -> int:
 
 
 def refresh(choose: str = "") -> None:
-    """Read the folders, and fill the list.
-
-    Args:
-        choose: Identifier of the library to choose in the list; by default the same as before.
-    """
+    """Read the folders, fill the list, and choose the library of an identifier, else the same as before."""
     from ...core.prior.registry import registered_libraries
-    from .registry_files import folders
 
-    listed, own = bpy.context.window_manager.keymark_shelf, user_folder.own_folder()
+    listed, own = bpy.context.window_manager.keymark_shelf, own_folder()
     wanted = choose or chosen_identifier(bpy.context)
     listed.libraries.clear()
     for found in registered_libraries(folders()):
@@ -80,7 +91,7 @@ def refresh_if_empty() -> None:
     """Read the folders soon if the list is empty, as after Blender's start or a new file; for drawing."""
     empty = not len(bpy.context.window_manager.keymark_shelf.libraries)
     if empty and not bpy.app.background and not timers.is_registered(_refresh_now):
-        timers.register(_refresh_now, first_interval=SOON_S)
+        timers.register(_refresh_now, first_interval=0.1)  # the panel is drawn first
 
 
 def cancel_refresh() -> None:
@@ -94,3 +105,46 @@ def _refresh_now() -> None:
     with suppress(ModuleNotFoundError):  # SciPy or OpenCV is missing, which operators report
         refresh()
         redraw_sidebars(bpy.context)
+
+
+class KEYMARK_PG_shelved(bpy.types.PropertyGroup):
+    """A registered library; `name` is its identifier."""
+
+    title: bpy.props.StringProperty(name="Title")
+    version: bpy.props.IntProperty(name="Version")
+    author: bpy.props.StringProperty(name="Author")
+    license: bpy.props.StringProperty(name="License")
+    description: bpy.props.StringProperty(name="Description")
+    motions: bpy.props.IntProperty(name="Motions")
+    is_own: bpy.props.BoolProperty(name="Own", description="It lies in the user's folder and can be removed")
+    problem: bpy.props.StringProperty(name="Problem", description="Why the file cannot be used")
+    postures: bpy.props.IntProperty(name="Postures")
+
+
+class KEYMARK_PG_shelf(bpy.types.PropertyGroup):
+    """The registry."""
+
+    libraries: bpy.props.CollectionProperty(type=KEYMARK_PG_shelved)
+    active: bpy.props.IntProperty(
+        name="Active Library", description="The library that is chosen in the list", default=0, min=0
+    )
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (KEYMARK_PG_shelved, KEYMARK_PG_shelf)
+)
+
+
+def register() -> None:
+    """Register the groups, and add the registry to the window manager."""
+    _register_classes()
+    bpy.types.WindowManager.keymark_shelf = bpy.props.PointerProperty(
+        type=KEYMARK_PG_shelf, options={"SKIP_SAVE"}
+    )
+
+
+def unregister() -> None:
+    """Take it all back."""
+    cancel_refresh()
+    del bpy.types.WindowManager.keymark_shelf
+    _unregister_classes()

@@ -6,28 +6,21 @@ from pathlib import Path
 
 from ...core.errors import InputError
 from ...core.prior.library import Library, write_library
-from ...core.prior.registry import SHIPPED, find_libraries, find_library, library_path, registered_libraries
+from ...core.prior.registry import find_libraries, find_library, library_path, registered_libraries
 from ...core.prior.texts import EVERY_LIBRARY
-from . import library_files as user_folder
-
-
-def folders() -> list[Path]:
-    """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
-    return [user_folder.own_folder(), SHIPPED]
+from . import registry
 
 
 def load_registered(identifier: str) -> Library:
-    """The registered library of an identifier, read from its file.
-
-    Raises:
-        InputError: There is none, or its file is unusable.
-    """
-    return find_library(identifier, folders())
+    """The registered library of an identifier; an InputError without a usable file of it."""
+    return find_library(identifier, registry.folders())
 
 
 def find_registered(identifier: str) -> Library | None:
     """The registered library of exactly this identifier; None where there is no usable one."""
-    found = (entry.library for entry in registered_libraries(folders()) if entry.identifier == identifier)
+    found = (
+        entry.library for entry in registered_libraries(registry.folders()) if entry.identifier == identifier
+    )
     return next((library for library in found if library is not None), None)
 
 
@@ -40,11 +33,6 @@ def named_libraries(name: str) -> Sequence[Library]:
     return all_libraries() if name == EVERY_LIBRARY else [load_registered(name)]
 
 
-def registered_identifiers() -> set[str]:
-    """Identifiers of all registered libraries, those of unusable files included."""
-    return {entry.identifier for entry in registered_libraries(folders())}
-
-
 def all_libraries() -> Sequence[Library]:
     """All registered libraries; the same objects for as long as no file changes.
 
@@ -53,7 +41,7 @@ def all_libraries() -> Sequence[Library]:
     Raises:
         InputError: There is none.
     """
-    files = sorted(file for folder in folders() if folder.is_dir() for file in folder.glob("*.json"))
+    files = sorted(file for folder in registry.folders() if folder.is_dir() for file in folder.glob("*.json"))
     stats = [(file, file.stat()) for file in files]
     return _libraries(tuple((file, stat.st_mtime_ns, stat.st_size) for file, stat in stats))
 
@@ -61,7 +49,7 @@ def all_libraries() -> Sequence[Library]:
 @lru_cache(maxsize=1)
 def _libraries(_files: tuple[tuple[Path, int, int], ...]) -> Sequence[Library]:
     """All registered libraries, read from files of these times and sizes."""
-    return find_libraries(EVERY_LIBRARY, folders())
+    return find_libraries(EVERY_LIBRARY, registry.folders())
 
 
 def write_to_registry(libraries: Iterable[Library]) -> None:
@@ -71,29 +59,18 @@ def write_to_registry(libraries: Iterable[Library]) -> None:
         InputError: The file of that name holds another library, or no library.
         ConversionError: A file cannot be written.
     """
-    files = [(_own_file(user_folder.own_folder(), library.identifier), library) for library in libraries]
+    files = [(_own_file(registry.own_folder(), library.identifier), library) for library in libraries]
     for file, library in files:
         write_library(file, library)
 
 
 def _own_file(folder: Path, identifier: str) -> Path:
-    """The file of a library in a folder, new or existing: people may have put files there under any name.
-
-    Raises:
-        InputError: The file of that name holds something else.
-    """
+    """The file of a library in a folder, new or existing: people may have put files there under any name."""
     path, there = library_path(folder, identifier), registered_libraries([folder])
     found = next((each.path for each in there if each.library and each.identifier == identifier), path)
     other = next((each for each in there if each.path == found and each.identifier != identifier), None)
     damaged = next((each for each in there if each.path == found and each.library is None), None)
-    if other is not None:
-        raise InputError(
-            f"{found}: holds the library '{other.title}', which would be lost; give that file another "
-            "name first"
-        )
-    if damaged is not None:
-        raise InputError(
-            f"{found}: holds something that is no library, which would be lost; give that file another "
-            "name first"
-        )
+    if other is not None or damaged is not None:
+        held = "something that is no library" if other is None else f"the library '{other.title}'"
+        raise InputError(f"{found}: holds {held}, which would be lost; give that file another name first")
     return found

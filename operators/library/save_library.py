@@ -1,4 +1,4 @@
-"""Common licenses of libraries, suggested in license fields."""
+"""Save a keyframe library to a file, or learn one from a take's motion."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from ...core.prior.texts import identifier_from
 from ..shell.base_operator import BaseOperator, warn_if_outdated
 from ..shell.requirements import actor, idle, motion
 from ..shell.takes import active_take, find_take
-from .registry import chosen_identifier, refresh
+from .registry import chosen_identifier, folders, refresh
 
 if TYPE_CHECKING:
     from ...core.prior.library import Library
@@ -28,11 +28,20 @@ USUAL = (
 
 def suggest(_properties: bpy.types.AnyType, _context: bpy.types.Context, typed: str) -> list[tuple[str, str]]:
     """The common licenses that contain the typed text, each with what it allows; all if none does."""
-    fitting = [each for each in USUAL if typed.lower() in each[0].lower()] or USUAL
-    return [(license, allowed) for license, allowed in fitting]
+    return [each for each in USUAL if typed.lower() in each[0].lower()] or list(USUAL)
 
 
-# --- Save a keyframe library
+class Licensed:
+    """Mixin of operators that make a library: its license."""
+
+    license: bpy.props.StringProperty(
+        name="License",
+        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
+        "by default none",
+        default="LicenseRef-Proprietary",
+        search=suggest,
+        search_options={"SUGGESTION"},
+    )
 
 
 FORMATS = [
@@ -47,7 +56,7 @@ SOURCES = [
 ]
 
 
-class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
     """Save a keyframe library, pose assets or the take's keyframes as a library file, to keep or share it"""
 
     bl_idname = "keymark.export_library"
@@ -64,19 +73,9 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
     title: bpy.props.StringProperty(
-        name="Title",
-        description="Title of a new library; by default the take's name",
-        options={"SKIP_SAVE"},
+        name="Title", description="Title of a new library; by default the take's name", options={"SKIP_SAVE"}
     )
     author: bpy.props.StringProperty(name="Author", description="Author of a new library")
-    license: bpy.props.StringProperty(
-        name="License",
-        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
-        "by default none",
-        default="LicenseRef-Proprietary",
-        search=suggest,
-        search_options={"SUGGESTION"},
-    )
     format: bpy.props.EnumProperty(
         name="Format", description="Format of the file, where its name has neither suffix", items=FORMATS
     )
@@ -85,7 +84,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.json;*.blend", options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for the file, named as the library is."""
         self.library = self.library or chosen_identifier(context)
         name = self.library if self.source == "LIBRARY" else identifier_from(self._title(context))
         folder = "//" if bpy.data.filepath else ""
@@ -94,7 +92,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def check(self, context: bpy.types.Context) -> bool:
-        """Give the file's name the suffix of the format."""
         stem = self.filepath
         for suffix in SUFFIXES.values():
             stem = stem.removesuffix(suffix)
@@ -104,7 +101,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return changed
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the choices beside the file browser."""
         column = self.layout.column()
         column.prop(self, "format", expand=True)
         column.prop(self, "source")
@@ -113,7 +109,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
                 column.prop(self, name)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Write the file."""
         from ..bridge.assets.catalogs import asset_root
         from ..bridge.library.library_file import write_library_file
 
@@ -132,11 +127,6 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return self.title.strip() or (take.name if take is not None else "Postures")
 
     def _library(self, context: bpy.types.Context) -> "Library":
-        """The library to write.
-
-        Raises:
-            InputError: There is none, or it is not complete.
-        """
         from ...core.prior.learning import LibraryMetadata
         from ..bridge.library.posed_library import library_of_assets, library_of_keyframes
         from .registry_files import load_registered
@@ -154,15 +144,11 @@ class KEYMARK_OT_export_library(BaseOperator, bpy.types.Operator):
         return library_of_keyframes(context.scene, armature, take.keyframe_action, about)
 
 
-# --- Learn a keyframe library from a take's motion
-
-
-DIALOG_WIDTH = 360
 ONCE = "Learned '{title}': {count} postures over {seconds:.1f} s"
 A_CYCLE = "Learned '{title}': {count} postures of a cycle of {seconds:.2f} s, which comes again and again"
 
 
-class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
+class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
     bl_idname = "keymark.learn_library"
@@ -174,14 +160,6 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
         name="Title", description="Title of the library; by default the take's name"
     )
     author: bpy.props.StringProperty(name="Author", description="Author of the library")
-    license: bpy.props.StringProperty(
-        name="License",
-        description="Terms under which others may use it, an SPDX expression such as CC0-1.0 or CC-BY-4.0; "
-        "by default none",
-        default="LicenseRef-Proprietary",
-        search=suggest,
-        search_options={"SUGGESTION"},
-    )
     count: bpy.props.IntProperty(
         name="Postures",
         description="Number of postures in the library; 0 for 10 to 40, as many as differ",
@@ -196,16 +174,14 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask for title and author."""
         take = active_take(context.scene)
         if not self.title:
             self.title = take.name
         if not self.author:
             self.author = take.finish.author
-        return context.window_manager.invoke_props_dialog(self, width=DIALOG_WIDTH, confirm_text="Learn")
+        return context.window_manager.invoke_props_dialog(self, width=360, confirm_text="Learn")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the dialog."""
         layout = self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("title", "author", "license"):
@@ -215,16 +191,18 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
     def run(self, context: bpy.types.Context) -> None:
         """Learn the library, and write it into the user's folder."""
         from ...core.prior.learning import LibraryMetadata
+        from ...core.prior.registry import registered_libraries
         from ..bridge.library.posed_library import library_from_action
-        from .registry_files import registered_identifiers, write_to_registry
+        from .registry_files import write_to_registry
 
         take, render = active_take(context.scene), context.scene.render
         title = self.title.strip() or take.name
+        known = {entry.identifier for entry in registered_libraries(folders())}
         about = LibraryMetadata(
             title=title,
             author=self.author.strip() or "Unknown",
             license=self.license.strip(),
-            identifier=self.learned_as or identifier_from(title, registered_identifiers()),
+            identifier=self.learned_as or identifier_from(title, known),
         )
         action = take.finish.action or take.motion_action
         frame_s = render.fps_base / render.fps
@@ -240,8 +218,5 @@ class KEYMARK_OT_learn_library(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_export_library,
-        KEYMARK_OT_learn_library,
-    )
+    (KEYMARK_OT_export_library, KEYMARK_OT_learn_library)
 )

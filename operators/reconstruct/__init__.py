@@ -1,6 +1,3 @@
 """Step 5, the reconstruction: from keyframes and footage to the motion."""
 
-MODULES = (
-    "reconstruct",
-    "panel",
-)
+MODULES = ("reconstruct", "panel")

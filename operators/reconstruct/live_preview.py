@@ -1,4 +1,4 @@
-"""Live preview: the actor shows what a running job has found, and is restored afterwards."""
+"""What a reconstruction shows on the actor while it runs, and what it writes into the scene at the end."""
 
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass
@@ -15,28 +15,20 @@ from ...core.progress import Preview
 from ...core.review.review import Review
 from ..bridge.fcurves import write_motion
 from ..bridge.pose import write_posture
+from ..bridge.review_curves import write_review_curves
 from ..bridge.scene_frames import at_scene_frame, showing_action
-from ..review.review_results import show_review
-from ..shell.results import keep_reading, keep_reconstruction, keep_review, reconstructed_again
+from ..shell.results import clear_review, keep_reading, keep_reconstruction, keep_review, reconstructed_again
 from ..shell.takes import actor_of, take_by_identifier
 
 ENDS = ("save_pre", "undo_pre", "redo_pre", "load_pre")
 """Handlers before which the preview is undone: files must not hold it, and these events move data blocks."""
-SWEEPS = 9
-"""Steps in which the actor goes through the frames of a preview."""
 
 
 class LivePreview:
     """Shows previews on an armature in its scene; `end` leaves both as they were."""
 
     def __init__(self, scene: bpy.types.Scene, armature_object: bpy.types.Object, frames: Array) -> None:
-        """Change nothing before the first preview.
-
-        Args:
-            scene: The scene that holds the armature.
-            armature_object: The actor.
-            frames: (F,) scene frame of every frame of the clip.
-        """
+        """Change nothing before the first preview; `frames` (F,) are the scene frames of the clip's."""
         self._scene, self._armature, self._frames = scene, armature_object, frames
         self._uids = scene.session_uid, armature_object.session_uid
         self._changes: ExitStack | None = None
@@ -45,7 +37,7 @@ class LivePreview:
     def show(self, preview: Preview) -> None:
         """Show one frame of a preview; from one preview to the next the actor moves on."""
         count = preview.posture.batch[0]
-        step = max(1, count // SWEEPS)
+        step = max(1, count // 9)  # the actor goes through all frames in nine steps
         inside = preview.first <= self._shown < preview.first + count
         row = (self._shown - preview.first + step) % count if inside else 0
         self._shown = preview.first + row
@@ -89,45 +81,28 @@ class LivePreview:
 
 
 def _of_uid(items: "bpy.types.bpy_prop_collection[Any]", uid: int) -> Any:
-    """The data block of a session UID, which outlives renaming and undo.
-
-    Raises:
-        InputError: It is gone.
-    """
+    """The data block of a session UID, which outlives renaming and undo."""
     for item in items:
         if item.session_uid == uid:
             return item
     raise InputError("the actor or the scene that the job was about has been removed meanwhile; run it again")
 
 
-# --- The result of a reconstruction, and how it is written into the scene
-
-
 @dataclass(frozen=True, eq=False)
 class ReconstructionResult:
     """The result of a reconstruction, for the scene."""
 
-    take: str
-    """The take's identifier."""
-    frames: Array
-    """(F,) scene frames."""
+    take: str  # The take's identifier
+    frames: Array  # (F,) scene frames
     reconstruction: Reconstruction
     review: Review
     notes: tuple[str, ...]
 
     def write(self, scene: bpy.types.Scene) -> bpy.types.PropertyGroup:
-        """Write the motion's Action and its review, and let the Action animate the actor; returns the take.
-
-        Raises:
-            InputError: The take or its actor has been removed, or the actor lacks bones.
-        """
+        """Write the motion and its review, and let its Action animate the actor; return the take."""
         take = take_by_identifier(scene, self.take)
         take.motion_action = write_motion(
-            actor_of(take),
-            self.reconstruction.motion,
-            take.motion_action,
-            take.keyframe_action,
-            self.frames,
+            actor_of(take), self.reconstruction.motion, take.motion_action, take.keyframe_action, self.frames
         )
         take.motion_action.use_fake_user = True
         reconstructed_again(take)
@@ -136,3 +111,20 @@ class ReconstructionResult:
         keep_review(take, self.review)
         show_review(take, self.review)
         return take
+
+
+def show_review(take: bpy.types.PropertyGroup, review: Review) -> None:
+    """Fill the review of a take whose motion was written, and write its curves into the motion's Action."""
+    shown = take.review
+    clear_review(take)
+    shown.frame_count = len(review.frames)
+    believed = float(review.confidence.mean())
+    shown.confidence = believed if believed == believed else -1.0  # NaN: the method cannot tell
+    for weak in review.weak_frames:
+        item = shown.weak_frames.add()
+        item.frame = review.frames[weak.index]
+        item.reason = weak.reason.name
+        item.marker = "" if weak.marker is None else review.marker_names[weak.marker]
+        item.point = weak.point or ""
+        item.strength = weak.strength
+    write_review_curves(take.armature, take.motion_action, review)

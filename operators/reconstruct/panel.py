@@ -14,7 +14,6 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     step = "reconstruct"
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the button or the running job, the method, and the switch between keyframes and motion."""
         take, column = active_take(context.scene), self.column()
         row = column.row()
         row.scale_y = 1.4
@@ -22,22 +21,22 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
             row.operator("keymark.reconstruct", icon="ARMATURE_DATA")
         column.prop(take, "method")
         column.prop(take, "live_preview")
-        _draw_show(column, take)
+        if take.armature is not None and take.motion_action is not None:
+            actions = {"KEYFRAMES": take.keyframe_action, "MOTION": take.motion_action}
+            draw_shown_action(column, take, actions)
 
 
-def _draw_show(layout: bpy.types.UILayout, take: bpy.types.PropertyGroup) -> None:
-    """Draw the switch between keyframes and motion, where there is a motion."""
-    if take.armature is None or take.motion_action is None:
-        return
+def draw_shown_action(
+    layout: bpy.types.UILayout, take: bpy.types.PropertyGroup, actions: dict[str, bpy.types.Action | None]
+) -> None:
+    """Draw the switch between Actions on the actor, by the names of `keymark.show_action`."""
     data = take.armature.animation_data
     shown = data.action if data else None
     row = layout.row(align=True)
-    for which, action, text in (
-        ("KEYFRAMES", take.keyframe_action, "Keyframes"),
-        ("MOTION", take.motion_action, "Motion"),
-    ):
+    for which, action in actions.items():
         depress = action is not None and action == shown
-        row.operator("keymark.show_action", text=text, depress=depress, translate=False).which = which
+        button = row.operator("keymark.show_action", text=which.title(), depress=depress, translate=False)
+        button.which = which
 
 
 class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
@@ -48,16 +47,13 @@ class KEYMARK_PT_reconstruct_notes(TakePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """There are notes."""
         take = find_take(context.scene)
         return super().poll(context) and take is not None and len(take.notes) > 0
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw an icon, so that notes are noticed in the closed panel."""
         self.layout.label(text="", icon="INFO")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw each note, broken into lines as wide as the sidebar."""
         column = self.layout.column()
         for note in active_take(context.scene).notes:
             draw_sentence(column, context, note.text)

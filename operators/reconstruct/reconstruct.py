@@ -47,14 +47,9 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         settings = active_take(scene)
         identifier, method, armature = settings.identifier, settings.method, settings.armature
         watched, kept, earlier = settings.live_preview, reading_of(settings), last_reconstruction(settings)
-        reading_scene = read_scene_take(
-            footage_of(scene, settings),
-            armature,
-            settings.keyframe_action,
-            scene_evidence(settings),
-            known_matches(settings),
-            kept,
-        )
+        evidence, known = scene_evidence(settings), known_matches(settings)
+        source, keys = footage_of(scene, settings), settings.keyframe_action
+        reading_scene = read_scene_take(source, armature, keys, evidence, known, kept)
         take, notes = yield from stretch(reading_scene, 0.0, TIMES)
         _check_enough(len(take.keyframes), notes)
         check_reconstructible(take, method)
@@ -66,12 +61,10 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         return ReconstructionResult(identifier, frames, result, judged, (*notes, *result.notes))
 
     def watch(self, progress: "Progress") -> None:
-        """Show the preview on the actor."""
         if self.preview is not None and progress.preview is not None:
             self.preview.show(progress.preview)
 
     def unwatch(self) -> None:
-        """Restore actor and scene."""
         if self.preview is not None:
             self.preview.end()
             self.preview = None
@@ -83,27 +76,20 @@ class KEYMARK_OT_reconstruct(JobOperator, bpy.types.Operator):
         take.notes.clear()
         for note in result.notes:
             take.notes.add().text = warn(self, note)
+        count = len(result.reconstruction.motion.keyframe_indices)
         self.report(
             {"INFO"},
-            f"Reconstructed {len(result.frames)} frames from "
-            f"{len(result.reconstruction.motion.keyframe_indices)} keyframes",
+            f"Reconstructed {len(result.frames)} frames from {count} keyframes",
         )
 
 
 def _check_enough(count: int, notes: tuple[str, ...]) -> None:
-    """Refuse a take with too few keyframes, with the notes on those that do not count.
-
-    Raises:
-        InputError: There are fewer than two in the footage.
-    """
+    """Refuse a take with fewer than two keyframes, with the notes on those that do not count."""
     if count < 2:
         raise InputError(
             f"{count} of the 2 keyframes that are needed lie in the footage; press Pose All or pose the "
             f"actor{''.join(f'. {capitalized(note)}' for note in notes)}"
         )
-
-
-# --- Show keyframes, motion or final Action on the actor
 
 
 MISSING = {
@@ -132,7 +118,6 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Assign the Action."""
         settings = active_take(context.scene)
         action = {
             "KEYFRAMES": settings.keyframe_action,
@@ -148,9 +133,4 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
         return None
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_reconstruct,
-        KEYMARK_OT_show_action,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_reconstruct, KEYMARK_OT_show_action))

@@ -15,7 +15,6 @@ class KEYMARK_UL_weak_frames(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one frame."""
         row = layout.row(align=True)
         number = row.row()
         number.ui_units_x = 2.2
@@ -45,12 +44,10 @@ class KEYMARK_PT_review(StepPanel, bpy.types.Panel):
 
     @classmethod
     def summary(cls, take: bpy.types.PropertyGroup) -> str:
-        """The confidence, where it is known."""
         believed = take.review.confidence
         return f"{100.0 * believed:.0f} %" if believed >= 0.0 else ""
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw confidence and the list."""
         review, column = active_take(context.scene).review, self.column()
         if review.frame_count == 0:
             column.label(text="Reconstruct the motion first", icon="INFO")

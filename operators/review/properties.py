@@ -6,13 +6,7 @@ REASONS = (
     ("HIDDEN", "Hidden", "A marker or a body point is hidden around this frame", "HIDE_ON", 0),
     ("FAST", "Fast Motion", "The performer moves faster than usual around this frame", "FF", 1),
     ("FAR", "Keyframes Far", "The nearest keyframe is far", "ARROW_LEFTRIGHT", 2),
-    (
-        "FOOTAGE",
-        "Off Footage",
-        "A marker or a keypoint is not where the motion puts it",
-        "TRACKER",
-        3,
-    ),
+    ("FOOTAGE", "Off Footage", "A marker or a keypoint is not where the motion puts it", "TRACKER", 3),
 )
 
 
@@ -42,7 +36,6 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
     )
 
     def go_to(self, scene: bpy.types.Scene) -> None:
-        """Go to this frame in the scene."""
         whole = int(self.frame // 1.0)
         scene.frame_set(whole, subframe=self.frame - whole)
 

@@ -1,4 +1,4 @@
-"""Jump through the frames worth another keyframe, the worst first."""
+"""Frames worth another keyframe: jump to them and pose them; look at the actor from the side."""
 
 import bpy
 import numpy as np
@@ -35,7 +35,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Tooltip with the direction."""
         return {
             "CHOSEN": "Go to the frame that is chosen in the list",
             "NEXT": "Go to the next frame of the list; the worst comes first",
@@ -43,7 +42,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
         }[properties.direction]
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Go there; at the end of the list, stay and say so."""
         review = active_take(context.scene).review
         step = {"CHOSEN": 0, "NEXT": 1, "PREVIOUS": -1}[self.direction]
         # At first, the worst frame itself is the next one.
@@ -59,9 +57,6 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
             return {"CANCELLED"}
         review.active_weak_frame = wanted  # which goes there
         return None
-
-
-# --- Take the reconstructed pose as a keyframe, so that the animator only corrects it
 
 
 class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
@@ -107,13 +102,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
         return None
 
 
-# --- Look at the actor from the footage's side, where depth shows, and back
-
-
-DISTANCE_HEIGHTS = 2.6
-"""Distance of the view from the actor, in heights of its body: all of it is seen, limbs stretched out too."""
-
-
 class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
     """Look at the actor from the camera's right, where depth shows; once more, through the camera again"""
 
@@ -151,13 +139,9 @@ def look_from_side(
     view.view_perspective = "ORTHO"
     view.view_location = center
     view.view_rotation = Matrix((up.cross(backward), up, backward)).transposed().to_quaternion()
-    view.view_distance = DISTANCE_HEIGHTS * height
+    view.view_distance = 2.6 * height  # all of it is seen, limbs stretched out too
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_jump_to_weak_frame,
-        KEYMARK_OT_pose_from_motion,
-        KEYMARK_OT_look_from_side,
-    )
+    (KEYMARK_OT_jump_to_weak_frame, KEYMARK_OT_pose_from_motion, KEYMARK_OT_look_from_side)
 )

@@ -1,4 +1,4 @@
-"""Open a take from disk: footage, camera, actor, what is followed, and keyframes."""
+"""Open a take from disk or one that comes with Keymark; files that are dropped onto an editor."""
 
 from pathlib import Path
 
@@ -36,7 +36,6 @@ class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser, unless a file was dropped."""
         if self.filepath:
             return self.execute(context)
         return browse(self, context)
@@ -53,31 +52,15 @@ def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(KEYMARK_OT_open_take.bl_idname, text="Keymark Take (take.json)")
 
 
-def _register_open_take() -> None:
-    """Add the operator, and an entry to File > Import."""
-    bpy.utils.register_class(KEYMARK_OT_open_take)
-    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
-
-
-def _unregister_open_take() -> None:
-    """Remove both."""
-    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
-    bpy.utils.unregister_class(KEYMARK_OT_open_take)
-
-
-# --- Open a take that comes with Keymark, ready to reconstruct
-
-
-AEROBIC, GREETING = "AEROBIC", "GREETING"
 EXAMPLES = (
     (
-        AEROBIC,
+        "AEROBIC",
         "Exercise in Colored Sleeves",
         "Four seconds of exercise in sleeves and leggings of five colors, picked already, with twelve "
         "keyframes posed by hand",
     ),
     (
-        GREETING,
+        "GREETING",
         "Greeting in Plain Clothes",
         "Somebody comes in and waves, in clothes without markers: keypoints as a detector sees them, the "
         "body's contours, and ten keyframes posed by hand",
@@ -113,7 +96,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """What the chosen example shows, and where its clip lies."""
         if not properties.is_property_set("example"):
             return cls.__doc__ or ""
         shown = next(text for name, _, text in EXAMPLES if name == properties.example)
@@ -121,7 +103,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         return f"{shown}.\n{kept}"
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask which example, and for the folder of a copy."""
         if not self.properties.is_property_set("example"):
             context.window_manager.popup_menu(_draw_examples, title=self.bl_label)
             return {"CANCELLED"}  # each entry is a step of its own
@@ -131,7 +112,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw which example, beside the folder's picker and in Adjust Last Operation."""
         self.layout.prop(self, "example", text="")
 
     def run(self, context: bpy.types.Context) -> None:
@@ -154,19 +134,11 @@ def _draw_examples(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout = menu.layout
     for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
         for name, title, _ in EXAMPLES:
-            text = title
-            entry = layout.operator(
-                KEYMARK_OT_open_example.bl_idname,
-                text=f"Copy {text} to Folder" if copy else text,
-                icon=icon,
-                translate=False,
-            )
+            text = f"Copy {title} to Folder" if copy else title
+            entry = layout.operator("keymark.open_example", text=text, icon=icon, translate=False)
             entry.example, entry.copy = name, copy
         if not copy:
             layout.separator()
-
-
-# --- Open a dropped .json
 
 
 TAKE_FILE = "take.json"
@@ -184,21 +156,15 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
     filepath: bpy.props.StringProperty(name="File Path", subtype="FILE_PATH", options={"SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Invoke the file's operator, which may show a dialog."""
         with reported(self):
             return self._delegate("INVOKE_DEFAULT")
         return {"CANCELLED"}
 
     def run(self, context: bpy.types.Context) -> set[str]:
-        """Run the file's operator."""
         return self._delegate("EXEC_DEFAULT")
 
     def _delegate(self, execution_context: str) -> set[str]:
-        """Call the operator for the file's content, and return its result.
-
-        Raises:
-            InputError: The file is none of these, or the operator failed.
-        """
+        """Call the operator for the file's content, and return its result."""
         from ...core.footage.keypoints.keypoint_file import LARGEST_BYTES
 
         path = Path(bpy.path.abspath(self.filepath))
@@ -223,14 +189,8 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
             raise InputError(str(error).removeprefix("Error: ").strip()) from error
 
 
-# --- Handlers of files dropped onto an editor
-
-
-EDITORS = {"VIEW_3D", "CLIP_EDITOR"}
-
-
 def _over_an_editor(context: bpy.types.Context) -> bool:
-    return context.area is not None and context.area.type in EDITORS
+    return context.area is not None and context.area.type in {"VIEW_3D", "CLIP_EDITOR"}
 
 
 class KEYMARK_FH_footage(bpy.types.FileHandler):
@@ -243,7 +203,6 @@ class KEYMARK_FH_footage(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Over editors that show footage."""
         return _over_an_editor(context)
 
 
@@ -257,12 +216,12 @@ class KEYMARK_FH_take(bpy.types.FileHandler):
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:
-        """Over editors that show footage or assets."""
         return _over_an_editor(context) or (context.area is not None and context.area.ui_type == "ASSETS")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
+        KEYMARK_OT_open_take,
         KEYMARK_OT_open_example,
         KEYMARK_OT_open_dropped,
         KEYMARK_FH_footage,
@@ -272,12 +231,12 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 
 
 def register() -> None:
-    """Register all of this module."""
+    """Register the operators and file handlers, and add an entry to File > Import."""
     _register_classes()
-    _register_open_take()
+    bpy.types.TOPBAR_MT_file_import.append(_draw_import)
 
 
 def unregister() -> None:
     """Take it all back."""
-    _unregister_open_take()
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     _unregister_classes()

@@ -1,4 +1,4 @@
-"""The next step of the work on a take, from properties alone, so that it can be drawn."""
+"""The sidebar's main panel: the takes, the running job, or the next step of the work on a take."""
 
 import bpy
 
@@ -11,11 +11,9 @@ from ..shell.panel import RowList, SidebarPanel, draw_progress, draw_sentence, s
 from ..shell.takes import find_take, has_lost_actor, placement_is_guess, present_actor
 from .upgrade import is_newer
 
-FEWEST_KEYFRAMES = 2
-
 
 def next_step(take: bpy.types.PropertyGroup) -> str:
-    """Return a label short enough for a narrow sidebar."""
+    """The next step, from properties alone, in a label short enough for a narrow sidebar."""
     if take.clip is None:
         return "Next: load the footage"
     if take.clip_state.missing:
@@ -39,7 +37,7 @@ def next_step(take: bpy.types.PropertyGroup) -> str:
     if take.motion_action is None:
         if unposed_proposals(take) and not matched_frames(take):
             return "Next: pose all keyframes" if followed else "Next: pose the proposed frames"
-        if len(keyframes_of(take)) < FEWEST_KEYFRAMES:
+        if len(keyframes_of(take)) < 2:
             return "Next: pose and store keyframes"
         if doubtful_matches(take):
             return "Next: check doubtful ones, reconstruct"
@@ -72,9 +70,6 @@ def _how_to_better(take: bpy.types.PropertyGroup) -> str:
     return "Next: reconstruct again" if weak else "Next: pose more keyframes"
 
 
-# --- The main panel
-
-
 STEPS = (
     ("FILE_MOVIE", "Footage: load the clip, say where the camera stood"),
     ("TRACKER", "Follow: detected keypoints, or sleeves of five colors"),
@@ -86,7 +81,6 @@ STEPS = (
     ("COMMUNITY", "Character: give the motion to your own rig"),
 )
 """Icon and label of each step."""
-BUTTON_SCALE = 1.6
 
 
 class KEYMARK_UL_takes(RowList, bpy.types.UIList):
@@ -95,7 +89,6 @@ class KEYMARK_UL_takes(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one take."""
         row = layout.row(align=True)
         done = item.motion_action is not None
         row.prop(item, "name", text="", emboss=False, icon="ACTION" if done else "FILE_MOVIE")
@@ -109,7 +102,6 @@ class KEYMARK_MT_add_take(bpy.types.Menu):
     bl_label = "Add Take"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw them: the same clip, another clip, a take from disk."""
         layout = self.layout
         layout.operator("keymark.add_performer", icon="USER")
         layout.operator("keymark.load_footage", icon="FILE_MOVIE").as_new_take = True
@@ -124,7 +116,6 @@ class KEYMARK_MT_take_specials(bpy.types.Menu):
     bl_label = "Take Specials"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw removal with all data, and the guide."""
         layout = self.layout
         entry = layout.operator("keymark.remove_take", text="Remove Take and Its Data", icon="TRASH")
         entry.delete_data = True
@@ -141,7 +132,6 @@ class KEYMARK_PT_guide(bpy.types.Panel):
     bl_ui_units_x = 16
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the steps."""
         column = self.layout.column(align=True)
         for icon, text in STEPS:
             column.label(text=text, icon=icon, translate=False)
@@ -153,7 +143,6 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
     bl_label = "Keymark"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the takes, and the running job or the next step."""
         registry.refresh_if_empty()
         keep_beside_sidebar(context)
         layout, take = self.layout, find_take(context.scene)
@@ -178,7 +167,7 @@ class KEYMARK_PT_main(SidebarPanel, bpy.types.Panel):
 def _draw_beginning(layout: bpy.types.UILayout) -> None:
     """Draw what to begin with in an empty scene."""
     column = layout.column()
-    column.scale_y = BUTTON_SCALE
+    column.scale_y = 1.6
     column.operator("keymark.load_footage", icon="FILE_MOVIE")
     column.operator("keymark.open_take", icon="FILE_FOLDER")
     column.operator("keymark.open_example", icon="PLAY")

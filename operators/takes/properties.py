@@ -13,8 +13,7 @@ from ..character.properties import KEYMARK_PG_character
 from ..finish.properties import KEYMARK_PG_finish
 from ..follow.keypoint_properties import KEYMARK_PG_follow
 from ..follow.marker_properties import KEYMARK_PG_ignored_region, KEYMARK_PG_marker
-from ..footage import properties as camera_fields
-from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state
+from ..footage.properties import KEYMARK_PG_camera_line, KEYMARK_PG_clip_state, placement_accessors
 from ..footage.take_footage import camera_chosen, clip_chosen, is_missing
 from ..keyframes.found_properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..overlays.properties import KEYMARK_PG_overlays
@@ -47,23 +46,11 @@ def _armature_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) 
         show_lengths(take, read_body(take.armature, HUMAN))
 
 
-def _is_camera(_take: bpy.types.PropertyGroup, candidate: bpy.types.Object) -> bool:
-    return bool(candidate.type == "CAMERA")
-
-
 def _renamed(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     others = [other.name for other in take.id_data.keymark.takes if other != take]
     free = unique_name(take.name.strip() or "Take", others)
     if take.name != free:
         take.name = free
-
-
-def _clip_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    clip_chosen(take)
-
-
-def _camera_chosen(take: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    camera_chosen(take)
 
 
 class KEYMARK_PG_proposal(bpy.types.PropertyGroup):
@@ -91,15 +78,15 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Clip",
         description="The footage of the performer; the scene's size, rate and range follow it",
         type=bpy.types.MovieClip,
-        update=_clip_chosen,
+        update=lambda take, _: clip_chosen(take),
     )
     clip_state: bpy.props.PointerProperty(type=KEYMARK_PG_clip_state)
     camera: bpy.props.PointerProperty(
         name="Camera",
         description="The camera that took the footage; its animation is used, if it moves",
         type=bpy.types.Object,
-        poll=_is_camera,
-        update=_camera_chosen,
+        poll=lambda _, candidate: candidate.type == "CAMERA",
+        update=lambda take, _: camera_chosen(take),
     )
     guessed_lens_mm: bpy.props.FloatProperty(
         name="Guessed Lens",
@@ -123,8 +110,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         min=0.01,
         soft_max=10.0,
         max=1000.0,
-        get=camera_fields.get_height,
-        set=camera_fields.set_height,
+        **placement_accessors("height_m"),
     )
     camera_tilt: bpy.props.FloatProperty(
         name="Tilt",
@@ -134,8 +120,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         step=10,
         min=-pi / 2,
         max=pi / 2,
-        get=camera_fields.get_tilt,
-        set=camera_fields.set_tilt,
+        **placement_accessors("tilt_rad"),
     )
     camera_roll: bpy.props.FloatProperty(
         name="Roll",
@@ -146,8 +131,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         step=10,
         min=-pi,
         max=pi,
-        get=camera_fields.get_roll,
-        set=camera_fields.set_roll,
+        **placement_accessors("roll_rad"),
     )
     camera_lines: bpy.props.CollectionProperty(type=KEYMARK_PG_camera_line)
     camera_findings: bpy.props.StringProperty(
@@ -191,9 +175,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     follow: bpy.props.PointerProperty(type=KEYMARK_PG_follow)
     keyframe_action: bpy.props.PointerProperty(
-        name="Keyframes",
-        description="The Action that holds the keyframes you pose",
-        type=bpy.types.Action,
+        name="Keyframes", description="The Action that holds the keyframes you pose", type=bpy.types.Action
     )
     keyframe_count: bpy.props.IntProperty(
         name="Count",
@@ -210,9 +192,7 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
         name="Method", description="How the frames between the keyframes are found", items=METHODS
     )
     motion_action: bpy.props.PointerProperty(
-        name="Motion",
-        description="The Action that holds the reconstructed motion",
-        type=bpy.types.Action,
+        name="Motion", description="The Action that holds the reconstructed motion", type=bpy.types.Action
     )
     live_preview: bpy.props.BoolProperty(
         name="Live Preview",
@@ -233,9 +213,6 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     active_character: bpy.props.IntProperty(
         name="Active Character", description="The character that is chosen in the list", default=0, min=0
     )
-
-
-# --- Keymark's properties of a scene
 
 
 def _active_take_changed(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -262,34 +239,18 @@ class KEYMARK_PG_settings(bpy.types.PropertyGroup):
     overlays: bpy.props.PointerProperty(type=KEYMARK_PG_overlays)
 
 
-def _register_scene_properties() -> None:
-    """Add the properties to scenes."""
-    bpy.utils.register_class(KEYMARK_PG_settings)
-    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=KEYMARK_PG_settings)
-
-
-def _unregister_scene_properties() -> None:
-    """Remove them."""
-    del bpy.types.Scene.keymark
-    bpy.utils.unregister_class(KEYMARK_PG_settings)
-
-
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_PG_proposal,
-        KEYMARK_PG_note,
-        KEYMARK_PG_take,
-    )
+    (KEYMARK_PG_proposal, KEYMARK_PG_note, KEYMARK_PG_take, KEYMARK_PG_settings)
 )
 
 
 def register() -> None:
-    """Register all of this module."""
+    """Register the groups, and add Keymark's properties to scenes."""
     _register_classes()
-    _register_scene_properties()
+    bpy.types.Scene.keymark = bpy.props.PointerProperty(type=KEYMARK_PG_settings)
 
 
 def unregister() -> None:
     """Take it all back."""
-    _unregister_scene_properties()
+    del bpy.types.Scene.keymark
     _unregister_classes()

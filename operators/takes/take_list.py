@@ -1,4 +1,4 @@
-"""Add a take for another performer in the same clip."""
+"""The scene's list of takes: one added for another performer, removed, and saved."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,8 +7,7 @@ import bpy
 
 from ...core.errors import InputError
 from ...core.progress import run
-from ..follow.evidence import scene_evidence
-from ..follow.keypoint_paths import add_keypoint_file, keypoint_path
+from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
 from ..keyframes.found_keyframes import known_matches
 from ..shell.base_operator import BaseOperator, warn
 from ..shell.requirements import actor, footage, idle
@@ -39,9 +38,6 @@ class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
             add_keypoint_file(take, path)
 
 
-# --- Remove a take from the scene's list
-
-
 def take(context: bpy.types.Context) -> str | None:
     """The scene has a take."""
     return "There is no take to remove" if find_take(context.scene) is None else None
@@ -64,7 +60,6 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
     )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove the take; the one before it becomes active."""
         settings = context.scene.keymark
         active = active_take(context.scene)
         index = next(i for i, each in enumerate(settings.takes) if each == active)
@@ -98,9 +93,6 @@ def _data_of(group: bpy.types.PropertyGroup) -> Iterator[bpy.types.ID]:
             yield value
 
 
-# --- Save the active take as a folder, to convert it elsewhere
-
-
 class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     """Save footage, camera, actor, keyframes and what is followed as a take folder, to convert elsewhere"""
 
@@ -117,12 +109,10 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the file browser."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def run(self, context: bpy.types.Context) -> None:
-        """Read the take from the scene and write the folder."""
         from ...core.shoot.discovery import check_hides_no_take
         from ...core.take.evidence import evidence_of
         from ...core.take.take_file import write_take
@@ -152,9 +142,5 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_add_performer,
-        KEYMARK_OT_remove_take,
-        KEYMARK_OT_save_take,
-    )
+    (KEYMARK_OT_add_performer, KEYMARK_OT_remove_take, KEYMARK_OT_save_take)
 )

@@ -19,8 +19,8 @@ from ..bridge.footage import clip_rate
 from ..bridge.footage_to_scene import load_footage, show_footage
 from ..bridge.keyframes import write_keyframes
 from ..bridge.scene_frames import scene_frames
+from ..follow.evidence import add_keypoint_file
 from ..follow.ignored_regions import add_ignored_regions
-from ..follow.keypoint_paths import add_keypoint_file
 from ..follow.marker_styles import set_marker_color
 from ..footage.load_footage import hide_startup_cube
 from ..footage.take_footage import look_through_camera, show_range
@@ -36,20 +36,13 @@ class OpenedTake:
     """A take read from disk, checked against its clip."""
 
     take: Take
-    time_s: Array
-    """(F,) time of each frame [s]."""
-    kinds: tuple[str, ...]
-    """The kinds of evidence that it is held against; it may have more."""
-    notes: tuple[str, ...]
-    """Sentences to report."""
+    time_s: Array  # (F,) time of each frame [s]
+    kinds: tuple[str, ...]  # The kinds of evidence that it is held against; it may have more
+    notes: tuple[str, ...]  # Sentences to report
 
 
 def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
-    """Read a take and check it against its clip.
-
-    Args:
-        folder: The take's folder.
-        keyframe_file: Name of the keyframe file in it; the usual one may be missing.
+    """Read a take of a folder and check it against its clip; the usual keyframe file may be missing.
 
     Raises:
         InputError: The take or its clip is unusable.
@@ -68,11 +61,7 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
 
 
 def open_in_scene(operator: bpy.types.Operator, context: bpy.types.Context, opened: OpenedTake) -> None:
-    """Add a take to the scene, show its footage and its range, and report what a person should know of it.
-
-    Raises:
-        InputError: Blender cannot read the clip; the scene is unchanged.
-    """
+    """Add a take to the scene, show its footage and its range, and report what a person should know of it."""
     add_take_to_scene(context, opened)
     hide_startup_cube(context)
     take = active_take(context.scene)

@@ -18,7 +18,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 def test_one_click_stands_the_actor_at_the_performer(
     unposed_scene: bpy.types.Scene, wave_motion: Motion
 ) -> None:
-    """The hips within decimeters along the view, and much nearer across it."""
     unposed_scene.frame_set(1)
     assert bpy.ops.keymark.build_actor(stature=1.72) == {"FINISHED"}
     true = wave_motion.posture.translation[0]
@@ -28,7 +27,6 @@ def test_one_click_stands_the_actor_at_the_performer(
 
 
 def test_without_footage_the_actor_stands_at_the_origin() -> None:
-    """In an empty scene, with a take of its own."""
     bpy.ops.keymark.build_actor(stature=1.6)
     scene = bpy.context.scene
     body = read_body(active_take(scene).armature, HUMAN)
@@ -37,7 +35,6 @@ def test_without_footage_the_actor_stands_at_the_origin() -> None:
 
 
 def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.types.Scene) -> None:
-    """No second armature, no key lost, no pose moved."""
     take = active_take(opened)
     armature_object, action = take.armature, take.keyframe_action
     opened.frame_set(7)
@@ -52,7 +49,6 @@ def test_building_again_changes_the_actor_and_keeps_its_keyframes(opened: bpy.ty
 
 
 def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
-    """Symmetric ones come in pairs; nonsense is refused by the property itself."""
     take = active_take(opened)
     take.lengths.symmetric = True
     take.lengths.forearm_L = 0.31
@@ -66,7 +62,6 @@ def test_lengths_of_the_panel_reach_the_bones(opened: bpy.types.Scene) -> None:
 
 
 def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.types.Scene) -> None:
-    """Applying them to another one would otherwise make it the old one's size."""
     from keymark.core.body.actor import Actor
     from keymark.core.body.kinematics import Body
     from keymark.operators.bridge.armature import build_armature
@@ -82,7 +77,6 @@ def test_lengths_shown_are_those_of_the_armature_that_is_chosen(opened: bpy.type
 def test_a_standing_performer_is_measured_from_two_pixels(
     unposed_scene: bpy.types.Scene, wave_motion: Motion, tiny_take: Take
 ) -> None:
-    """Place to a few centimeters, height exactly."""
     unposed_scene.frame_set(1)
     body = wave_motion.body
     hips = wave_motion.posture.translation[0]

@@ -19,7 +19,6 @@ NEAR = 1e-4
 
 
 def delete(armature_object: bpy.types.Object) -> None:
-    """Delete an object as X in the viewport does: it leaves the scene."""
     with bpy.context.temp_override(selected_objects=[armature_object], active_object=armature_object):
         assert bpy.ops.object.delete() == {"FINISHED"}
 
@@ -27,7 +26,6 @@ def delete(armature_object: bpy.types.Object) -> None:
 @pytest.mark.parametrize("again", ["apply_lengths", "build_actor"])
 @pytest.mark.parametrize("how", ["in the viewport", "from the file"])
 def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, how: str, again: str) -> None:
-    """Whether it is in the file still or has to be built: the same lengths, frames and poses."""
     take = active_take(opened)
     bpy.ops.keymark.apply_lengths()
     opened.frame_set(FRAME)
@@ -57,7 +55,6 @@ def test_a_deleted_actor_comes_back_with_its_keyframes(opened: bpy.types.Scene, 
 
 
 def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opened: bpy.types.Scene) -> None:
-    """Keys move the hips from where they are at rest, which the lengths alone do not tell."""
     take = active_take(opened)
     bpy.ops.keymark.build_actor(stature=1.95)  # longer legs, the hips at rest stay
     opened.frame_set(FRAME)
@@ -69,7 +66,6 @@ def test_an_actor_that_stood_higher_at_rest_is_built_where_its_keys_put_it(opene
 
 
 def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened: bpy.types.Scene) -> None:
-    """One that has an Action of its own keeps it."""
     take = active_take(opened)
     frames = keyframes_of(take)
     first, other = take.armature, build_armature(opened, Body(Actor.from_stature(1.7)))
@@ -82,7 +78,6 @@ def test_another_actor_that_is_chosen_is_animated_by_the_takes_keyframes(opened:
 
 
 def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.types.Scene) -> None:
-    """No second one is built beside it."""
     take = active_take(opened)
     actor, count = take.armature, len(bpy.data.objects)
     take.armature = None
@@ -91,7 +86,6 @@ def test_a_field_that_was_emptied_gets_the_actor_of_the_scene_back(opened: bpy.t
 
 
 def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> None:
-    """No other armatures, and no actor that was deleted and is kept by another take."""
     from keymark.operators.takes.properties import _is_actor
 
     take = active_take(opened)
@@ -103,6 +97,5 @@ def test_the_field_offers_actors_of_the_scene_alone(opened: bpy.types.Scene) -> 
 
 
 def test_a_height_is_shown_to_the_millimeter(opened: bpy.types.Scene) -> None:
-    """Blender's precision of a length with a unit counts all digits, not those after the point."""
     precision = active_take(opened).bl_rna.properties["stature"].precision
     assert bpy.utils.units.to_string("METRIC", "LENGTH", 1.797, precision=precision) == "1.797 m"

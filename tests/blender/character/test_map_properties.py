@@ -166,7 +166,7 @@ def test_a_map_in_the_library_folder_is_suggested(
     character: bpy.types.PropertyGroup, rig: bpy.types.Object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where its bones are those of the armature; one click then uses it."""
-    monkeypatch.setattr("keymark.operators.library.library_files.own_folder", lambda: tmp_path)
+    monkeypatch.setattr("keymark.operators.library.registry.own_folder", lambda: tmp_path)
     role(character, "hand.L").bones[0].bone = "finger.L"
     character.character_map.title = "My Hero"
     bpy.ops.keymark.save_map(filepath=str(tmp_path / "hero.json"))

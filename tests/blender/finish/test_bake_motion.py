@@ -26,7 +26,6 @@ ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
 
 def motion_of(body: Body, posture: Posture) -> Motion:
-    """A motion of FRAMES frames at 30 a second, from scene frame 1."""
     points = body.points(body.pose(posture))
     covariance = np.broadcast_to(1e-4 * np.eye(3), (FRAMES, 13, 3, 3))
     return Motion(body, 30.0, 1, np.arange(FRAMES) / 30.0, posture, points, covariance, (0,), "map")
@@ -63,7 +62,6 @@ def take(
 
 
 def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points: ShownPoints) -> np.ndarray:
-    """(F, 13, 3) evaluated points of an Action, frame by frame."""
     scene = bpy.context.scene
     assign_action(take.armature, action)
     before = scene.frame_current
@@ -78,7 +76,6 @@ def places(take: bpy.types.PropertyGroup, action: bpy.types.Action, shown_points
 def curves(
     take: bpy.types.PropertyGroup, action: bpy.types.Action
 ) -> dict[tuple[str, int], bpy.types.FCurve]:
-    """The curves that animate the actor."""
     found = existing_channelbag(action, take.armature).fcurves
     return {(curve.data_path, curve.array_index): curve for curve in found}
 
@@ -87,7 +84,6 @@ def curves(
 def test_few_keys_show_the_motion_within_the_tolerance(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, shared: str
 ) -> None:
-    """In Blender itself, whatever the bones' rotation modes, in every frame."""
     settings = take.finish
     settings.plant_feet, settings.tolerance_mm, settings.shared = False, 6.0, shared
     assert bpy.ops.keymark.bake_motion() == {"FINISHED"}
@@ -102,7 +98,6 @@ def test_few_keys_show_the_motion_within_the_tolerance(
 
 
 def test_keys_are_the_animators_own_and_posed_frames_stay(take: bpy.types.PropertyGroup) -> None:
-    """No key is GENERATED, curves are smooth, every bone is keyed where the animator posed."""
     bpy.ops.keymark.bake_motion()
     for curve in curves(take, take.finish.action).values():
         points = curve.keyframe_points
@@ -114,7 +109,6 @@ def test_keys_are_the_animators_own_and_posed_frames_stay(take: bpy.types.Proper
 
 
 def test_handles_give_the_cubic_that_was_checked(take: bpy.types.PropertyGroup) -> None:
-    """Between the keys Blender's curve is the Hermite cubic of the keys' values and slopes."""
     bpy.ops.keymark.bake_motion()
     curve = max(
         curves(take, take.finish.action).values(), key=lambda c: abs(c.range()[1] - len(c.keyframe_points))
@@ -171,12 +165,10 @@ def test_planted_feet_stand_still_in_blender(
 
 
 def travel(path: np.ndarray) -> np.ndarray:
-    """Mean distance per frame of each point of (F, N, 3)."""
     return np.linalg.norm(np.diff(path, axis=0), axis=-1).mean(axis=0)
 
 
 def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup) -> None:
-    """No second Action; a coarser tolerance leaves fewer keys and none of the old ones."""
     bpy.ops.keymark.bake_motion()
     action, count, actions = take.finish.action, take.finish.keys_after, len(bpy.data.actions)
     take.finish.tolerance_mm = 30.0
@@ -190,7 +182,6 @@ def test_baking_again_writes_into_the_same_action(take: bpy.types.PropertyGroup)
 
 
 def test_other_curves_of_the_motion_come_along(take: bpy.types.PropertyGroup) -> None:
-    """Hands that the animator keyed keep their keys and handles."""
     channelbag = existing_channelbag(take.motion_action, take.armature)
     for curve in [curve for curve in channelbag.fcurves if '"hand.L"' in curve.data_path]:
         channelbag.fcurves.remove(curve)
@@ -227,14 +218,12 @@ def test_the_rig_shows_what_blender_shows(take: bpy.types.PropertyGroup, shown_p
 
 
 def test_without_a_motion_the_tooltip_says_so(take: bpy.types.PropertyGroup) -> None:
-    """The operator is disabled, and its tooltip names the missing requirement."""
     take.motion_action = None
     with pytest.raises(RuntimeError, match="Reconstruct the motion first"):
         bpy.ops.keymark.bake_motion()
 
 
 def test_an_action_of_one_frame_is_refused_with_a_sentence(take: bpy.types.PropertyGroup) -> None:
-    """Nothing is made."""
     take.motion_action = bpy.data.actions.new("Empty")
     with pytest.raises(RuntimeError, match="has no motion of 'Actor'"):
         bpy.ops.keymark.bake_motion()

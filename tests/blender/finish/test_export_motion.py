@@ -26,7 +26,6 @@ ShownPoints = Callable[[bpy.types.Object], np.ndarray]
 
 @pytest.fixture
 def take(registered: None, body: Body, wave_motion: Motion) -> bpy.types.PropertyGroup:
-    """A take with a reconstructed motion."""
     scene = bpy.context.scene
     scene.frame_end = 250
     result = add_take(scene, "Wave")
@@ -37,7 +36,6 @@ def take(registered: None, body: Body, wave_motion: Motion) -> bpy.types.Propert
 
 
 def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """Catalog, tags, words and picture survive saving and loading; the catalog's file names it."""
     blend = tmp_path / "library.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
     settings = take.finish
@@ -68,7 +66,6 @@ def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup,
 
 
 def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
-    """The error names the remedy; without a catalog the motion is marked nevertheless."""
     with pytest.raises(RuntimeError, match="save it first, or leave Catalog empty"):
         bpy.ops.keymark.mark_asset()
     assert take.motion_action.asset_data is None
@@ -78,7 +75,6 @@ def test_an_unsaved_file_has_no_catalogs(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_marking_again_replaces_tags_only(take: bpy.types.PropertyGroup) -> None:
-    """No tag is repeated, and tags that are no longer named are removed."""
     take.finish.catalog = ""
     for tags in ("a, b", "b, c"):
         take.finish.tags = tags
@@ -87,7 +83,6 @@ def test_marking_again_replaces_tags_only(take: bpy.types.PropertyGroup) -> None
 
 
 def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
-    """Others' catalogs and comments stay; a catalog that is there is found, not added again."""
     file = tmp_path / NAME
     before = "# mine\nVERSION 1\n\n11111111-2222-3333-4444-555555555555:Props/Chairs:Props-Chairs\n"
     file.write_text(before)
@@ -107,14 +102,12 @@ def test_a_catalog_file_keeps_what_is_there(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("catalog", ["", "/", "a:b", "a\nb"])
 def test_a_catalog_that_is_no_path_is_refused(tmp_path: Path, catalog: str) -> None:
-    """Nothing is written."""
     with pytest.raises(InputError, match="is not a path of names"):
         ensure_catalog(tmp_path / NAME, catalog)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
-    """Its first line is not the version that is known."""
     file = tmp_path / NAME
     file.write_text("VERSION 7\n")
     with pytest.raises(InputError, match="begins with 'VERSION 7'"):
@@ -123,7 +116,6 @@ def test_a_file_of_another_kind_is_left_alone(tmp_path: Path) -> None:
 
 
 def state(scene: bpy.types.Scene) -> tuple[object, ...]:
-    """The state that an export must restore."""
     layer = bpy.context.view_layer
     return (
         [o.name for o in layer.objects if o.select_get()],
@@ -147,7 +139,6 @@ IMPORTERS = {
 def test_an_exported_motion_moves_alike_when_read_back(
     take: bpy.types.PropertyGroup, shown_points: ShownPoints, tmp_path: Path, kind: str
 ) -> None:
-    """The hand moves as the actor's; the scene is as before."""
     if FORMATS[kind].missing():
         pytest.skip(FORMATS[kind].missing())
     if kind == "GLTF" and bpy.app.version < (5, 0) and not bpy.app.binary_path:
@@ -180,7 +171,6 @@ def test_an_exported_motion_moves_alike_when_read_back(
 
 
 def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndarray:
-    """(13, 3) where a bone's head is in the world, frame by frame."""
     scene = bpy.context.scene
     places = []
     for frame in range(1, 14):
@@ -191,7 +181,6 @@ def way(armature_object: bpy.types.Object, bone: str, later: int = 0) -> np.ndar
 
 
 def test_a_failed_export_leaves_no_file_and_the_scene(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """A folder stands where the file should: one sentence, nothing beside it."""
     folder = tmp_path / "wave.bvh"
     folder.mkdir()
     before = state(bpy.context.scene)
@@ -205,7 +194,6 @@ def test_a_failed_export_leaves_no_file_and_the_scene(take: bpy.types.PropertyGr
 def test_a_format_that_blender_lacks_is_refused(
     take: bpy.types.PropertyGroup, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With the reason."""
     gone = replace(FORMATS["USD"], operator_type="KEYMARK_OT_of_no_addon", addon="USD Exporter")
     monkeypatch.setitem(FORMATS, "USD", gone)
     with pytest.raises(RuntimeError, match="USD cannot be written: Enable the add-on USD Exporter"):
@@ -213,7 +201,6 @@ def test_a_format_that_blender_lacks_is_refused(
 
 
 def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """The actor stays hidden, and the armature that is posed stays in its mode."""
     scene, actor = bpy.context.scene, take.armature
     layer = bpy.context.view_layer
     hidden = bpy.data.collections.new("Hidden")
@@ -233,7 +220,6 @@ def test_an_export_that_is_refused_changes_nothing(take: bpy.types.PropertyGroup
 
 @pytest.mark.usefixtures("registered")
 def test_the_operator_is_made_from_the_registry_of_formats() -> None:
-    """Its menu and the filter of its file browser name every format."""
     properties = bpy.ops.keymark.export_motion.get_rna_type().properties
     menu = [(item.identifier, item.name, item.description) for item in properties["format"].enum_items]
     assert menu == [(kind, each.name, each.description) for kind, each in FORMATS.items()]
@@ -242,7 +228,6 @@ def test_the_operator_is_made_from_the_registry_of_formats() -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_a_final_action_of_an_earlier_motion_says_so(tiny_take: Take, tmp_path: Path) -> None:
-    """After another reconstruction the export warns; after another bake it does not."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     take = active_take(bpy.context.scene)
     take.method = "interpolation"

@@ -35,7 +35,6 @@ def seen_people(take: Take, motion: Motion, noise_px: float = NOISE_PX, others: 
 
 @pytest.fixture
 def plain_take(tiny_take: Take, tmp_path: Path) -> Take:
-    """The tiny take without its markers."""
     folder = tmp_path / "plain"
     folder.mkdir()
     (folder / "clip.mp4").write_bytes(tiny_take.clip.read_bytes())
@@ -54,12 +53,10 @@ def keypoint_file(plain_take: Take, wave_motion: Motion) -> Path:
 
 @pytest.fixture
 def plain(registered: None, plain_take: Take) -> bpy.types.Scene:
-    """The scene with the plain take opened."""
     assert bpy.ops.keymark.open_take(filepath=str(plain_take.folder)) == {"FINISHED"}
     return bpy.context.scene
 
 
 @pytest.fixture
 def seen_by() -> Callable[..., People]:
-    """`seen_people`, for tests that need more than one person."""
     return seen_people

@@ -42,7 +42,6 @@ def walking_file(take: Take, frames: int, path: Path) -> Path:
 
 @pytest.mark.usefixtures("registered")
 def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
-    """A lens that somebody has set is kept."""
     clip = tmp_path / "room.mp4"
     writer = cv2.VideoWriter(
         str(clip), cv2.VideoWriter_fourcc(*"mp4v"), plain_take.fps, plain_take.camera.resolution
@@ -66,7 +65,6 @@ def test_a_walk_sets_height_and_tilt(plain_take: Take, tmp_path: Path) -> None:
 def test_who_never_stands_is_no_measure(
     plain: bpy.types.Scene, plain_take: Take, wave_motion: Motion
 ) -> None:
-    """The camera stays as it was, with keypoints that show nobody upright as without any."""
     with pytest.raises(RuntimeError, match="has no lines"):
         bpy.ops.keymark.camera_from_lines(kind="HEIGHT")
     lying = np.array(wave_motion.points)[..., [2, 1, 0]]

@@ -9,8 +9,7 @@ import pytest
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.click_points import clicked_here
-from keymark.operators.follow.evidence import scene_evidence
+from keymark.operators.follow.evidence import clicked_here, scene_evidence
 from keymark.operators.follow.frame_keypoints import clicks_at, keypoints_at
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -18,13 +17,11 @@ FRAMES = 13
 
 
 def click(scene: bpy.types.Scene, frame: int, point: str, pixel: tuple[float, float]) -> None:
-    """Click on a point in a frame."""
     scene.frame_set(frame)
     assert bpy.ops.keymark.click_point(point=point, pixel=pixel) == {"FINISHED"}
 
 
 def test_clicks_are_kept_by_frame_and_point(plain: bpy.types.Scene) -> None:
-    """A second click on a point moves it; other frames have their own."""
     click(plain, 3, "wrist.L", (40.0, 50.0))
     click(plain, 3, "head", (80.0, 20.0))
     click(plain, 9, "wrist.L", (70.0, 50.0))
@@ -43,7 +40,6 @@ def test_clicks_are_kept_by_frame_and_point(plain: bpy.types.Scene) -> None:
 
 
 def test_clicks_stay_with_the_picture_where_the_clip_is_moved(plain: bpy.types.Scene) -> None:
-    """On the timeline; beyond the clip they are no evidence."""
     click(plain, 3, "head", (80.0, 20.0))
     take = active_take(plain)
     take.clip.frame_start = 101
@@ -55,7 +51,6 @@ def test_clicks_stay_with_the_picture_where_the_clip_is_moved(plain: bpy.types.S
 
 
 def test_clicks_are_removed_one_by_one_and_by_frame(plain: bpy.types.Scene) -> None:
-    """Those of other frames stay."""
     for point in ("head", "knee.L", "knee.R"):
         click(plain, 3, point, (40.0, 50.0))
     click(plain, 4, "head", (40.0, 50.0))
@@ -68,7 +63,6 @@ def test_clicks_are_removed_one_by_one_and_by_frame(plain: bpy.types.Scene) -> N
 
 
 def test_a_click_outside_the_picture_is_refused(plain: bpy.types.Scene) -> None:
-    """The sentence names pixel and size."""
     with pytest.raises(RuntimeError, match=r"\(500, 3\) lies outside the footage, which is 160 x 120"):
         bpy.ops.keymark.click_point(point="head", pixel=(500.0, 3.0))
     assert len(active_take(plain).follow.clicks) == 0

@@ -50,12 +50,10 @@ def cluttered(tmp_path: Path) -> bpy.types.Scene:
 
 
 def place(index: int) -> tuple[float, float]:
-    """Where the sleeve is."""
     return 24.0 + 4.5 * index, 30.0
 
 
 def brush(radius: float = 8.0) -> None:
-    """Brush over the panel in rows."""
     left, top, right, bottom = PANEL
     path = [
         {"name": "", "loc": (x, y), "time": float(row)}
@@ -66,7 +64,6 @@ def brush(radius: float = 8.0) -> None:
 
 
 def test_a_brushed_panel_is_gone_from_masks_and_readouts(cluttered: bpy.types.Scene) -> None:
-    """The warning was there before; strokes are kept as they were made."""
     take = active_take(cluttered)
     (sleeve,) = take.markers
     assert "stays still" in sleeve.warning and len(sleeve.still_areas)
@@ -82,7 +79,6 @@ def test_a_brushed_panel_is_gone_from_masks_and_readouts(cluttered: bpy.types.Sc
 
 
 def test_still_areas_are_left_out_by_one_click(cluttered: bpy.types.Scene) -> None:
-    """With a box around the panel, and only while there are some."""
     assert bpy.ops.keymark.ignore_still_areas() == {"FINISHED"}
     (region,) = ignored_regions(active_take(cluttered))
     np.testing.assert_allclose(region.box, PANEL, atol=4.0)
@@ -92,7 +88,6 @@ def test_still_areas_are_left_out_by_one_click(cluttered: bpy.types.Scene) -> No
 
 
 def test_a_removed_region_is_searched_again(cluttered: bpy.types.Scene) -> None:
-    """The readout of before is gone with it."""
     bpy.ops.keymark.ignore_still_areas()
     take = active_take(cluttered)
     bpy.ops.keymark.remove_ignored_region()
@@ -103,7 +98,6 @@ def test_a_removed_region_is_searched_again(cluttered: bpy.types.Scene) -> None:
 
 
 def test_a_region_may_count_in_some_frames_only(cluttered: bpy.types.Scene) -> None:
-    """The panel shows frames of the scene; a clip that is moved in time takes them along."""
     take = active_take(cluttered)
     bpy.ops.keymark.ignore_still_areas()
     (region,) = take.ignored_regions
@@ -125,7 +119,6 @@ def test_a_region_may_count_in_some_frames_only(cluttered: bpy.types.Scene) -> N
 
 
 def test_a_path_that_cannot_be_used_is_refused(cluttered: bpy.types.Scene) -> None:
-    """Nothing to brush, nothing changed."""
     with pytest.raises(RuntimeError, match="Path is empty"):
         bpy.ops.keymark.ignore_region()
     assert not len(active_take(cluttered).ignored_regions)
@@ -134,7 +127,6 @@ def test_a_path_that_cannot_be_used_is_refused(cluttered: bpy.types.Scene) -> No
 def test_regions_go_into_the_take_and_come_back(
     opened: bpy.types.Scene, tiny_take: Take, tmp_path: Path
 ) -> None:
-    """Saved as a folder, read by core, and opened again as they were."""
     said = (
         IgnoredRegion(box=(1.0, 2.5, 30.0, 40.0)),
         IgnoredRegion(stroke=((5.1, 5.0), (9.5, 7.2)), radius_px=4.3, frames=(2, 5)),
@@ -165,7 +157,6 @@ def test_a_scenes_take_has_its_regions_while_markers_are_followed(opened: bpy.ty
 
 
 def test_proposals_read_the_clip_anew_where_something_is_ignored(cluttered: bpy.types.Scene) -> None:
-    """The reading is of the clip without the panel."""
     take = active_take(cluttered)
     bpy.ops.keymark.propose_keyframes()
     first = take.reading_key
@@ -191,7 +182,6 @@ def test_a_brush_keeps_what_can_be_seen_of_a_path() -> None:
 
 
 def test_what_is_ignored_is_hatched_and_nothing_else() -> None:
-    """Dark and light stripes, so that it shows over any color."""
     mask = np.zeros((30, 40), dtype=np.uint8)
     mask[10:20, 10:30] = 255
     picture = hatched(mask)

@@ -1,4 +1,4 @@
-"""Files of keypoints of a take: loaded, switched, moved, changed, and followed with nothing else."""
+"""Keypoints of a take: detected, loaded, switched, moved, changed, and followed with nothing else."""
 
 import json
 import os
@@ -9,11 +9,20 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from _fake_network import MiddleNetwork
 from keymark.core.footage.keypoints.keypoint_file import write_keypoints
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
-from keymark.operators.follow.frame_keypoints import clear_readings, keypoint_reading, keypoints_at
-from keymark.operators.follow.readouts import contours_label, keypoints_label, seen_label
+from keymark.operators.follow.evidence import keypoint_path
+from keymark.operators.follow.frame_keypoints import (
+    clear_readings,
+    contours_label,
+    keypoint_reading,
+    keypoints_at,
+    keypoints_label,
+    seen_label,
+)
+from keymark.operators.follow.load_keypoints import KEYMARK_OT_detect_keypoints
 from keymark.operators.shell.takes import active_take
 from keymark.operators.takes.panel import next_step
 
@@ -21,14 +30,12 @@ FRAMES = 13
 
 
 def load(path: Path) -> bpy.types.PropertyGroup:
-    """The active take with a file of keypoints."""
     assert bpy.ops.keymark.load_keypoints(filepath=str(path)) == {"FINISHED"}
     clear_readings()
     return active_take(bpy.context.scene)
 
 
-def reading(take: bpy.types.PropertyGroup):  # noqa: ANN201
-    """What panels show of the chosen file, looked at anew."""
+def reading(take: bpy.types.PropertyGroup):
     clear_readings()
     return keypoint_reading(take, take.follow.files[take.follow.active_file])
 
@@ -51,7 +58,6 @@ def openpose_folder(folder: Path, motion: Motion, take: Take) -> Path:
 def test_a_plain_take_is_reconstructed_from_keypoints(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion, shown_points: Callable
 ) -> None:
-    """No marker, no contour: three keyframes and a detector's points are enough."""
     take = load(keypoint_file)
     take.follow.use_contours = False
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -64,7 +70,6 @@ def test_a_plain_take_is_reconstructed_from_keypoints(
 
 
 def test_keyframes_are_proposed_from_keypoints(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """Where no marker tells how fast the performer moves."""
     take = load(keypoint_file)
     take.keyframe_count = 4
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
@@ -73,7 +78,6 @@ def test_keyframes_are_proposed_from_keypoints(plain: bpy.types.Scene, keypoint_
 
 
 def test_what_is_seen_is_said(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """The points of this frame with their score, nothing while they are switched off."""
     assert keypoints_label(active_take(plain)) == ""
     take = load(keypoint_file)
     (seen,) = keypoints_at(take, 5)
@@ -117,7 +121,6 @@ def test_a_file_is_listed_once_and_removed_again(
 def test_a_file_that_is_none_of_the_clips_is_refused(
     plain: bpy.types.Scene, keypoint_file: Path, change: Callable, sentence: str
 ) -> None:
-    """In one sentence, and the take stays as it was."""
     value = json.loads(keypoint_file.read_text(encoding="utf-8"))
     change(value)
     keypoint_file.write_text(json.dumps(value), encoding="utf-8")
@@ -129,7 +132,6 @@ def test_a_file_that_is_none_of_the_clips_is_refused(
 def test_a_file_that_is_gone_is_said_and_found_again(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """By the panel and by the estimate; the moved file takes the place of the old one."""
     take = load(keypoint_file)
     moved = Path(shutil.move(keypoint_file, tmp_path / "moved.json"))
     assert reading(take).is_missing and keypoints_at(take, 5) == ()
@@ -142,7 +144,6 @@ def test_a_file_that_is_gone_is_said_and_found_again(
 def test_a_file_that_was_written_again_is_said_and_used(
     plain: bpy.types.Scene, keypoint_file: Path, plain_take: Take, wave_motion: Motion, seen_by: Callable
 ) -> None:
-    """The newest content counts; the panel says so until it is loaded again."""
     take = load(keypoint_file)
     assert not reading(take).has_changed
     write_keypoints(keypoint_file, seen_by(plain_take, wave_motion, others=1), 1, plain_take.fps)
@@ -175,7 +176,6 @@ def test_the_blend_file_remembers_where_keypoints_are(
 def test_another_clip_drops_what_was_seen_in_the_first(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """As it drops proposals; switches stay."""
     take = load(keypoint_file)
     take.follow.use_contours = False
     bpy.ops.keymark.click_point(point="head", pixel=(30.0, 30.0))
@@ -189,7 +189,6 @@ def test_another_clip_drops_what_was_seen_in_the_first(
 def test_another_performer_has_the_same_files_and_no_clicks(
     plain: bpy.types.Scene, keypoint_file: Path
 ) -> None:
-    """A detector sees everyone; what a person clicked on is the first performer's."""
     load(keypoint_file)
     bpy.ops.keymark.click_point(point="head", pixel=(30.0, 30.0))
     assert bpy.ops.keymark.add_performer() == {"FINISHED"}
@@ -217,7 +216,6 @@ def test_what_is_missing_is_said(plain: bpy.types.Scene, keypoint_file: Path) ->
 
 
 def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> None:
-    """Neither looked for nor asked for their colors."""
     take = active_take(opened)
     bpy.ops.keymark.add_marker()  # without a color
     with pytest.raises(RuntimeError, match="Pick the colors of all markers"):
@@ -229,7 +227,6 @@ def test_markers_that_are_switched_off_are_left_out(opened: bpy.types.Scene) -> 
 
 @pytest.mark.usefixtures("registered")
 def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: Path) -> None:
-    """Keypoints are one way; whoever builds the actor at once follows contours alone."""
     bpy.ops.keymark.load_footage(filepath=str(plain_take.clip))
     scene = bpy.context.scene
     assert next_step(active_take(scene)) == "Next: say where the camera stood"
@@ -245,6 +242,40 @@ def test_the_next_step_goes_on_without_markers(plain_take: Take, keypoint_file: 
 
 
 def test_a_dropped_file_of_keypoints_is_loaded(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """Where a take's file is opened and a library imported."""
     assert bpy.ops.keymark.open_dropped(filepath=str(keypoint_file)) == {"FINISHED"}
     assert len(active_take(plain).follow.files) == 1
+
+
+@pytest.fixture(autouse=True)
+def network(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("keymark.core.footage.pose_network.PoseNetwork", MiddleNetwork)
+
+
+def test_what_is_found_is_written_beside_the_clip_and_listed(
+    plain: bpy.types.Scene, plain_take: Take
+) -> None:
+    theirs = plain_take.folder / "clip.keypoints.json"
+    theirs.write_text("theirs", encoding="utf-8")
+    for _ in range(2):
+        assert bpy.ops.keymark.detect_keypoints() == {"FINISHED"}
+    (entry,) = active_take(plain).follow.files
+    assert keypoint_path(entry) == plain_take.folder / "clip.keypoints2.json"
+    assert theirs.read_text(encoding="utf-8") == "theirs"
+
+
+def test_a_clip_without_anybody_changes_nothing(
+    plain: bpy.types.Scene, plain_take: Take, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(MiddleNetwork, "presence", 0.0)
+    before = sorted(plain_take.folder.iterdir())
+    with pytest.raises(RuntimeError, match="nobody is seen"):
+        bpy.ops.keymark.detect_keypoints()
+    assert sorted(plain_take.folder.iterdir()) == before and len(active_take(plain).follow.files) == 0
+
+
+def test_a_job_that_is_closed_leaves_nothing_behind(plain: bpy.types.Scene, plain_take: Take) -> None:
+    job = KEYMARK_OT_detect_keypoints.start(KEYMARK_OT_detect_keypoints, plain)
+    for _ in range(3):
+        assert next(job).stage == "Detecting keypoints"
+    job.close()
+    assert not list(plain_take.folder.glob("*keypoints*")) and len(active_take(plain).follow.files) == 0

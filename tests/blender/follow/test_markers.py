@@ -11,8 +11,8 @@ import pytest
 from keymark.core.errors import InputError
 from keymark.core.progress import run
 from keymark.core.take.take import Take
-from keymark.operators.follow.check_markers import KEYMARK_OT_check_markers
 from keymark.operators.follow.mask_previews import clear_previews, is_of_frame, preview_of, update_masks
+from keymark.operators.follow.pick_marker_color import KEYMARK_OT_check_markers
 from keymark.operators.footage.take_footage import update_clip_state
 from keymark.operators.overlays.mask import free_height, tinted
 from keymark.operators.shell.takes import active_take, add_take, take_by_identifier
@@ -24,7 +24,6 @@ USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take's clip and no marker."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return bpy.context.scene
 
@@ -36,7 +35,6 @@ def pixel_of(take: Take, segment: str) -> np.ndarray:
 
 
 def test_the_usual_five_are_added_at_once_and_only_where_missing() -> None:
-    """In an empty scene, and again after one was removed; none of them has a color yet."""
     bpy.ops.keymark.add_usual_markers()
     take = active_take(bpy.context.scene)
     assert [marker.segment for marker in take.markers] == USUAL
@@ -50,7 +48,6 @@ def test_the_usual_five_are_added_at_once_and_only_where_missing() -> None:
 
 
 def test_a_name_follows_its_segment_until_it_is_changed() -> None:
-    """A name of the animator's own stays."""
     bpy.ops.keymark.add_marker()
     (marker,) = active_take(bpy.context.scene).markers
     marker.segment = "foot.L"
@@ -63,7 +60,6 @@ def test_a_name_follows_its_segment_until_it_is_changed() -> None:
 def test_a_pick_gives_the_active_marker_its_color_and_leaves_the_others(
     opened: bpy.types.Scene, tiny_take: Take
 ) -> None:
-    """The readout is of all, as another color changes what the rest are confused with."""
     take = active_take(opened)
     before = [tuple(marker.color) for marker in take.markers]
     take.active_marker = 3
@@ -94,7 +90,6 @@ def test_the_eyedropper_beside_a_row_picks_that_marker_alone(
 
 
 def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
-    """Neither the color nor the list."""
     take = active_take(opened)
     before = [(marker.name, tuple(marker.color), marker.sampled) for marker in take.markers]
     with pytest.raises(RuntimeError, match="lies outside the footage"):
@@ -103,7 +98,6 @@ def test_a_pick_outside_changes_nothing(opened: bpy.types.Scene) -> None:
 
 
 def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: bpy.types.Scene) -> None:
-    """One color that is nowhere, and two that are alike, are named; the rest are well."""
     take = active_take(opened)
     take.markers[1].color = (0.1, 0.95, 0.9)
     take.markers[4].color = take.markers[3].color
@@ -117,7 +111,6 @@ def test_a_check_reads_out_all_markers_and_warns_of_those_that_go_wrong(opened: 
 
 
 def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:
-    """Another color, another name, another clip and a marker less all take it back."""
     take = active_take(opened)
 
     def checked() -> bool:
@@ -144,7 +137,6 @@ def test_a_readout_is_never_stale(opened: bpy.types.Scene) -> None:
 
 
 def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Without any color there is nothing to check, and the tooltip says so."""
     bpy.ops.keymark.add_usual_markers()
     take = active_take(loaded)
     with pytest.raises(RuntimeError, match="Pick the color of a marker first"):
@@ -156,7 +148,6 @@ def test_markers_without_a_color_are_left_out_of_a_check(loaded: bpy.types.Scene
 
 
 def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Each covers what the readout says and follows its marker; of other colors there are none."""
     clear_previews()
     take = active_take(opened)
     assert update_masks(opened) is None
@@ -177,7 +168,6 @@ def test_masks_are_made_of_the_frame_that_is_shown(opened: bpy.types.Scene, tiny
 
 
 def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> None:
-    """A switch: the second press hides them again; nothing of it is stored in the scene."""
     clear_previews()
     assert bpy.ops.keymark.show_masks() == {"FINISHED"}
     assert bpy.context.window_manager.keymark_show_masks
@@ -187,7 +177,6 @@ def test_showing_masks_looks_for_the_colors_first(opened: bpy.types.Scene) -> No
 
 
 def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
-    """Top row first, the marker's color where it is, darkness where nothing is."""
     bpy.ops.keymark.check_markers()
     masks = update_masks(opened).masks
     picture = tinted(masks)
@@ -198,7 +187,6 @@ def test_everything_but_the_masks_is_darkened(opened: bpy.types.Scene) -> None:
 
 
 def test_names_move_up_past_those_that_are_there() -> None:
-    """Over both of two that overlap in turn; one beside them stays."""
     taken = [(0.0, 10.0, 50.0, 8.0), (20.0, 18.0, 50.0, 8.0), (200.0, 0.0, 10.0, 99.0)]
     assert free_height((10.0, 12.0, 40.0, 8.0), taken) == 26.0
     assert free_height((80.0, 12.0, 40.0, 8.0), taken) == 12.0
@@ -225,7 +213,6 @@ def test_what_was_looked_for_is_stored_with_the_markers_it_was_looked_for(opened
 
 
 def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) -> None:
-    """The button says so, instead of a sentence about gray after the clip was read."""
     bpy.ops.keymark.add_marker()
     for operator in ("reconstruct", "propose_keyframes"):
         with pytest.raises(RuntimeError, match="Pick the colors of all markers first"):
@@ -233,7 +220,6 @@ def test_without_all_colors_nothing_is_reconstructed(opened: bpy.types.Scene) ->
 
 
 def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """The same path with other pictures: no readout, no sample and no mask of the old ones."""
     take = active_take(opened)
     clip = tmp_path / "clip.mp4"
     shutil.copy(bpy.path.abspath(take.clip.filepath), clip)
@@ -253,7 +239,6 @@ def test_a_clip_that_was_replaced_on_disk_is_looked_at_again(opened: bpy.types.S
 
 
 def test_masks_follow_a_clip_that_is_moved_in_time(opened: bpy.types.Scene) -> None:
-    """The same scene frame shows another of its frames then."""
     take = active_take(opened)
     bpy.ops.keymark.check_markers()
     opened.frame_set(5)
@@ -283,7 +268,6 @@ def test_another_clip_leaves_nothing_of_the_one_before(opened: bpy.types.Scene, 
 
 
 def test_masks_that_cannot_be_made_are_not_switched_on(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """One sentence, and the switch stays as it was."""
     clear_previews()
     active_take(opened).clip.filepath = str(tmp_path / "gone.mp4")
     with pytest.raises(RuntimeError, match="the footage is not there") as caught:

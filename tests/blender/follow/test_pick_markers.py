@@ -13,7 +13,6 @@ USUAL = ["trunk", "forearm.L", "forearm.R", "shin.L", "shin.R"]
 
 @pytest.fixture
 def loaded(tiny_take: Take) -> bpy.types.Scene:
-    """The scene with the tiny take's clip and no marker."""
     assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
     return bpy.context.scene
 
@@ -28,12 +27,10 @@ def pixel_of(take: Take, segment: str) -> np.ndarray:
 
 
 def clicks(take: Take, *names: str) -> list[dict[str, object]]:
-    """Clicks on markers in the first frame."""
     return [{"name": name, "loc": tuple(pixel_of(take, name)), "time": 1.0} for name in names]
 
 
 def test_five_clicks_make_the_usual_five(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Into an empty list, with colors and readouts, whatever frame the scene shows meanwhile."""
     loaded.frame_set(9)
     assert bpy.ops.keymark.pick_markers(clicks=clicks(tiny_take, *USUAL)) == {"FINISHED"}
     take = active_take(loaded)
@@ -47,7 +44,6 @@ def test_five_clicks_make_the_usual_five(loaded: bpy.types.Scene, tiny_take: Tak
 
 
 def test_skipped_markers_stay_without_a_color(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Of the five, two are clicked on; a later go asks for the rest and leaves these."""
     bpy.ops.keymark.pick_markers(clicks=clicks(tiny_take, "shin.L", "trunk"))
     take = active_take(loaded)
     assert [marker.name for marker in take.markers if marker.is_picked] == ["trunk", "shin.L"]
@@ -59,7 +55,6 @@ def test_skipped_markers_stay_without_a_color(loaded: bpy.types.Scene, tiny_take
 
 
 def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> None:
-    """Two markers in another order and with names of the animator's own; nothing is added."""
     for segment, name in (("shin.R", "sock"), ("forearm.L", "sleeve")):
         bpy.ops.keymark.add_marker()
         marker = active_take(loaded).markers[-1]
@@ -81,10 +76,7 @@ def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> 
     ("made", "sentence"),
     [
         ([], "Clicks is empty"),
-        (
-            [{"name": "tail", "loc": (50.0, 50.0), "time": 1.0}],
-            "No marker is called 'tail'",
-        ),
+        ([{"name": "tail", "loc": (50.0, 50.0), "time": 1.0}], "No marker is called 'tail'"),
         ([{"name": "trunk", "loc": (-4.0, 3.0), "time": 1.0}], "lies outside the footage"),
         ([{"name": "trunk", "loc": (50.0, 50.0), "time": 400.0}], "no frame at scene frame 400"),
     ],
@@ -92,7 +84,6 @@ def test_a_list_of_its_own_is_kept(loaded: bpy.types.Scene, tiny_take: Take) -> 
 def test_clicks_that_cannot_be_used_change_nothing(
     loaded: bpy.types.Scene, made: list[dict[str, object]], sentence: str
 ) -> None:
-    """Not even the list."""
     with pytest.raises(RuntimeError, match=sentence):
         bpy.ops.keymark.pick_markers(clicks=made)
     assert not len(active_take(loaded).markers)

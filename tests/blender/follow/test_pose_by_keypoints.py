@@ -14,14 +14,12 @@ from keymark.operators.shell.takes import active_take
 
 
 def load(path: Path) -> bpy.types.PropertyGroup:
-    """The active take with a file of keypoints."""
     assert bpy.ops.keymark.load_keypoints(filepath=str(path)) == {"FINISHED"}
     clear_readings()
     return active_take(bpy.context.scene)
 
 
 def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
-    """Mean distance of the 13 points from the truth at a scene frame."""
     body = motion.body
     points = body.points(body.pose(posture_of(scene)))
     return float(np.linalg.norm(points - motion.points[frame - 1], axis=-1).mean())
@@ -31,7 +29,6 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
 def test_fitting_brings_the_pose_to_the_keypoints(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion, start: str
 ) -> None:
-    """Between two keyframes, from any start, nearer than with five markers."""
     take = load(keypoint_file)
     plain.frame_set(4)
     write_posture(take.armature, wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25)))
@@ -41,13 +38,11 @@ def test_fitting_brings_the_pose_to_the_keypoints(
 
 
 def test_a_take_with_contours_alone_cannot_be_fitted(plain: bpy.types.Scene) -> None:
-    """The tooltip says what is missing."""
     with pytest.raises(RuntimeError, match="Load keypoints"):
         bpy.ops.keymark.fit_pose()
 
 
 def test_a_frame_without_anybody_says_so(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """And leaves the pose."""
     value = json.loads(keypoint_file.read_text(encoding="utf-8"))
     value["frames"][3] = None
     if "world" in value:
@@ -64,7 +59,6 @@ def test_a_frame_without_anybody_says_so(plain: bpy.types.Scene, keypoint_file: 
 def test_a_new_actor_stands_where_the_keypoints_are(
     plain: bpy.types.Scene, keypoint_file: Path, wave_motion: Motion
 ) -> None:
-    """Without any keyframe or marker."""
     take = load(keypoint_file)
     bpy.data.objects.remove(take.armature)
     take.armature = take.keyframe_action = None
@@ -75,7 +69,6 @@ def test_a_new_actor_stands_where_the_keypoints_are(
 
 
 def test_keyframes_are_proposed_by_keypoints(plain: bpy.types.Scene, keypoint_file: Path) -> None:
-    """No color is picked, and none is asked for."""
     take = load(keypoint_file)
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
     assert take.proposals[0].frame == 1

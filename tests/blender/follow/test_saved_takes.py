@@ -15,7 +15,6 @@ SWITCHES = ("use_markers", "use_keypoints", "use_depth_hints", "use_contours")
 def test_keypoints_go_out_with_a_take_and_come_back(
     plain: bpy.types.Scene, keypoint_file: Path, tmp_path: Path
 ) -> None:
-    """Files, tracks and clicks alike: each source becomes a file of the folder."""
     bpy.ops.keymark.load_keypoints(filepath=str(keypoint_file))
     bpy.ops.keymark.click_point(point="nose", pixel=(80.0, 30.0))
     track = active_take(plain).clip.tracking.tracks.new(name="wrist.L", frame=1)
@@ -31,7 +30,6 @@ def test_keypoints_go_out_with_a_take_and_come_back(
 
 
 def test_switches_go_out_with_a_take_and_come_back(opened: bpy.types.Scene, tmp_path: Path) -> None:
-    """Contours that are not followed are not followed elsewhere either."""
     active_take(opened).follow.use_contours = False
     folder = tmp_path / "saved"
     bpy.ops.keymark.save_take(directory=str(folder))
@@ -44,7 +42,6 @@ def test_switches_go_out_with_a_take_and_come_back(opened: bpy.types.Scene, tmp_
 def test_a_take_that_leaves_its_markers_aside_opens_with_them_switched_off(
     registered: None, tiny_take: Take
 ) -> None:
-    """What it has is there; what it is held against is on."""
     file = tiny_take.folder / "take.json"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("{", '{"evidence": ["contours"], ', 1), encoding="utf-8")
@@ -55,7 +52,6 @@ def test_a_take_that_leaves_its_markers_aside_opens_with_them_switched_off(
 
 
 def test_a_take_whose_keypoints_are_gone_is_refused(registered: None, plain_take: Take) -> None:
-    """The sentence names the file, and the scene stays empty."""
     file = plain_take.folder / "take.json"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("{", '{"keypoints": "no.json", ', 1), encoding="utf-8")

@@ -32,7 +32,6 @@ def add_track(
 
 
 def people(scene: bpy.types.Scene, frames: np.ndarray | None = None) -> tuple[People, ...]:
-    """What the tracks of the active take show."""
     take = active_take(scene)
     footage = footage_of(scene, take)
     shown = footage.first_frame + np.arange(FRAMES, dtype=float) if frames is None else frames
@@ -40,14 +39,12 @@ def people(scene: bpy.types.Scene, frames: np.ndarray | None = None) -> tuple[Pe
 
 
 def places(source: People, point: str) -> np.ndarray:
-    """(F, 2) where a source sees a point, NaN elsewhere."""
     column = source.names.index(point)
     rows = [seen.pixel[0, column] if len(seen.pixel) else (np.nan, np.nan) for seen in source.frames]
     return np.array(rows)
 
 
 def test_a_track_is_seen_where_it_has_an_enabled_marker(plain: bpy.types.Scene) -> None:
-    """Not in gaps, not where it is disabled, and in pixels from the top left corner."""
     clip = active_take(plain).clip
     track = add_track(clip, "Left Wrist", {2: (40.0, 30.0), 3: (50.0, 35.0), 7: (90.0, 70.0)})
     track.markers.find_frame(3, exact=True).mute = True
@@ -71,7 +68,6 @@ def test_the_offset_of_a_track_counts_and_its_weight_is_the_score(plain: bpy.typ
 
 
 def test_tracks_stay_with_the_picture_where_the_clip_is_moved_or_trimmed(plain: bpy.types.Scene) -> None:
-    """A later start on the timeline changes nothing; an offset into the file moves both."""
     clip = active_take(plain).clip
     add_track(clip, "head", {2: (40.0, 30.0)})
     for start, offset, index in ((1, 0, 1), (101, 0, 1), (101, 3, 4), (-20, 0, 1)):
@@ -84,7 +80,6 @@ def test_tracks_stay_with_the_picture_where_the_clip_is_moved_or_trimmed(plain: 
 
 
 def test_frames_of_a_variable_rate_are_those_that_blender_shows(plain: bpy.types.Scene) -> None:
-    """The last frame of the clip that is not later; a marker after the clip's end shows nothing."""
     clip = active_take(plain).clip
     add_track(clip, "head", {1: (10.0, 10.0), 3: (30.0, 30.0), 5: (50.0, 50.0), 40: (60.0, 60.0)})
     frames = np.concatenate([[1.0, 2.4, 3.0, 4.7], 7.0 + np.arange(FRAMES - 4)])
@@ -95,7 +90,6 @@ def test_frames_of_a_variable_rate_are_those_that_blender_shows(plain: bpy.types
 
 
 def test_names_assign_tracks_and_choices_change_that(plain: bpy.types.Scene) -> None:
-    """By name in any object of the clip; a choice overrides the name, and none is a choice too."""
     take = active_take(plain)
     take.clip.tracking.objects.new("Body")
     add_track(take.clip, "l_wrist", {1: (10.0, 10.0)})
@@ -114,7 +108,6 @@ def test_names_assign_tracks_and_choices_change_that(plain: bpy.types.Scene) -> 
 
 
 def test_two_tracks_of_one_point_are_two_sources(plain: bpy.types.Scene) -> None:
-    """Each lies somewhere else on the limb: one for before an occlusion, one for after it."""
     clip = active_take(plain).clip
     add_track(clip, "wrist.L", {1: (10.0, 10.0)})
     add_track(clip, "wrist.L.001", {9: (30.0, 10.0)})
@@ -126,7 +119,6 @@ def test_two_tracks_of_one_point_are_two_sources(plain: bpy.types.Scene) -> None
 
 
 def test_the_switch_takes_all_tracks_away(plain: bpy.types.Scene) -> None:
-    """They stay assigned, and are neither followed nor shown."""
     take = active_take(plain)
     add_track(take.clip, "head", {1: (10.0, 10.0)})
     assert has_keypoints(take) and keypoints_at(take, 1)

@@ -4,7 +4,6 @@ import bpy
 import numpy as np
 import pytest
 from keymark.core.footage.camera_fields import CameraPlacement, heading_rad
-from keymark.core.take.take import Take
 from keymark.operators.bridge.camera_placement import fixed_reason
 from keymark.operators.shell.takes import active_take, placement_is_guess
 from keymark.operators.takes.panel import next_step
@@ -14,15 +13,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 ASKED = "Next: say where the camera stood"
 
 
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with the tiny clip loaded."""
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
-
-
 def matrix(camera: bpy.types.Object) -> np.ndarray:
-    """The camera's evaluated pose."""
     bpy.context.view_layer.update()
     return np.array(camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
 
@@ -45,7 +36,6 @@ def test_fields_are_the_cameras_own(loaded: bpy.types.PropertyGroup) -> None:
 
 
 def test_a_camera_with_a_parent_keeps_its_parent(loaded: bpy.types.PropertyGroup) -> None:
-    """The fields are those of the world."""
     parent = bpy.data.objects.new("Tripod", None)
     bpy.context.scene.collection.objects.link(parent)
     parent.location = (1.0, 1.0, 0.5)
@@ -59,7 +49,6 @@ def test_a_camera_with_a_parent_keeps_its_parent(loaded: bpy.types.PropertyGroup
 def test_a_new_camera_is_asked_about_until_somebody_says_where_it_stood(
     loaded: bpy.types.PropertyGroup,
 ) -> None:
-    """By a field, by moving it, or by the tick, in every take with this camera."""
     assert placement_is_guess(loaded) and next_step(loaded) == ASKED
     loaded.camera.location.z = 1.0
     assert not placement_is_guess(loaded) and next_step(loaded) != ASKED
@@ -76,19 +65,16 @@ def test_a_new_camera_is_asked_about_until_somebody_says_where_it_stood(
 
 
 def test_the_tick_confirms_the_place_and_not_the_lens(loaded: bpy.types.PropertyGroup) -> None:
-    """Each has its own."""
     before = loaded.guessed_lens_mm
     assert bpy.ops.keymark.keep_camera() == {"FINISHED"}
     assert not placement_is_guess(loaded) and loaded.guessed_lens_mm == before > 0.0
 
 
 def test_a_take_that_is_opened_knows_its_camera(opened: bpy.types.Scene) -> None:
-    """Nothing is asked."""
     assert not placement_is_guess(active_take(opened))
 
 
 def test_a_camera_that_moves_is_read_only_with_a_reason(loaded: bpy.types.PropertyGroup) -> None:
-    """Its fields change nothing, and it is not asked about."""
     loaded.camera.keyframe_insert("location", frame=1)
     assert "animated" in (fixed_reason(loaded.camera) or "") and not placement_is_guess(loaded)
     loaded.camera_height = 3.0

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from keymark.core.footage.camera import Camera
 from keymark.core.footage.camera_fields import CameraPlacement
-from keymark.core.take.take import Take
 from keymark.operators.footage.drawn_lines import (
     ACROSS,
     HEIGHT,
@@ -20,23 +19,14 @@ from keymark.operators.footage.drawn_lines import (
     store_lines,
 )
 from keymark.operators.footage.take_footage import lens_is_guess
-from keymark.operators.shell.takes import active_take, placement_is_guess
+from keymark.operators.shell.takes import placement_is_guess
 
 pytestmark = pytest.mark.usefixtures("registered")
 SIZE = (160, 120)
-SCALE = 10.0
-"""Region pixels within which an end is taken, and of a footage pixel."""
-
-
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with the tiny clip loaded."""
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
+SCALE = 10.0  # Region pixels within which an end is taken, and of a footage pixel
 
 
 def known_camera() -> Camera:
-    """The camera as it stood."""
     return Camera(40.8, 36.0, SIZE, CameraPlacement(1.1, float(np.radians(-9.0)), 0.0).matrix())
 
 
@@ -55,7 +45,6 @@ def seen_lines(camera: Camera, stature_m: float) -> list[DrawnLine]:
 
 
 def test_lines_set_the_camera_and_are_kept(loaded: bpy.types.PropertyGroup) -> None:
-    """Height, tilt, roll; nothing else of the camera moves, and what is not determined is said."""
     lines = seen_lines(known_camera(), loaded.stature)
     place = tuple(loaded.camera.location[:2])
     store_lines(loaded, lines)
@@ -72,7 +61,6 @@ def test_lines_set_the_camera_and_are_kept(loaded: bpy.types.PropertyGroup) -> N
 
 
 def test_a_lens_that_lines_determine_is_no_guess(loaded: bpy.types.PropertyGroup) -> None:
-    """A wide lens that looks far down, in a large picture's worth of lines."""
     true = replace(
         known_camera(),
         lens_mm=28.0,
@@ -84,7 +72,6 @@ def test_a_lens_that_lines_determine_is_no_guess(loaded: bpy.types.PropertyGroup
 
 
 def test_a_lens_that_somebody_knows_is_kept(loaded: bpy.types.PropertyGroup) -> None:
-    """Whatever lines say."""
     loaded.camera.data.lens = 33.0
     store_lines(loaded, 20 * seen_lines(known_camera(), loaded.stature))
     bpy.ops.keymark.camera_from_lines()
@@ -93,7 +80,6 @@ def test_a_lens_that_somebody_knows_is_kept(loaded: bpy.types.PropertyGroup) -> 
 
 
 def test_the_sensors_fit_does_not_matter(loaded: bpy.types.PropertyGroup) -> None:
-    """A camera measured along its height gets the same view."""
     data = loaded.camera.data
     data.sensor_fit, data.sensor_height = "VERTICAL", 24.0
     data.lens = 40.8 / 36.0 * 24.0 * 160 / 120
@@ -104,7 +90,6 @@ def test_the_sensors_fit_does_not_matter(loaded: bpy.types.PropertyGroup) -> Non
 
 
 def test_without_lines_or_with_useless_ones_nothing_changes(loaded: bpy.types.PropertyGroup) -> None:
-    """It is said what to draw."""
     before = tuple(loaded.guessed_placement)
     with pytest.raises(RuntimeError, match="no lines to find its camera by"):
         bpy.ops.keymark.camera_from_lines()
@@ -120,19 +105,16 @@ def near(pixel: Pixel) -> "object":
 
 
 def far(one: Pixel, other: Pixel) -> float:
-    """Distance of two pixels as a share of the shortest line."""
     return float(np.hypot(one[0] - other[0], one[1] - other[1])) / SCALE
 
 
 def drag(drawing: Drawing, start: Pixel, end: Pixel) -> None:
-    """Press, move, release."""
     drawing.press(start, 3, near(start))
     drawing.move(end)
     drawing.release(far)
 
 
 def test_five_drags_draw_five_lines_of_three_kinds() -> None:
-    """Two verticals, two level lines, then a known height."""
     drawing = Drawing(VERTICAL, False)
     for number in range(5):
         drag(drawing, (100.0 * number, 10.0), (100.0 * number, 200.0))
@@ -148,7 +130,6 @@ def test_five_drags_draw_five_lines_of_three_kinds() -> None:
 
 
 def test_two_clicks_draw_a_line_as_well() -> None:
-    """The second end follows the mouse between them, and counts only when it is somewhere."""
     drawing = Drawing(HEIGHT, True)
     drawing.press((50.0, 300.0), 7, near((50.0, 300.0)))
     assert not drawing.release(far) and drawing.complete == []
@@ -174,7 +155,6 @@ def test_an_end_is_dragged_and_a_line_removed() -> None:
 
 
 def test_digits_give_the_last_height_its_length() -> None:
-    """Of a thing; of the performer they are the body height, and no other line has one."""
     drawing = Drawing(HEIGHT, False, stature_m=1.75)
     drag(drawing, (10.0, 10.0), (10.0, 200.0))
     assert drawing.length_of(drawing.lines[0]) == 1.75

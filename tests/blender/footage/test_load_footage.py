@@ -18,7 +18,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160, 120)) -> Path:
-    """A gray clip that gets brighter."""
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), fps, size)
     assert writer.isOpened()
     for frame in range(frames):
@@ -27,15 +26,7 @@ def write_clip(path: Path, frames: int, fps: float, size: tuple[int, int] = (160
     return path
 
 
-@pytest.fixture
-def loaded(tiny_take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with the tiny clip loaded."""
-    assert bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip)) == {"FINISHED"}
-    return active_take(bpy.context.scene)
-
-
 def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyGroup) -> None:
-    """Set or confirmed by the animator, it is no guess any more."""
     assert lens_is_guess(loaded)
     loaded.camera.data.lens = 31.0
     assert not lens_is_guess(loaded)
@@ -47,7 +38,6 @@ def test_a_guessed_lens_says_so_until_another_is_set(loaded: bpy.types.PropertyG
 
 
 def test_the_startup_files_camera_stays_where_it_is(tiny_take: Take) -> None:
-    """It looks down from a corner; the footage gets a camera of its own at eye height."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     startup = bpy.context.scene.camera
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
@@ -58,7 +48,6 @@ def test_the_startup_files_camera_stays_where_it_is(tiny_take: Take) -> None:
 
 
 def test_choosing_a_clip_in_the_panel_does_what_loading_does(tmp_path: Path) -> None:
-    """Rate, range, background and camera follow; choosing another keeps the camera."""
     scene = bpy.context.scene
     clips = [
         bpy.data.movieclips.load(str(write_clip(tmp_path / f"{count}.mp4", count, fps)))
@@ -76,7 +65,6 @@ def test_choosing_a_clip_in_the_panel_does_what_loading_does(tmp_path: Path) -> 
 
 
 def test_a_clip_of_this_file_is_used(tmp_path: Path) -> None:
-    """By its name; without one the scene's own; an unknown name lists those there are."""
     scene = bpy.context.scene
     with pytest.raises(RuntimeError, match="has no clip; load the footage"):
         bpy.ops.keymark.use_clip()
@@ -90,7 +78,6 @@ def test_a_clip_of_this_file_is_used(tmp_path: Path) -> None:
 
 
 def test_choosing_a_camera_puts_the_clip_behind_it(loaded: bpy.types.PropertyGroup) -> None:
-    """The scene looks through it."""
     other = bpy.data.objects.new("Other", bpy.data.cameras.new("Other"))
     bpy.context.scene.collection.objects.link(other)
     loaded.camera = other
@@ -110,7 +97,6 @@ def test_a_camera_that_was_deleted_is_replaced(loaded: bpy.types.PropertyGroup) 
 def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
     loaded: bpy.types.PropertyGroup, tmp_path: Path
 ) -> None:
-    """Over the viewport and the clip editor alone; a clip that is there keeps its take."""
     first = loaded.clip
     context = bpy.context
     assert ".mp4" in KEYMARK_FH_footage.bl_file_extensions.split(";")
@@ -131,7 +117,6 @@ def test_what_is_dropped_is_loaded_as_a_take_of_its_own(
 
 
 def test_a_dropped_take_is_opened() -> None:
-    """It is not asked for again; a button, which names no file, asks."""
     dropped = SimpleNamespace(filepath="/takes/walk/take.json", execute=lambda _context: {"FINISHED"})
     assert KEYMARK_OT_open_take.invoke(dropped, bpy.context, None) == {"FINISHED"}
     for operator in (bpy.ops.keymark.load_footage, bpy.ops.keymark.open_take):
@@ -139,7 +124,6 @@ def test_a_dropped_take_is_opened() -> None:
 
 
 def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An even clip passes; one with a gap in its times does not."""
     from keymark.core.footage.clips.video_file import VideoFile
 
     assert loaded.clip_state.rate == pytest.approx(25.0)
@@ -151,13 +135,11 @@ def test_a_varying_rate_is_noticed(loaded: bpy.types.PropertyGroup, monkeypatch:
 
 
 def reopened(path: Path) -> bpy.types.PropertyGroup:
-    """The active take of a file that is opened."""
     bpy.ops.wm.open_mainfile(filepath=str(path))
     return active_take(bpy.context.scene)
 
 
 def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path) -> None:
-    """Everything else of the take stays, and what needs no footage works meanwhile."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     moved = tmp_path / "elsewhere.mp4"
@@ -186,7 +168,6 @@ def test_a_missing_clip_is_said_and_found_again(tiny_take: Take, tmp_path: Path)
 
 
 def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Path) -> None:
-    """Baked, exported and reviewed on a machine that never had the clip."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     active_take(bpy.context.scene).method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -202,8 +183,7 @@ def test_a_motion_is_finished_without_its_footage(tiny_take: Take, tmp_path: Pat
     assert len(bpy.data.objects) == 0 and min(before) > 0
 
 
-def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:  # noqa: ANN001
-    """A file of another length or size is taken, with a word."""
+def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, capsys) -> None:
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     other = write_clip(tmp_path / "other.mp4", 9, 24.0)
     bpy.ops.keymark.relocate_clip(filepath=str(other))
@@ -212,7 +192,6 @@ def test_another_clip_in_its_place_is_doubted(tiny_take: Take, tmp_path: Path, c
 
 
 def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
-    """A saved file holds the clip's relative path: the folder can go to another machine."""
     here, there = tmp_path / "here", tmp_path / "there"
     here.mkdir()
     shutil.copy(tiny_take.clip, here / "clip.mp4")
@@ -225,7 +204,6 @@ def test_clips_move_with_the_file(tiny_take: Take, tmp_path: Path) -> None:
 
 
 def test_a_clip_of_this_file_that_cannot_be_decoded_stays(tmp_path: Path) -> None:
-    """What Blender made for the attempt goes; what the animator had does not, tracking and all."""
     clip = tmp_path / "broken.mp4"
     clip.write_bytes(bytes(2000))
     with pytest.raises(RuntimeError, match="cannot"):
@@ -250,7 +228,6 @@ def test_nothing_chosen_is_said_and_the_folder_kept(tiny_take: Take, tmp_path: P
 
 
 def _browsed(operator: type) -> str:
-    """Where an operator's file browser begins."""
     shown = SimpleNamespace(bl_idname="KEYMARK_OT_load_footage", filepath="")
     manager = SimpleNamespace(fileselect_add=lambda _operator: None)
     assert operator.invoke(shown, SimpleNamespace(window_manager=manager), None) == {"RUNNING_MODAL"}

@@ -20,35 +20,16 @@ Group = bpy.types.PropertyGroup
 @pytest.fixture
 def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespace:
     """What Pose All finds in this test, and a record of its arguments; the job takes three steps."""
-    asked = SimpleNamespace(
-        confidences={0: 0.9, 6: 0.3, 12: 0.7},
-        contradictions={},
-        takes=[],
-        floors=[],
-        frames=[],
-        between=[],
-        libraries=[],
-        error=None,
-        meanwhile=lambda: None,
-    )
+    asked = SimpleNamespace(takes=[], floors=[], frames=[], between=[], libraries=[])
+    asked.confidences, asked.contradictions = {0: 0.9, 6: 0.3, 12: 0.7}, {}
+    asked.error, asked.meanwhile = None, lambda: None
 
-    def pose_clip(  # noqa: ANN202
-        take,  # noqa: ANN001
-        reading,  # noqa: ANN001
-        libraries,  # noqa: ANN001
-        floor_m=None,  # noqa: ANN001
-        keyframe_count=None,  # noqa: ANN001
-        between=None,  # noqa: ANN001
-        frames=None,  # noqa: ANN001
-    ):
-        for record, value in (
-            (asked.takes, take),
-            (asked.floors, floor_m),
-            (asked.frames, tuple(frames)),
-            (asked.between, between),
-            (asked.libraries, [library.identifier for library in libraries]),
-        ):
-            record.append(value)
+    def pose_clip(take, reading, libraries, floor_m=None, keyframe_count=None, between=None, frames=None):
+        asked.takes.append(take)
+        asked.floors.append(floor_m)
+        asked.frames.append(tuple(frames))
+        asked.between.append(between)
+        asked.libraries.append([library.identifier for library in libraries])
         for step in range(3):
             yield Progress("Composing postures", step / 3)
         asked.meanwhile()

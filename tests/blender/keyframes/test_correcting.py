@@ -23,7 +23,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def select(scene: bpy.types.Scene, *names: str) -> None:
-    """Select bones of the actor, and no others, in Pose Mode."""
     armature_object = active_take(scene).armature
     bpy.context.view_layer.objects.active = armature_object
     if armature_object.mode != "POSE":
@@ -55,7 +54,6 @@ def points_of(scene: bpy.types.Scene) -> np.ndarray:
 
 
 def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bpy.types.Scene) -> None:
-    """The selected arm alone moves; pressing until it comes round gives the first pose again."""
     take = active_take(opened)
     opened.frame_set(4)
     before = reaching(opened)
@@ -77,7 +75,6 @@ def test_flipping_keeps_the_image_and_sets_no_key_in_an_unposed_frame(opened: bp
 
 
 def test_flipping_in_a_posed_frame_changes_its_keyframe_at_once(opened: bpy.types.Scene) -> None:
-    """And leaves the other keyframes."""
     take = active_take(opened)
     opened.frame_set(7)
     reaching(opened)
@@ -96,14 +93,12 @@ def test_flipping_in_a_posed_frame_changes_its_keyframe_at_once(opened: bpy.type
 
 
 def test_flipping_asks_for_a_selected_bone(opened: bpy.types.Scene) -> None:
-    """The tooltip says what to select."""
     select(opened)
     with pytest.raises(RuntimeError, match="Select a bone of an arm, a leg or the trunk"):
         bpy.ops.keymark.flip_depth()
 
 
 def test_with_all_bones_selected_the_active_one_counts(opened: bpy.types.Scene) -> None:
-    """As after A."""
     take = active_take(opened)
     select(opened, *take.armature.pose.bones.keys())
     take.armature.data.bones.active = take.armature.data.bones["shin.R"]
@@ -112,7 +107,6 @@ def test_with_all_bones_selected_the_active_one_counts(opened: bpy.types.Scene) 
 
 @pytest.mark.parametrize("facing", ["CAMERA", "LEFT", "RIGHT", "AWAY"])
 def test_the_performer_turns_in_place(opened: bpy.types.Scene, facing: str) -> None:
-    """Whatever becomes of the limbs; without a fit the hips stay to the millimeter."""
     take = active_take(opened)
     opened.frame_set(4)
     before = posture_of(opened).translation
@@ -122,7 +116,6 @@ def test_the_performer_turns_in_place(opened: bpy.types.Scene, facing: str) -> N
 
 
 def test_a_turned_pose_is_fitted_to_the_footage(opened: bpy.types.Scene) -> None:
-    """Turned away and back, it lies on the markers again."""
     opened.frame_set(4)
     true = points_of(opened)
     bpy.ops.keymark.turn_performer(facing="AWAY", sides="TURN", fit=False)
@@ -132,7 +125,6 @@ def test_a_turned_pose_is_fitted_to_the_footage(opened: bpy.types.Scene) -> None
 
 
 def test_turning_outside_the_footage_needs_no_fit(opened: bpy.types.Scene) -> None:
-    """The performer turns all the same."""
     opened.frame_set(40)
     assert bpy.ops.keymark.turn_performer(facing="RIGHT") == {"FINISHED"}
     camera = camera_now(opened, active_take(opened))
@@ -143,7 +135,6 @@ def test_turning_outside_the_footage_needs_no_fit(opened: bpy.types.Scene) -> No
 def test_a_neighbors_pose_is_copied_to_the_place_of_this_frame(
     opened: bpy.types.Scene, direction: str, frame: int
 ) -> None:
-    """Only the place is this frame's own; scene and keys are as before."""
     take = active_take(opened)
     opened.frame_set(frame)
     there = posture_of(opened)
@@ -158,7 +149,6 @@ def test_a_neighbors_pose_is_copied_to_the_place_of_this_frame(
 
 
 def test_beyond_the_last_keyframe_there_is_no_neighbor(opened: bpy.types.Scene) -> None:
-    """Nothing changes."""
     opened.frame_set(13)
     before = posture_of(opened)
     assert bpy.ops.keymark.copy_neighbor(direction="NEXT") == {"CANCELLED"}
@@ -166,7 +156,6 @@ def test_beyond_the_last_keyframe_there_is_no_neighbor(opened: bpy.types.Scene) 
 
 
 def test_a_moved_joint_lies_where_it_was_moved_to(opened: bpy.types.Scene) -> None:
-    """And a posed frame has it at once."""
     opened.frame_set(7)
     place = points_of(opened)[HUMAN.point_names.index("wrist.R")] + [0.05, 0.0, 0.08]
     bpy.ops.keymark.move_joint(joint="wrist.R", place=place, sight=(0.0, 1.0, 0.0))
@@ -177,7 +166,6 @@ def test_a_moved_joint_lies_where_it_was_moved_to(opened: bpy.types.Scene) -> No
 
 
 def test_correcting_the_shown_motion_goes_on_with_the_keyframes(opened: bpy.types.Scene) -> None:
-    """The keyframe Action is shown, with the corrected pose of the motion."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -192,13 +180,11 @@ def test_correcting_the_shown_motion_goes_on_with_the_keyframes(opened: bpy.type
 def test_joints_are_read_from_bones(
     opened: bpy.types.Scene, body: Body, random_posture: Callable[[int], Posture]
 ) -> None:
-    """As forward kinematics has them."""
     write_posture(active_take(opened).armature, random_posture(4))
     np.testing.assert_allclose(joint_places(active_take(opened).armature), points_of(opened), atol=1e-4)
 
 
 def test_undo_takes_a_correction_back(opened: bpy.types.Scene) -> None:
-    """With the keyframe that it changed."""
     opened.frame_set(7)
     before = posture_of(opened)
     bpy.ops.ed.undo_push(message="before")

@@ -44,7 +44,6 @@ def test_another_posture_is_chosen_by_one_click(found: Group, wave_motion: Motio
 
 
 def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
-    """Accepted, a frame is posed; removed, it is no keyframe."""
     found.matching.shown_match = 1
     before = shown(found, 7)
     bpy.ops.keymark.accept_match()
@@ -59,7 +58,6 @@ def test_found_keyframes_are_accepted_and_removed(found: Group) -> None:
 
 
 def test_all_found_are_removed_but_what_the_animator_decided_on(found: Group) -> None:
-    """A changed keyframe and a chosen candidate stay; then there is nothing left to remove."""
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
     bpy.context.scene.frame_set(7)
@@ -93,7 +91,6 @@ def test_the_most_doubtful_is_gone_to_first(found: Group) -> None:
 
 
 def test_found_keyframes_are_gone_through_in_order(found: Group) -> None:
-    """From the current frame on, around the ends."""
     scene, visited = bpy.context.scene, []
     scene.frame_set(7)
     for direction in ("NEXT", "NEXT", "PREVIOUS", "PREVIOUS"):
@@ -103,7 +100,6 @@ def test_found_keyframes_are_gone_through_in_order(found: Group) -> None:
 
 
 def test_the_chosen_one_is_that_of_the_current_frame(found: Group) -> None:
-    """Choosing goes there, going there chooses; between two the last one stays chosen."""
     scene, matching = bpy.context.scene, found.matching
     matching.shown_match = 1
     assert scene.frame_current == 7
@@ -114,7 +110,6 @@ def test_the_chosen_one_is_that_of_the_current_frame(found: Group) -> None:
 
 
 def test_every_step_is_undone_and_redone(unposed: Group, given: SimpleNamespace) -> None:
-    """One undo each, to the last key."""
     ops = bpy.ops.keymark
     bpy.context.scene.frame_set(1)
     bpy.ops.ed.undo_push(message="Opened")
@@ -138,7 +133,6 @@ def test_every_step_is_undone_and_redone(unposed: Group, given: SimpleNamespace)
 
 
 def test_the_timeline_tells_found_keyframes_from_posed_ones(found: Group) -> None:
-    """A square each, filled where sure; no proposal's diamond stays at the same frame."""
     found.proposals.clear()
     for frame in (4, 7):
         found.proposals.add().frame = frame
@@ -152,7 +146,6 @@ def test_the_timeline_tells_found_keyframes_from_posed_ones(found: Group) -> Non
 
 
 def test_found_keyframes_come_back_with_the_file(found: Group, tmp_path: Path) -> None:
-    """Frames, stored candidates, the reason, and that the keys are unchanged."""
     before, reason = known_matches(found), found.matching.reason
     place = [tuple(one.place) for match in found.matching.matches for one in match.candidates]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))

@@ -3,13 +3,17 @@
 from types import SimpleNamespace
 
 import bpy
+import numpy as np
 import pytest
 from _found import shown
+from _posed import posture_of
 from _scene_state import differences, scene_state
+from keymark.core.body.human import HUMAN
 from keymark.core.errors import InputError
 from keymark.core.footage.ignored_regions import IgnoredRegion
+from keymark.operators.bridge.object_space import joint_places
 from keymark.operators.follow.ignored_regions import add_ignored_regions
-from keymark.operators.keyframes.improve_neighbors import improve_neighbors
+from keymark.operators.keyframes.store_keyframe import improve_neighbors
 from keymark.operators.shell import results
 from keymark.operators.shell.keyed_frames import matched_frames, posed_frames
 from keymark.operators.shell.takes import active_take
@@ -43,7 +47,6 @@ def test_storing_a_keyframe_improves_the_found_ones_around_it(found: Group, give
 
 
 def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleNamespace) -> None:
-    """A candidate that was chosen holds from then on, though it counts as found."""
     asked = len(given.frames)
     found.matching.shown_match = 0
     bpy.ops.keymark.replace_match(candidate=1)
@@ -60,7 +63,6 @@ def test_accepting_and_replacing_improve_as_well(found: Group, given: SimpleName
 def test_it_is_left_out_where_that_is_wished_or_nothing_is_known(
     found: Group, given: SimpleNamespace
 ) -> None:
-    """Switched off, with nothing found, without a reading, or with one of other colors."""
     scene, asked = bpy.context.scene, len(given.frames)
     found.matching.improve_neighbors = False
     assert improve_neighbors(bpy.context, found, 7.0) == 0
@@ -89,7 +91,6 @@ def test_regions_that_are_no_marker_are_part_of_what_was_read(unposed: Group, gi
 
 
 def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given: SimpleNamespace) -> None:
-    """The failure changes nothing and stops nothing."""
     bpy.context.scene.frame_set(7)
     others = [shown(found, frame) for frame in (1, 13)]
     bpy.context.scene.frame_set(7)
@@ -99,3 +100,31 @@ def test_a_correction_holds_where_nothing_is_found_around_it(found: Group, given
     for frame, posture in zip((1, 13), others, strict=True):
         assert shown(found, frame).minus(posture) == pytest.approx(0.0, abs=1e-6)
     assert results.reading_of(found) is not None
+
+
+def test_a_dragged_joint_of_a_found_keyframe_stays_and_improves_its_neighbors(
+    found: bpy.types.PropertyGroup, given: SimpleNamespace
+) -> None:
+    scene = bpy.context.scene
+    scene.frame_set(7)
+    bpy.ops.ed.undo_push(message="Opened")
+    before, asked = scene_state(), len(given.frames)
+    place = joint_places(found.armature)[HUMAN.point_names.index("wrist.L")] + [0.05, 0.0, 0.05]
+    bpy.ops.keymark.move_joint(joint="wrist.L", place=place, sight=(0.0, 1.0, 0.0))
+    bpy.ops.ed.undo_push(message="Moved")
+    take = active_take(scene)
+    assert posed_frames(take) == (7.0,)
+    assert matched_frames(take) == (1.0, 13.0)
+    assert given.frames[asked:] == [(0, 12)]
+    reached = joint_places(take.armature)[HUMAN.point_names.index("wrist.L")]
+    np.testing.assert_allclose(reached[[0, 2]], place[[0, 2]], atol=3e-3)
+    bpy.ops.ed.undo()
+    assert not differences(before, scene_state())
+
+
+def test_a_turned_found_keyframe_is_posed(found: bpy.types.PropertyGroup, given: SimpleNamespace) -> None:
+    bpy.context.scene.frame_set(13)
+    before = posture_of(bpy.context.scene)
+    bpy.ops.keymark.turn_performer(facing="AWAY", fit=False)
+    assert posed_frames(active_take(bpy.context.scene)) == (13.0,)
+    assert np.abs(posture_of(bpy.context.scene).minus(before)).max() > 0.5

@@ -23,7 +23,6 @@ Group = bpy.types.PropertyGroup
 def test_a_named_library_alone_is_asked(
     unposed: Group, given: SimpleNamespace, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By the operator's argument or the panel's choice; all are, where neither says one."""
     monkeypatch.setattr(registry_files, "load_registered", lambda name: wave_library(wave_motion, name))
     unposed.matching.library_name = "jumping"
     for words, asked in (({}, ["jumping"]), ({"library": "waves"}, ["waves"])):
@@ -38,7 +37,6 @@ def test_a_named_library_alone_is_asked(
 
 
 def test_the_menu_holds_the_registry_and_what_was_chosen(unposed: Group) -> None:
-    """All of them come first; a library that only another machine has is listed as missing."""
     state = unposed.matching
     assert state.library == "auto" and state.library_name == ""
     state.library_name = "auto"
@@ -59,7 +57,6 @@ def test_poses_are_found_with_a_library_file(
     tmp_path: Path,
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """End to end: the library's postures are keyed where the performer stood in the drawn clip."""
     steps = tuple(MotionStep(f"Wave {i}", i / 25.0) for i in (0, 6, 12))
     waves = replace(wave_library(wave_motion), motions=(LibraryMotion("wave", steps, 12 / 25.0),))
     write_library(tmp_path / "waves.json", waves)
@@ -77,7 +74,6 @@ def test_poses_are_found_with_a_library_file(
 def test_postures_are_keyed_in_any_rotation_mode(
     unposed: Group, given: SimpleNamespace, mode: str, wave_motion: Motion
 ) -> None:
-    """On a scaled actor, too: it shows the found postures, and they count as found."""
     for bone in unposed.armature.pose.bones:
         bone.rotation_mode = mode
     unposed.armature.scale = (1.5, 1.5, 1.5)

@@ -34,7 +34,6 @@ Group = bpy.types.PropertyGroup
 def test_every_proposed_frame_is_keyed_as_found(
     found: Group, given: SimpleNamespace, wave_motion: Motion
 ) -> None:
-    """Frames, names, confidences, alternatives, and how sure it is; every library was asked."""
     assert (keyframes_of(found), posed_frames(found)) == ((1.0, 7.0, 13.0), ())
     assert shown(found, 7).minus(wave_motion.posture[6]) == pytest.approx(0.0, abs=1e-5)
     state = found.matching
@@ -50,7 +49,6 @@ def test_every_proposed_frame_is_keyed_as_found(
 def test_doubtful_ones_are_said_and_shown(
     unposed: Group, given: SimpleNamespace, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """The number in the report, and the most doubtful frame in the viewport."""
     bpy.ops.keymark.pose_all()
     assert "3 keyframes found, 1 of them doubtful" in capfd.readouterr().out
     take = active_take(bpy.context.scene)
@@ -79,7 +77,6 @@ def test_what_contradicts_is_doubtful_and_shown_first(unposed: Group, given: Sim
 
 
 def test_frames_are_proposed_where_there_are_none(unposed: Group, given: SimpleNamespace) -> None:
-    """The same ones as Propose Keyframes gives, with the speed that the timeline draws."""
     unposed.proposals.clear()
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
@@ -111,7 +108,6 @@ def test_what_is_posed_stays_and_is_handed_on(found: Group, given: SimpleNamespa
 def test_a_candidate_that_a_person_chose_stays(
     found: Group, given: SimpleNamespace, wave_motion: Motion
 ) -> None:
-    """With its entry, in its place, and it is handed on like a posed one."""
     found.matching.improve_neighbors = False
     found.matching.shown_match = 1
     bpy.ops.keymark.replace_match(candidate=1)
@@ -130,7 +126,6 @@ def test_a_candidate_that_a_person_chose_stays(
 
 
 def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
-    """And it is said."""
     for frame in (1, 7, 13):
         bpy.context.scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()
@@ -141,7 +136,6 @@ def test_where_all_is_posed_nothing_is_done(found: Group) -> None:
 
 
 def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: SimpleNamespace) -> None:
-    """The user interface stays alive meanwhile: what is found for that frame comes too late."""
     bpy.context.scene.frame_set(7)
     before = shown(unposed, 7)
     given.meanwhile = bpy.ops.keymark.store_keyframe
@@ -152,14 +146,12 @@ def test_a_frame_posed_while_the_job_runs_stays_posed(unposed: Group, given: Sim
 
 
 def test_the_floor_is_handed_on(unposed: Group, given: SimpleNamespace) -> None:
-    """Only where it is known."""
     bpy.ops.keymark.pose_all(floor_height=0.4)
     bpy.ops.keymark.pose_all(floor="HEIGHT", floor_height=0.4)
     assert given.floors == [None, pytest.approx(0.4)]
 
 
 def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamespace) -> None:
-    """The sentence is reported, nothing else happens."""
     before = scene_state()
     given.error = InputError("no marker is seen in the footage")
     with pytest.raises(RuntimeError, match="No marker is seen"):
@@ -168,7 +160,6 @@ def test_what_fails_leaves_the_scene_as_it_was(found: Group, given: SimpleNamesp
 
 
 def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNamespace) -> None:
-    """Nothing is keyed, and the panel names the next step."""
     assert next_step(unposed) == "Next: pose all keyframes"
     bpy.ops.keymark.pose_all()
     take = active_take(bpy.context.scene)
@@ -181,7 +172,6 @@ def test_a_reconstruction_may_follow_directly(unposed: Group, given: SimpleNames
 
 
 def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
-    """The tooltip names the first missing requirement."""
     bpy.ops.keymark.load_footage(filepath=str(tiny_take.clip))
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.pose_all()
@@ -190,7 +180,6 @@ def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
 def test_the_drawn_clip_is_posed(
     unposed: Group, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """End to end with the shipped libraries: the actor stands where the performer stood."""
     assert bpy.ops.keymark.pose_all() == {"FINISHED"}
     take = active_take(bpy.context.scene)
     assert matched_frames(take) == (1.0, 7.0, 13.0)

@@ -1,5 +1,6 @@
 """Posing the actor over the footage: fitting, storing and proposing keyframes, as scripted operators."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import bpy
@@ -15,7 +16,8 @@ from keymark.operators.bridge.keyframes import keyed_frames, read_keyframes
 from keymark.operators.bridge.pose import write_posture
 from keymark.operators.bridge.single_frame_fit import fit_to_frame, frame_in_footage
 from keymark.operators.follow.evidence import scene_evidence
-from keymark.operators.shell.keyed_frames import posed_frames, unposed_proposals
+from keymark.operators.shell.contradictions import contradictions_at, note_contradictions
+from keymark.operators.shell.keyed_frames import offered_at, posed_frames, unposed_proposals
 from keymark.operators.shell.results import reading_of
 from keymark.operators.shell.takes import active_take, footage_of
 
@@ -23,7 +25,6 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 
 def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
-    """Mean distance of the 13 points from the truth at a scene frame."""
     body = motion.body
     return float(
         np.linalg.norm(body.points(body.pose(posture_of(scene))) - motion.points[frame - 1], axis=-1).mean()
@@ -34,7 +35,6 @@ def off_m(scene: bpy.types.Scene, motion: Motion, frame: int) -> float:
 def test_fitting_brings_the_pose_to_the_markers(
     opened: bpy.types.Scene, wave_motion: Motion, start: str
 ) -> None:
-    """Between two keyframes, from any start; no key is set, and a redraw keeps the pose."""
     take = active_take(opened)
     opened.frame_set(4)
     rough = wave_motion.posture[3].plus(np.where(np.arange(34) < 6, 0.0, 0.25))
@@ -52,7 +52,6 @@ def test_fitting_brings_the_pose_to_the_markers(
 
 
 def test_what_was_fitted_is_stored_and_read_back(opened: bpy.types.Scene) -> None:
-    """The key holds the pose although other keys surround it."""
     take = active_take(opened)
     opened.frame_set(4)
     bpy.ops.keymark.fit_pose()
@@ -67,7 +66,6 @@ def test_what_was_fitted_is_stored_and_read_back(opened: bpy.types.Scene) -> Non
 def test_the_first_keyframe_is_fitted_from_standing(
     unposed_scene: bpy.types.Scene, wave_motion: Motion
 ) -> None:
-    """Nothing is keyed yet: nearest keyframes means standing."""
     unposed_scene.frame_set(5)
     bpy.ops.keymark.build_actor(stature=1.72)
     before = off_m(unposed_scene, wave_motion, 5)
@@ -76,7 +74,6 @@ def test_the_first_keyframe_is_fitted_from_standing(
 
 
 def test_fitting_outside_the_footage_says_where_it_is(opened: bpy.types.Scene) -> None:
-    """And leaves the pose."""
     opened.frame_set(40)
     before = posture_of(opened)
     with pytest.raises(RuntimeError, match="whose frames are 1 to 13"):
@@ -85,7 +82,6 @@ def test_fitting_outside_the_footage_says_where_it_is(opened: bpy.types.Scene) -
 
 
 def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.types.Scene) -> None:
-    """The pose of the motion becomes a keyframe; the motion's Action gets no key."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -100,7 +96,6 @@ def test_storing_while_the_motion_is_shown_goes_to_the_keyframes(opened: bpy.typ
 
 
 def test_fitting_while_the_motion_is_shown_shows_the_keyframes(opened: bpy.types.Scene) -> None:
-    """The fitted pose is what is seen, not the Action's."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -115,7 +110,6 @@ def test_fitting_while_the_motion_is_shown_shows_the_keyframes(opened: bpy.types
 
 
 def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.Scene) -> None:
-    """A key moved in the Dope Sheet counts at its new frame."""
     take = active_take(opened)
     take.proposals.clear()
     for frame in (1, 4, 7, 10, 13):
@@ -137,7 +131,6 @@ def test_posed_proposals_are_counted_wherever_keys_are_moved(opened: bpy.types.S
 
 
 def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
-    """And the count with it."""
     take = active_take(opened)
     opened.frame_set(4)
     bpy.ops.ed.undo_push(message="before")
@@ -150,7 +143,6 @@ def test_undo_takes_a_stored_keyframe_back(opened: bpy.types.Scene) -> None:
 
 
 def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene, wave_motion: Motion) -> None:
-    """Keys on the camera that leave it where the footage was taken from in this frame alone."""
     take = active_take(opened)
     camera = take.camera
     for frame, aside in ((1, 0.6), (4, 0.0), (13, 0.9)):
@@ -165,7 +157,6 @@ def test_a_moving_camera_sees_the_pose_from_where_it_is(opened: bpy.types.Scene,
 
 
 def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.Scene) -> None:
-    """Blender forgets unkeyed poses when it goes to another frame; no performer's is lost."""
     take = active_take(opened)
     opened.frame_set(5)
     camera = take.camera
@@ -183,7 +174,6 @@ def test_a_moving_camera_is_read_without_losing_what_is_posed(opened: bpy.types.
 
 
 def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.Scene) -> None:
-    """A linked copy of the scene shows the same actor at a frame of its own."""
     opened.frame_set(1)
     first = posture_of(opened)
     bpy.ops.scene.new(type="LINK_COPY")
@@ -203,7 +193,6 @@ def test_in_two_scenes_the_frame_of_the_one_worked_in_counts(opened: bpy.types.S
 
 
 def test_posed_frames_are_those_of_this_very_action(opened: bpy.types.Scene, tiny_take: Take) -> None:
-    """Not of one that had the same name before."""
     take = active_take(opened)
     before, name = posed_frames(take), take.keyframe_action.name
     assert len(before) == len(tiny_take.keyframes)
@@ -213,7 +202,6 @@ def test_posed_frames_are_those_of_this_very_action(opened: bpy.types.Scene, tin
 
 
 def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy.types.Scene) -> None:
-    """It does not lie outside the footage; the nearest frame is named."""
     take = active_take(opened)
     bpy.ops.keymark.propose_keyframes()
     reading = reading_of(take)
@@ -226,3 +214,57 @@ def test_a_frame_between_those_of_a_varying_rate_says_which_to_go_to(opened: bpy
     opened.frame_set(40)
     with pytest.raises(InputError, match="lies outside the footage"):
         frame_in_footage(footage_of(opened, take), scene_evidence(take), varying)
+
+
+@pytest.fixture
+def fitted(opened: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
+    opened.frame_set(4)
+    assert bpy.ops.keymark.fit_pose(start="ANEW") == {"FINISHED"}
+    yield opened
+
+
+def test_a_fitted_frame_offers_other_poses_and_keys_none(fitted: bpy.types.Scene) -> None:
+    take = active_take(fitted)
+    offered = offered_at(take, 4.0)
+    assert offered is not None and offered.chosen == 0
+    assert 4.0 not in posed_frames(take)
+    first = posture_of(fitted)
+    assert bpy.ops.keymark.show_offered(candidate=1) == {"FINISHED"}
+    assert np.abs(posture_of(fitted).minus(first)).max() > 0.05
+    assert offered_at(take, 4.0).chosen == 1
+    assert bpy.ops.keymark.show_offered(candidate=0) == {"FINISHED"}
+    np.testing.assert_allclose(posture_of(fitted).minus(first), 0.0, atol=1e-4)
+    assert offered_at(take, 5.0) is None
+    with pytest.raises(RuntimeError, match="candidate must be 0 to"):
+        bpy.ops.keymark.show_offered(candidate=9)
+
+
+def test_storing_the_pose_ends_the_choice(fitted: bpy.types.Scene) -> None:
+    take = active_take(fitted)
+    note_contradictions(take, 4.0, ("trunk",))
+    bpy.ops.keymark.store_keyframe()
+    assert offered_at(take, 4.0) is None
+    assert contradictions_at(take, 4.0) == ()
+    with pytest.raises(RuntimeError, match="offers no poses"):
+        bpy.ops.keymark.show_offered(candidate=0)
+
+
+def test_what_contradicts_is_kept_until_the_frame_is_fitted_otherwise(fitted: bpy.types.Scene) -> None:
+    take = active_take(fitted)
+    name = take.markers[0].name
+    note_contradictions(take, 4.0, (name,))
+    bpy.ops.ed.undo_push(message="noted")
+    fitted.frame_set(1)
+    fitted.frame_set(4)
+    assert contradictions_at(take, 4.0) == (name,)
+    bpy.ops.keymark.fit_pose(start="ANEW")
+    assert contradictions_at(active_take(fitted), 4.0) == ()
+    bpy.ops.ed.undo_push(message="fitted")
+    bpy.ops.ed.undo()
+    assert contradictions_at(active_take(bpy.context.scene), 4.0) == (name,)
+
+
+def test_a_pose_that_is_only_brought_nearer_offers_no_other(opened: bpy.types.Scene) -> None:
+    opened.frame_set(4)
+    bpy.ops.keymark.fit_pose(start="POSE")
+    assert offered_at(active_take(opened), 4.0) is None

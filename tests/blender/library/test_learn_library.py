@@ -14,7 +14,7 @@ from keymark.core.take.motion import Motion
 from keymark.operators.bridge.actor_lengths import read_body
 from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.library import library_files as user_folder
+from keymark.operators.library import registry
 from keymark.operators.shell.takes import add_take
 
 FRAMES = 50
@@ -23,14 +23,12 @@ NOBODY = "LicenseRef-Proprietary"
 
 @pytest.fixture
 def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The user's folder of libraries."""
-    monkeypatch.setattr(user_folder, "own_folder", lambda: tmp_path)
+    monkeypatch.setattr(registry, "own_folder", lambda: tmp_path)
     return tmp_path
 
 
 @pytest.fixture
 def posture(wave_posture: Callable[[np.ndarray], Posture]) -> Posture:
-    """A motion that does not come again."""
     return wave_posture(np.linspace(0.0, 1.0, FRAMES) ** 2)
 
 
@@ -55,7 +53,6 @@ def take(registered: None, body: Body, posture: Posture) -> bpy.types.PropertyGr
 
 
 def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Posture, own: Path) -> None:
-    """Each posture is the motion's at its time; the title is the take."""
     assert bpy.ops.keymark.learn_library(count=12) == {"FINISHED"}
     (file,) = own.iterdir()
     library = read_library(file)
@@ -73,14 +70,12 @@ def test_a_motion_becomes_a_library(take: bpy.types.PropertyGroup, posture: Post
 
 
 def test_a_second_library_never_replaces_the_first(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """The same title gets another identifier."""
     for _ in range(2):
         assert bpy.ops.keymark.learn_library(title="Swing", author="Anna", license="CC0-1.0") == {"FINISHED"}
     assert sorted(file.name for file in own.iterdir()) == ["swing.json", "swing_2.json"]
 
 
 def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """The redo panel goes back and does it anew: the file is the one it wrote before."""
     assert bpy.ops.keymark.learn_library(title="Swing") == {"FINISHED"}
     assert bpy.ops.keymark.learn_library(title="Swing", count=14, learned_as="swing") == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["swing.json"]
@@ -88,7 +83,6 @@ def test_doing_it_again_in_another_way_replaces_it(take: bpy.types.PropertyGroup
 
 
 def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, own: Path) -> None:
-    """A license that is none, or more postures than frames: one sentence, no file, no asset."""
     actions = len(bpy.data.actions)
     for wrong, sentence in (({"license": "free for all!"}, "license"), ({"count": 500}, "50 frames")):
         with pytest.raises(RuntimeError, match=sentence):
@@ -98,6 +92,5 @@ def test_nothing_is_left_behind_where_it_fails(take: bpy.types.PropertyGroup, ow
 
 @pytest.mark.usefixtures("registered")
 def test_without_a_motion_it_says_what_is_missing() -> None:
-    """As every operator does."""
     with pytest.raises(RuntimeError, match="Build the actor first"):
         bpy.ops.keymark.learn_library()

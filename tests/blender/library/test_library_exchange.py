@@ -20,7 +20,6 @@ from keymark.operators.bridge.keyframes import write_keyframes
 from keymark.operators.bridge.library.library_file import read_library_blend
 from keymark.operators.bridge.library.pose_assets import add_assets
 from keymark.operators.bridge.posture_curves import write_posture_curves
-from keymark.operators.library import library_files as user_folder
 from keymark.operators.library import registry, registry_files
 from keymark.operators.library.registry_files import load_registered
 from keymark.operators.shell.takes import add_take
@@ -33,20 +32,18 @@ def own(registered: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Pa
     """The user's folder of libraries, empty; nothing comes with Keymark."""
     folder = tmp_path / "own"
     folder.mkdir()
-    monkeypatch.setattr(user_folder, "own_folder", lambda: folder)
-    monkeypatch.setattr(registry_files, "folders", lambda: [folder])
+    monkeypatch.setattr(registry, "own_folder", lambda: folder)
+    monkeypatch.setattr(registry, "folders", lambda: [folder])
     return folder
 
 
 @pytest.fixture
 def library(random_posture: RandomPosture) -> Library:
-    """A library of two postures."""
     postures = tuple(LibraryPosture(name, random_posture(seed)) for seed, name in enumerate(("A", "B")))
     return Library("small", "Small", 2, "A. Person", "CC0-1.0", Actor.from_stature(1.7), postures)
 
 
 def imported(library: Library, folder: Path, **settings: bool) -> set[str]:
-    """Write a library and import it."""
     write_library(folder / "offered.json", library)
     return set(bpy.ops.keymark.import_library(filepath=str(folder / "offered.json"), **settings))
 
@@ -61,7 +58,6 @@ def titles(folder: Path) -> list[tuple[str, str, int, int]]:
 
 
 def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: Path) -> None:
-    """In the user's folder, in the list and in menus; imported again, nothing happens."""
     assert imported(library, tmp_path) == {"FINISHED"}
     assert [file.name for file in own.iterdir()] == ["small.json"]
     listed = bpy.context.window_manager.keymark_shelf.libraries
@@ -76,7 +72,6 @@ def test_an_imported_library_is_at_hand(own: Path, library: Library, tmp_path: P
 
 
 def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Path) -> None:
-    """A library is imported, a take is opened or its error is reported, other files are refused."""
     write_library(tmp_path / "take.json", library)  # the name does not matter
     assert bpy.ops.keymark.open_dropped(filepath=str(tmp_path / "take.json")) == {"FINISHED"}
     assert titles(own) == [("small", "Small", 2, 2)]
@@ -95,7 +90,6 @@ def test_a_dropped_json_is_looked_into(own: Path, library: Library, tmp_path: Pa
 
 
 def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_path: Path) -> None:
-    """The stored number means the same library after another one is listed before it."""
     take = add_take(bpy.context.scene, "Take")
     imported(library, tmp_path)
     take.matching.library = "small"
@@ -105,7 +99,6 @@ def test_a_choice_of_library_outlives_others(own: Path, library: Library, tmp_pa
 
 
 def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
-    """With the reason, and in no menu."""
     (own / "broken.json").write_text("{")
     bpy.ops.keymark.refresh_shelf()
     item = bpy.context.window_manager.keymark_shelf.libraries[0]
@@ -117,7 +110,6 @@ def test_a_damaged_file_in_the_registry_is_listed_as_such(own: Path) -> None:
 def test_a_file_that_only_has_the_name_is_not_lost(
     own: Path, library: Library, tmp_path: Path, content: str
 ) -> None:
-    """Files that people have put into the folder themselves may hold anything."""
     there = own / "small.json"
     if content == "another":
         write_library(there, replace(library, identifier="anna", title="Anna"))
@@ -130,14 +122,12 @@ def test_a_file_that_only_has_the_name_is_not_lost(
 
 
 def test_an_older_version_that_shall_replace_does(own: Path, library: Library, tmp_path: Path) -> None:
-    """Also where the newer one lies in a file of another name."""
     write_library(own / "a copy.json", replace(library, version=7))
     imported(library, tmp_path, replace=True)
     assert titles(own) == [("small", "Small", 2, 2)]
 
 
 def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Library) -> None:
-    """Libraries are found by identifier, even where another library's title equals it."""
     write_library(own / "a.json", replace(library, identifier="zzz", title="small"))
     write_library(own / "small.json", replace(library, title="Zoo"))
     assert load_registered("small").title == "Zoo"
@@ -146,7 +136,6 @@ def test_a_title_does_not_stand_for_another_librarys_name(own: Path, library: Li
 def test_libraries_are_the_same_objects_until_a_file_changes(
     own: Path, library: Library, tmp_path: Path
 ) -> None:
-    """What was made of them is kept by the objects."""
     imported(library, tmp_path)
     first = registry_files.all_libraries()
     assert registry_files.all_libraries() is first
@@ -155,7 +144,6 @@ def test_libraries_are_the_same_objects_until_a_file_changes(
 
 
 def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_path: Path) -> None:
-    """Else nothing changes, and the sentence names both."""
     imported(library, tmp_path)
     newer = replace(library, version=3, postures=library.postures[:1])
     with pytest.raises(
@@ -168,13 +156,11 @@ def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_
 
 
 def saved(path: Path, **settings: str) -> Library:
-    """Save a library, and read it."""
     assert bpy.ops.keymark.export_library(filepath=str(path), **settings) == {"FINISHED"}
     return (read_library_blend(path)[0]) if path.suffix == ".blend" else read_library(path)
 
 
 def same(first: Library, second: Library) -> bool:
-    """Whether a file of both would be the same."""
     return first.to_json() == second.to_json()
 
 
@@ -182,7 +168,6 @@ def same(first: Library, second: Library) -> bool:
 def test_a_library_is_saved_and_loaded_without_loss(
     own: Path, library: Library, tmp_path: Path, suffix: str
 ) -> None:
-    """As a text file and as pose assets."""
     imported(library, tmp_path)
     path = tmp_path / f"again{suffix}"
     assert same(saved(path), library)
@@ -192,7 +177,6 @@ def test_a_library_is_saved_and_loaded_without_loss(
 
 
 def test_a_library_is_edited_as_pose_assets(own: Path, library: Library, tmp_path: Path) -> None:
-    """It comes back as it was, then with another name; a saved file's catalogs are named."""
     imported(library, tmp_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "work.blend"))
     assert bpy.ops.keymark.edit_library(library="small") == {"FINISHED"}
@@ -276,7 +260,6 @@ def test_what_was_posed_becomes_a_library(
 
 
 def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: Path) -> None:
-    """The suffix decides, not the last format; the format property decides for other suffixes."""
     imported(library, tmp_path)
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "a.blend"), format="BLEND")
     bpy.ops.keymark.export_library(filepath=str(tmp_path / "b.json"), format="BLEND")
@@ -286,7 +269,6 @@ def test_a_files_ending_tells_its_format(own: Path, library: Library, tmp_path: 
 
 
 def test_the_open_file_is_not_replaced_by_a_library(own: Path, library: Library, tmp_path: Path) -> None:
-    """Only pose assets would be left of it."""
     imported(library, tmp_path)
     path = tmp_path / "work.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))

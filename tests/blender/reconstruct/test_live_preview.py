@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from keymark.core.body.posture import Posture
 from keymark.core.progress import Preview, Progress
 from keymark.core.take.take import Take
 from keymark.operators.reconstruct.live_preview import LivePreview
@@ -19,7 +20,6 @@ FRAMES = np.arange(1.0, 14.0)
 
 @pytest.fixture
 def actor(tiny_take: Take) -> bpy.types.Object:
-    """The tiny take's actor, one bone of it posed but not keyed."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder))
     bpy.context.scene.frame_set(6)
     actor = active_take(bpy.context.scene).armature
@@ -27,8 +27,13 @@ def actor(tiny_take: Take) -> bpy.types.Object:
     return actor
 
 
+@pytest.fixture
+def one(tiny_take: Take) -> Posture:
+    """A batch of one posture."""
+    return Posture.stack([tiny_take.keyframes[0].posture])
+
+
 def state(actor: bpy.types.Object) -> tuple[object, ...]:
-    """The actor's visible state."""
     data = actor.animation_data
     pose = [tuple(bone.matrix_basis.col[k]) for bone in actor.pose.bones for k in range(4)]
     scene = bpy.context.scene
@@ -38,11 +43,10 @@ def state(actor: bpy.types.Object) -> tuple[object, ...]:
 def test_the_actor_goes_through_the_frames_and_back(
     actor: bpy.types.Object, tiny_take: Take, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """It shows each frame's posture at its scene frame, then restores the scene."""
     before = state(actor)
     posture = tiny_take.keyframes[1].posture
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
-    batch = type(posture).stack([posture.plus(np.full(34, 0.01 * k)) for k in range(5)])
+    batch = Posture.stack([posture.plus(np.full(34, 0.01 * k)) for k in range(5)])
     seen = []
     for _ in range(6):
         preview.show(Preview(3, batch))
@@ -58,26 +62,23 @@ def test_the_actor_goes_through_the_frames_and_back(
 
 
 def test_a_file_saved_meanwhile_holds_nothing_of_the_preview(
-    actor: bpy.types.Object, tiny_take: Take, tmp_path: Path
+    actor: bpy.types.Object, one: Posture, tmp_path: Path
 ) -> None:
-    """And the preview goes on afterwards."""
     before = state(actor)
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
-    batch = type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])
-    preview.show(Preview(9, batch))
+    preview.show(Preview(9, one))
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True)
     assert state(actor) == before
-    preview.show(Preview(9, batch))
+    preview.show(Preview(9, one))
     assert bpy.context.scene.frame_current == 10
     preview.end()
     assert state(actor) == before
     assert not any(getattr(handler, "__self__", None) is preview for handler in bpy.app.handlers.save_pre)
 
 
-def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tiny_take: Take) -> None:
-    """As after another file was opened."""
+def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, one: Posture) -> None:
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
-    preview.show(Preview(0, type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])))
+    preview.show(Preview(0, one))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     preview.end()
     assert not bpy.data.armatures and bpy.context.scene.frame_current == 1
@@ -86,7 +87,6 @@ def test_a_preview_of_what_was_removed_ends_quietly(actor: bpy.types.Object, tin
 
 @pytest.mark.parametrize("method", ["map", "ekf"])
 def test_a_reconstruction_hands_out_what_it_has_found(actor: bpy.types.Object, method: str) -> None:
-    """Watched to its end or cut short, the scene is as before."""
     active_take(bpy.context.scene).method = method
     before = state(actor)
     job = SimpleNamespace()
@@ -104,15 +104,13 @@ def test_a_reconstruction_hands_out_what_it_has_found(actor: bpy.types.Object, m
     assert state(actor) == before
 
 
-def test_what_is_undone_meanwhile_is_not_the_preview(actor: bpy.types.Object, tiny_take: Take) -> None:
-    """Undo moves things in memory: the preview is taken back first, and goes on afterwards."""
+def test_what_is_undone_meanwhile_is_not_the_preview(actor: bpy.types.Object, one: Posture) -> None:
     bpy.ops.ed.undo_push(message="Before")
     actor.location.x = 1.0
     bpy.ops.ed.undo_push(message="Moved")
     before = actor.animation_data.action.name, bpy.context.scene.frame_current
     preview = LivePreview(bpy.context.scene, actor, FRAMES)
-    batch = type(tiny_take.keyframes[0].posture).stack([tiny_take.keyframes[0].posture])
-    preview.show(Preview(9, batch))
+    preview.show(Preview(9, one))
     held = []
     bpy.app.handlers.undo_pre.append(lambda *_: held.append(preview._changes))
     try:
@@ -123,7 +121,7 @@ def test_what_is_undone_meanwhile_is_not_the_preview(actor: bpy.types.Object, ti
     actor = active_take(bpy.context.scene).armature
     assert (actor.animation_data.action.name, bpy.context.scene.frame_current) == before
     assert actor.location.x == 0.0
-    preview.show(Preview(9, batch))
+    preview.show(Preview(9, one))
     preview.end()
     for name in ("save_pre", "undo_pre", "redo_pre"):
         handlers = getattr(bpy.app.handlers, name)

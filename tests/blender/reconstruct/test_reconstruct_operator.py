@@ -21,13 +21,12 @@ def take(tiny_take: Take, monkeypatch: pytest.MonkeyPatch) -> bpy.types.Property
 
 @pytest.fixture
 def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Grows by one whenever markers are looked for in a clip."""
     from keymark.core.footage import reading as read_clip
 
     counted: list[int] = []
     original = read_clip.detect_markers
 
-    def sight(*arguments):  # noqa: ANN002, ANN202
+    def sight(*arguments):
         counted.append(1)
         return original(*arguments)
 
@@ -38,7 +37,6 @@ def passes(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 def test_the_clip_is_read_once_for_proposals_and_every_method(
     take: bpy.types.PropertyGroup, passes: list[int]
 ) -> None:
-    """Reading, review and notes lie with the take; the key goes along with the file."""
     assert bpy.ops.keymark.propose_keyframes() == {"FINISHED"}
     assert len(take.proposals) >= 2 and results.reading_of(take) is not None
     for method in ("map", "ekf", "interpolation", "map"):
@@ -55,7 +53,6 @@ def test_the_clip_is_read_once_for_proposals_and_every_method(
 
 
 def test_another_color_has_the_clip_read_again(take: bpy.types.PropertyGroup, passes: list[int]) -> None:
-    """The reading of the old clip is out of date."""
     bpy.ops.keymark.reconstruct()
     before = take.reading_key
     red, green, blue = take.markers[0].color
@@ -65,7 +62,6 @@ def test_another_color_has_the_clip_read_again(take: bpy.types.PropertyGroup, pa
 
 
 def test_running_again_replaces_generated_keys_in_the_same_action(take: bpy.types.PropertyGroup) -> None:
-    """And is the same motion; the keyframe Action stays as it is."""
     from keymark.operators.bridge.actions import existing_channelbag
 
     bpy.ops.keymark.reconstruct()
@@ -84,7 +80,6 @@ def test_running_again_replaces_generated_keys_in_the_same_action(take: bpy.type
 
 
 def test_notes_of_the_last_run_stay_readable(take: bpy.types.PropertyGroup) -> None:
-    """Until the next run."""
     take.camera.data.lens *= 1.12
     bpy.ops.keymark.reconstruct()
     assert any("lens" in note.text for note in take.notes)
@@ -94,7 +89,6 @@ def test_notes_of_the_last_run_stay_readable(take: bpy.types.PropertyGroup) -> N
 
 
 def test_two_takes_keep_their_own_results(take: bpy.types.PropertyGroup) -> None:
-    """A job's result goes to the take it was started for, whichever is worked on when it ends."""
     from types import SimpleNamespace
 
     from keymark.core.progress import run
@@ -114,7 +108,6 @@ def test_two_takes_keep_their_own_results(take: bpy.types.PropertyGroup) -> None
 
 
 def test_time_left_is_said_once_it_can_be_told() -> None:
-    """In steps that a person can follow."""
     assert time_left(0.5, 0.5) == time_left(10.0, 0.01) == ""
     assert time_left(10.0, 0.5) == "about 10 s left"
     assert time_left(17.0, 0.28) == "about 40 s left"
@@ -123,7 +116,6 @@ def test_time_left_is_said_once_it_can_be_told() -> None:
 
 
 def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup) -> None:
-    """Reading the same keyframes from Blender once more is no change; moving one is."""
     from types import SimpleNamespace
 
     from keymark.operators.reconstruct.reconstruct import KEYMARK_OT_reconstruct
@@ -145,7 +137,6 @@ def test_an_unchanged_take_is_not_estimated_again(take: bpy.types.PropertyGroup)
 
 
 def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) -> None:
-    """The button is gray with a reason in its tooltip; a second keyframe enables it."""
     scene, reconstruct = bpy.context.scene, bpy.ops.keymark.reconstruct
     take.keyframe_action = None
     take.armature.animation_data.action = None
@@ -159,7 +150,6 @@ def test_one_keyframe_is_too_few_to_begin_with(take: bpy.types.PropertyGroup) ->
 
 
 def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.PropertyGroup) -> None:
-    """The result is discarded: no Action, key or review of it stays."""
     from types import SimpleNamespace
 
     from keymark.core.errors import InputError
@@ -187,18 +177,11 @@ def test_an_actor_that_is_deleted_meanwhile_is_one_sentence(take: bpy.types.Prop
 
 
 def test_too_few_keyframes_are_counted_where_they_count(take: bpy.types.PropertyGroup) -> None:
-    """None or one, beside others outside the footage: the error names those that do not count."""
     take.keyframe_action = bpy.data.actions.new("Elsewhere")
     for frame, said in (
         (40, None),
-        (
-            41,
-            r"0 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside",
-        ),
-        (
-            3,
-            r"1 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside",
-        ),
+        (41, r"0 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside"),
+        (3, r"1 of the 2 keyframes that are needed lie in the footage.* Keys at 40, 41 lie outside"),
     ):
         bpy.context.scene.frame_set(frame)
         bpy.ops.keymark.store_keyframe()

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -17,11 +18,13 @@ from keymark.operators.bridge.extremity_curves import posed_extremities
 from keymark.operators.bridge.fcurves import moved_paths, write_motion
 from keymark.operators.bridge.keyframes import keyed_frames
 from keymark.operators.bridge.review_curves import GROUP, SUFFIX, curve_path, write_review_curves
+from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.review.panel import reason_words
-from keymark.operators.review.review_results import show_review
+from keymark.operators.review.weak_frames import look_from_side
 from keymark.operators.shell.keyed_frames import is_posed
 from keymark.operators.shell.results import clear_review, review_of
 from keymark.operators.shell.takes import active_take
+from mathutils import Matrix, Quaternion, Vector
 
 NO_KEYPOINTS = ComparedKeypoints.none(13)
 pytestmark = pytest.mark.usefixtures("registered")
@@ -38,7 +41,6 @@ def take(tiny_take: Take, wave_motion: Motion) -> bpy.types.PropertyGroup:
 
 
 def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
-    """List, curves and the overlays' data are of the same motion; a second run replaces them."""
     bpy.ops.keymark.open_take(filepath=str(tiny_take.folder / "take.json"))
     take = active_take(bpy.context.scene)
     assert bpy.ops.keymark.reconstruct() == {"FINISHED"}
@@ -56,12 +58,10 @@ def test_reconstructing_fills_the_review(tiny_take: Take) -> None:
 
 
 def curve(take: bpy.types.PropertyGroup, name: str) -> bpy.types.FCurve | None:
-    """A review curve of the take's motion."""
     return existing_channelbag(take.motion_action, take.armature).fcurves.find(curve_path(name))
 
 
 def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -> None:
-    """The worst first; the whole take's confidence is the frames' mean."""
     shown = [(weak.frame, weak.reason, weak.marker, weak.strength) for weak in take.review.weak_frames]
     assert shown == [(7.0, "HIDDEN", "Ärmel", 1.0), (4.0, "FAR", "", 0.25)]
     assert take.review.confidence == pytest.approx(made_up_review().confidence.mean())
@@ -72,7 +72,6 @@ def test_the_list_tells_frame_reason_and_marker(take: bpy.types.PropertyGroup) -
 
 
 def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> None:
-    """No confidence, and no curve of it from an earlier review; the other curves stay."""
     unknown = np.full(13, np.nan)
     show_review(take, replace(made_up_review(), confidence=unknown, sigma_m=np.full((13, 13), np.nan)))
     assert take.review.confidence < 0.0
@@ -82,7 +81,6 @@ def test_a_method_that_cannot_tell_says_so(take: bpy.types.PropertyGroup) -> Non
 
 
 def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
-    """In one group, generated, in millimeters and pixels; unknown frames have no key."""
     review = made_up_review()
     keypoints = review.keypoints
     distances = np.concatenate(
@@ -105,13 +103,11 @@ def test_curves_hold_the_reviews_numbers(take: bpy.types.PropertyGroup) -> None:
 
 
 def test_frames_in_which_nothing_is_compared_have_no_key(take: bpy.types.PropertyGroup) -> None:
-    """Of a take without keypoints, one frame shows no marker."""
     write_review_curves(take.armature, take.motion_action, replace(made_up_review(), keypoints=NO_KEYPOINTS))
     assert len(curve(take, "Reprojection px").keyframe_points) == 12
 
 
 def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> None:
-    """As people call it; a marker by the name that it was given."""
     weak = (WeakFrame(6, Reason.FOOTAGE, 1.0, point="wrist.L"), WeakFrame(3, Reason.HIDDEN, 0.5, marker=1))
     show_review(take, replace(made_up_review(), weak_frames=weak))
     assert [reason_words(item) for item in take.review.weak_frames] == [
@@ -121,7 +117,6 @@ def test_a_body_point_is_a_reason_by_its_name(take: bpy.types.PropertyGroup) -> 
 
 
 def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.PropertyGroup) -> None:
-    """They read the same in the sidebar as in the Graph Editor."""
     scene = bpy.context.scene
     scene.frame_set(7)
     shown = take.armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -134,7 +129,6 @@ def test_curves_animate_properties_with_ranges_and_words(take: bpy.types.Propert
 def test_curves_disturb_neither_pose_nor_keyframes(
     take: bpy.types.PropertyGroup, wave_motion: Motion, shown_points: Callable[[bpy.types.Object], np.ndarray]
 ) -> None:
-    """The motion moves as before, and no curve counts as a key of the animator or of the motion."""
     for frame in (1, 7, 13):
         bpy.context.scene.frame_set(frame)
         assert shown_points(take.armature) == pytest.approx(wave_motion.points[frame - 1], abs=1e-4)
@@ -143,7 +137,6 @@ def test_curves_disturb_neither_pose_nor_keyframes(
 
 
 def test_a_second_review_replaces_the_first_but_not_the_animators_keys(take: bpy.types.PropertyGroup) -> None:
-    """Only GENERATED keys are replaced."""
     own = curve(take, "Confidence").keyframe_points.insert(4.0, 0.123)
     own.type = "KEYFRAME"
     write_review_curves(take.armature, take.motion_action, made_up_review(frames=9))
@@ -153,7 +146,6 @@ def test_a_second_review_replaces_the_first_but_not_the_animators_keys(take: bpy
 
 
 def test_going_through_weak_frames(take: bpy.types.PropertyGroup) -> None:
-    """The worst first; at the end it stays; choosing in the list goes there as well."""
     scene = bpy.context.scene
     scene.frame_set(1)
     visited = []
@@ -191,7 +183,6 @@ def test_the_reconstructed_pose_becomes_a_keyframe(
 
 
 def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.PropertyGroup) -> None:
-    """Without any list; and without keyframes an Action for them is made."""
     clear_review(take)
     take.keyframe_action = None
     bpy.context.scene.frame_set(5)
@@ -202,3 +193,29 @@ def test_the_pose_of_the_current_frame_can_be_taken_too(take: bpy.types.Property
     take.motion_action = None
     with pytest.raises(RuntimeError, match="Reconstruct the motion first"):
         bpy.ops.keymark.pose_from_motion()
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 2.5])
+def test_the_view_is_level_with_the_camera_on_the_left(opened: bpy.types.Scene, turn: float) -> None:
+    take = active_take(opened)
+    take.camera.matrix_world = Matrix.Rotation(turn, 4, "Z") @ take.camera.matrix_world
+    bpy.context.view_layer.update()
+    view = SimpleNamespace(view_perspective="CAMERA")
+    look_from_side(SimpleNamespace(region_3d=view), take.camera, take.armature)
+    axes = Quaternion(view.view_rotation).to_matrix()
+    away = -take.camera.matrix_world.to_3x3().col[2]
+    away.z = 0.0
+    assert view.view_perspective == "ORTHO"
+    assert np.array(axes.col[0]) == pytest.approx(np.array(away.normalized()), abs=1e-5)
+    assert np.array(axes.col[1]) == pytest.approx([0.0, 0.0, 1.0], abs=1e-5)
+    assert np.array(axes.col[2]) == pytest.approx(np.array(axes.col[0].cross(axes.col[1])), abs=1e-5)
+    hips = take.armature.matrix_world @ take.armature.pose.bones["pelvis"].head
+    assert (Vector(view.view_location) - hips).length < 0.3
+    assert 2.0 < view.view_distance < 8.0
+
+
+def test_it_is_a_toggle_and_needs_an_actor(opened: bpy.types.Scene) -> None:
+    assert bpy.ops.keymark.look_from_side() == {"FINISHED"}
+    bpy.data.objects.remove(active_take(opened).armature)
+    with pytest.raises(RuntimeError, match="actor"):
+        bpy.ops.keymark.look_from_side()

@@ -15,12 +15,11 @@ from keymark.operators.takes.panel import next_step
 
 pytestmark = pytest.mark.usefixtures("registered")
 
-AEROBIC, GREETING = open_example.AEROBIC, open_example.GREETING
+AEROBIC, GREETING = "AEROBIC", "GREETING"
 KEYFRAMES = {AEROBIC: 12, GREETING: 10}
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """All files below a folder, hidden ones too, with their contents."""
     return {str(file.relative_to(folder)): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
 
 
@@ -40,14 +39,12 @@ def test_an_example_is_ready_to_reconstruct(name: str) -> None:
 
 
 def test_every_example_is_offered_and_there() -> None:
-    """The list in the menu and the folders that come along name the same takes."""
     assert {name.lower() for name, _, _ in open_example.EXAMPLES} == {
         folder.name for folder in SHIPPED.iterdir()
     }
 
 
 def test_the_keyframes_are_those_of_a_person() -> None:
-    """The example shows what posing by hand leads to, not what the truth would."""
     bpy.ops.keymark.open_example(example=AEROBIC)
     take = active_take(bpy.context.scene)
     pelvis = take.armature.pose.bones["pelvis"]
@@ -79,7 +76,6 @@ def test_a_copy_is_a_take_of_its_own(tmp_path: Path) -> None:
 
 
 def test_a_copy_that_is_there_already_is_opened(tmp_path: Path) -> None:
-    """And not written again."""
     bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path))
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "aerobic").iterdir()}
     assert bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path)) == {"FINISHED"}
@@ -89,7 +85,6 @@ def test_a_copy_that_is_there_already_is_opened(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("changed", ["keyframes.json", "take.json"])
 def test_a_copy_that_somebody_works_in_is_left_alone(tmp_path: Path, changed: str) -> None:
-    """Its files stay, the scene stays, and the sentence says what to do."""
     bpy.ops.keymark.open_example(copy=True, directory=str(tmp_path))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     (tmp_path / "aerobic" / changed).write_text("mine", encoding="utf-8")
@@ -100,7 +95,6 @@ def test_a_copy_that_somebody_works_in_is_left_alone(tmp_path: Path, changed: st
 
 
 def test_where_nothing_can_be_written_nothing_changes(tmp_path: Path) -> None:
-    """A file stands where the folder would be; a locked folder would not stop the superuser."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     before, scene = files(tmp_path), scene_state()
     with pytest.raises(RuntimeError, match="cannot be written"):
@@ -118,20 +112,17 @@ def test_a_copy_that_fails_leaves_no_file(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_a_copy_needs_a_folder() -> None:
-    """A script that names none is told so."""
     with pytest.raises(RuntimeError, match="name the folder to copy the example to"):
         bpy.ops.keymark.open_example(copy=True)
 
 
 def test_an_installation_without_the_example_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Instead of a sentence about a folder that nobody chose."""
     monkeypatch.setattr(examples, "SHIPPED", tmp_path)
     with pytest.raises(RuntimeError, match="missing from the installation; install Keymark anew"):
         bpy.ops.keymark.open_example()
 
 
 def test_a_scene_with_a_take_gets_another(tmp_path: Path) -> None:
-    """As with Open Take: the first take keeps everything, the example becomes the active one."""
     bpy.ops.keymark.open_example(example=AEROBIC)
     first = bpy.context.scene.keymark.takes[0]
     kept = (first.armature, first.camera, first.clip, first.keyframe_action)
@@ -144,7 +135,6 @@ def test_a_scene_with_a_take_gets_another(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("touched", [False, True])
 def test_only_blenders_own_cube_makes_room(touched: bool) -> None:
-    """It stands where the performer does; a cube that somebody moved stays."""
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     cube = bpy.data.objects["Cube"]
     if touched:

@@ -38,13 +38,11 @@ def test_a_clip_of_a_shoot_opens_and_is_saved_to_stand_alone(clip: Path, chosen:
 
 
 def test_the_description_beside_a_clip_can_be_dropped(clip: Path) -> None:
-    """Like the take.json of a folder."""
     bpy.ops.keymark.open_dropped(filepath=str(clip.with_name("take01.take.json")))
     assert active_take(bpy.context.scene).name == "take01"
 
 
 def test_a_file_means_one_take(clip: Path) -> None:
-    """`take.json` its folder, `NAME.take.json` its clip; without the clip it means nothing."""
     assert take_path(clip) == take_path(clip.with_name("take01.take.json")) == clip
     assert take_path(clip.parent / "take.json") == clip.parent
     clip.unlink()
@@ -53,7 +51,6 @@ def test_a_file_means_one_take(clip: Path) -> None:
 
 
 def test_a_take_is_never_saved_where_it_would_hide_others(clip: Path, tmp_path: Path) -> None:
-    """Neither among the clips of a shoot nor around folders of takes; over itself it is."""
     bpy.ops.keymark.open_take(filepath=str(clip))
     with pytest.raises(RuntimeError, match="holds other takes, as take01.mp4"):
         bpy.ops.keymark.save_take(directory=str(clip.parent))

@@ -13,20 +13,17 @@ RIG = "tiny Actor"
 
 
 def open_take(take: Take) -> bpy.types.PropertyGroup:
-    """The active take of a scene with a take opened."""
     assert bpy.ops.keymark.open_take(filepath=str(take.folder)) == {"FINISHED"}
     return active_take(bpy.context.scene)
 
 
 def save_and_reopen(path: Path) -> bpy.types.Scene:
-    """The scene as another session would find it."""
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     bpy.ops.wm.open_mainfile(filepath=str(path))
     return bpy.context.scene
 
 
 def wear_red(take: bpy.types.PropertyGroup) -> None:
-    """The one marker of the tiny take that is red."""
     bpy.ops.keymark.add_marker()
     take.markers[0].segment, take.markers[0].color = "forearm.L", (220 / 255, 40 / 255, 40 / 255)
 
@@ -43,7 +40,6 @@ def rig_file(registered: None, tiny_take: Take, tmp_path: Path) -> Path:
 
 @pytest.mark.usefixtures("registered")
 def test_a_file_says_its_version_and_keeps_its_takes(tiny_take: Take, tmp_path: Path) -> None:
-    """Saved and opened again."""
     identifier = open_take(tiny_take).identifier
     scene = save_and_reopen(tmp_path / "scene.blend")
     take = active_take(scene)
@@ -54,7 +50,6 @@ def test_a_file_says_its_version_and_keeps_its_takes(tiny_take: Take, tmp_path: 
 
 @pytest.mark.usefixtures("registered")
 def test_what_a_newer_keymark_wrote_is_left_alone(tiny_take: Take, tmp_path: Path) -> None:
-    """The version stays, so does everything else; working on does not call it older."""
     take = open_take(tiny_take)
     take.identifier = ""  # as if it meant something else by then
     bpy.context.scene.keymark.version = VERSION + 1
@@ -66,7 +61,6 @@ def test_what_a_newer_keymark_wrote_is_left_alone(tiny_take: Take, tmp_path: Pat
 
 
 def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) -> None:
-    """The file's data outlives the definitions."""
     keymark.register()
     identifier = open_take(tiny_take).identifier
     keymark.unregister()
@@ -77,7 +71,6 @@ def test_switching_the_extension_off_and_on_keeps_everything(tiny_take: Take) ->
 
 
 def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
-    """With its Action; another keyframe goes into it, and it is reconstructed."""
     with bpy.data.libraries.load(str(rig_file)) as (_source, target):
         target.objects = [RIG]
     scene = bpy.context.scene
@@ -97,7 +90,6 @@ def test_an_appended_rig_is_an_actor(rig_file: Path, tiny_take: Take) -> None:
 
 
 def test_a_linked_rig_asks_for_an_override(rig_file: Path, tiny_take: Take) -> None:
-    """One sentence, before anything is tried."""
     with bpy.data.libraries.load(str(rig_file), link=True) as (_source, target):
         target.objects = [RIG]
     scene = bpy.context.scene
@@ -137,7 +129,6 @@ def test_a_library_override_is_an_actor(rig_file: Path, tiny_take: Take, tmp_pat
 
 @pytest.mark.usefixtures("registered")
 def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
-    """Its take points to the copies, and reconstructing there leaves the first scene's actor."""
     first = open_take(tiny_take)
     first.method = "interpolation"
     bpy.ops.scene.new(type="FULL_COPY")
@@ -156,7 +147,6 @@ def test_a_full_copy_of_the_scene_is_worked_on_apart(tiny_take: Take) -> None:
 
 @pytest.mark.usefixtures("registered")
 def test_everything_can_be_undone(tiny_take: Take, tmp_path: Path) -> None:
-    """Step by step back to the empty scene, and every state once more forward."""
 
     def state() -> tuple[object, ...]:
         scene = bpy.context.scene

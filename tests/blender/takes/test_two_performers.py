@@ -27,7 +27,6 @@ POSITIONS_X_M = (-0.75, 0.75)
 
 
 def draw(image: np.ndarray, body: Body, posture: Posture, camera: Camera, colors: dict) -> None:
-    """A performer of thick strokes."""
     pose = body.pose(posture)
     worn = {part: colors[segment] for segment in colors for part in marker_parts(segment)}
     for piece in body_pieces(body):
@@ -52,7 +51,6 @@ def performances(wave_posture: Callable[[np.ndarray], Posture]) -> list[Posture]
 
 @pytest.fixture
 def clip(tmp_path: Path, body: Body, camera: Camera, performances: list[Posture]) -> Path:
-    """Both of them filmed."""
     path = tmp_path / "two.mp4"
     writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"mp4v"), 25.0, SIZE)
     assert writer.isOpened()
@@ -72,7 +70,6 @@ def test_each_is_found_by_their_own_colors(
     performances: list[Posture],
     shown_points: Callable[[bpy.types.Object], np.ndarray],
 ) -> None:
-    """One after the other; the second run leaves the first one's motion as it was."""
     scene = bpy.context.scene
     bpy.ops.keymark.load_footage(filepath=str(clip))
     scene.camera.matrix_world = np.array(camera.matrix_world).T.tolist()

@@ -17,8 +17,7 @@ from typing import TypeVar
 import bpy
 
 Result = TypeVar("Result")
-Steps = Generator[None, None, Result]
-"""A part of a script, and what it returns."""
+Steps = Generator[None, None, Result]  # A part of a script, and what it returns
 
 PATIENCE_S = 120.0
 """How long something may take that is not a job; a laden machine draws a window in a second."""

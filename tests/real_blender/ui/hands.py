@@ -9,14 +9,11 @@ from driver import Steps, expect, turns, until
 
 ACROSS = (0.5, 0.2, 0.75, 0.35, 0.9, 0.08)
 """Where across a region buttons are looked for; most span the middle."""
-STEP_PX = 16
-"""Buttons are about 20 px high."""
+STEP_PX = 16  # Buttons are about 20 px high
 NOTCHES = 15
 """Of the wheel, of about 40 px each: nearly all that a sidebar shows, so that nothing is passed over."""
-MARGIN_PX = 6
-"""Beside what panels show, in the sidebar still."""
-PAGES = 10
-"""More than any sidebar is long."""
+MARGIN_PX = 6  # Beside what panels show, in the sidebar still
+PAGES = 10  # More than any sidebar is long
 
 
 class Hands:
@@ -24,10 +21,8 @@ class Hands:
 
     def __init__(self) -> None:
         self.x = self.y = 0
-        self.clicks = 0
-        """Presses of the left mouse button so far."""
-        self.keys = 0
-        """Presses of keys so far; written text counts letter by letter."""
+        self.clicks = 0  # Presses of the left mouse button so far
+        self.keys = 0  # Presses of keys so far; written text counts letter by letter
         self._remembered: dict[tuple[str, str, str], tuple[int, int]] = {}
         """Where the mouse last saw what, by area, kind of text and text."""
 
@@ -37,7 +32,6 @@ class Hands:
         return bpy.context.window_manager.windows[0]
 
     def area(self, kind: str) -> bpy.types.Area:
-        """The largest area of a kind on the screen."""
         areas = [area for area in self.window.screen.areas if area.type == kind]
         expect(areas, f"no {kind} on the screen")
         return max(areas, key=lambda area: area.width * area.height)
@@ -77,12 +71,10 @@ class Hands:
             yield from turns(2)
 
     def click(self, x: float, y: float, settle: bool = True, **modifiers: bool) -> Steps[None]:
-        """Click at a place in the window."""
         yield from self.move(x, y)
         yield from self.press("LEFTMOUSE", settle=settle, **modifiers)
 
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> Steps[None]:
-        """Drag from one place in the window to another."""
         yield from self.move(*start)
         self.window.event_simulate(type="LEFTMOUSE", value="PRESS", x=self.x, y=self.y)
         yield from turns(2)
@@ -92,7 +84,6 @@ class Hands:
         yield from turns(3)
 
     def write(self, text: str) -> Steps[None]:
-        """Write text, letter by letter."""
         names = {".": "PERIOD", "-": "MINUS", "/": "SLASH", " ": "SPACE", "_": "MINUS"}
         digits = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
         for letter in text:
@@ -100,12 +91,10 @@ class Hands:
             yield from self.press(key, text=letter)
 
     def undo(self) -> Steps[None]:
-        """Ctrl Z over the viewport."""
         yield from self.move_over("VIEW_3D")
         yield from self.press("Z", ctrl=True)
 
     def redo(self) -> Steps[None]:
-        """Ctrl Shift Z over the viewport."""
         yield from self.move_over("VIEW_3D")
         yield from self.press("Z", ctrl=True, shift=True)
 
@@ -211,7 +200,6 @@ class Hands:
     def _search(
         self, kind: str, copy: str, wanted: tuple[str, ...], shares: tuple[float, ...]
     ) -> Steps[tuple[int, int] | None]:
-        """The same among what the sidebar shows now."""
         region = self.region(kind, "UI")
         width = region.width - 25  # the tabs
         been_elsewhere = not self._tells(kind, copy, wanted)
@@ -268,6 +256,5 @@ class Hands:
         yield from turns(4)
 
     def _showing(self, kind: str) -> tuple[float, float]:
-        """Where the sidebar's contents lie now."""
         x, y = self.region(kind, "UI").view2d.region_to_view(0, 0)
         return round(x), round(y)

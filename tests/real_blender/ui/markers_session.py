@@ -128,7 +128,6 @@ def _brush(person: Person, panel: Box, end: str) -> Steps[None]:
 
 
 def _place(person: Person, x: float, y: float) -> tuple[float, float]:
-    """Where a pixel of the footage is in the window."""
     area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
     view = keymark("operators.shell.footage_view").footage_view(person.scene, person.take, area, region)
     across, up = view.to_region((x, y))

@@ -42,16 +42,13 @@ class Person:
 
     @property
     def scene(self) -> bpy.types.Scene:
-        """The scene in the window."""
         return self.hands.window.scene
 
     @property
     def take(self) -> bpy.types.PropertyGroup:
-        """The active take."""
         return keymark("operators.shell.takes").active_take(self.scene)
 
     def look(self, name: str) -> Steps[None]:
-        """Let everything be drawn, and take a picture."""
         yield from turns(4)
         self.camera.shoot(name)
         failed = keymark("operators.overlays.registry").failures()
@@ -66,7 +63,6 @@ class Person:
         return [o.bl_idname for o in self.hands.window.modal_operators if o.bl_idname.startswith(JOB)]
 
     def wait_for_job(self) -> Steps[None]:
-        """Wait until no job runs."""
         begun = monotonic()
         yield from turns(3)
         yield from until(lambda: not self.jobs(), "the job's end", JOB_PATIENCE_S)
@@ -74,7 +70,6 @@ class Person:
         yield from turns(3)
 
     def start_counting(self) -> None:
-        """Count clicks, keys and time from now on."""
         self.hands.clicks = self.hands.keys = 0
         self.started, self.waited_s = monotonic(), 0.0
 

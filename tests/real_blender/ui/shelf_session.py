@@ -46,7 +46,6 @@ def unfold(panels: tuple[str, ...]) -> None:
 
 
 def assets(person: Person) -> Steps[None]:
-    """The asset browser in place of the viewport."""
     area = person.hands.area("VIEW_3D")
     area.ui_type = "ASSETS"
     yield from turns(5)

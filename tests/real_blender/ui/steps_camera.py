@@ -8,14 +8,11 @@ from driver import Steps, expect, turns
 from numpy.typing import NDArray
 from person import Person, keymark
 
-KNOWN_M = 1.2
-"""Height of something that stands on the floor, wholly in the picture."""
+KNOWN_M = 1.2  # Height of something that stands on the floor, wholly in the picture
 ASIDE_M = (0.9, 0.7, 0.5, 0.3)
 """How far beside the performer a line is drawn: as far as the picture shows it well."""
-SHOWN = 0.5
-"""Least share of such a line that the picture shows."""
-EDGE = 0.03
-"""Share of the picture at its edges in which nothing is drawn."""
+SHOWN = 0.5  # Least share of such a line that the picture shows
+EDGE = 0.03  # Share of the picture at its edges in which nothing is drawn
 TILT_DEGREES, HEIGHT_M = 3.0, 0.2
 """How far the camera found may be from the true one, drawn by the pixel with a guessed lens."""
 
@@ -83,7 +80,6 @@ def _shown(known: Any, start: NDArray[np.float64], end: NDArray[np.float64]) -> 
 
 
 def _place(person: Person, pixel: NDArray[np.float64]) -> tuple[float, float]:
-    """Where a pixel of the footage is in the window."""
     area, region = person.hands.area("VIEW_3D"), person.hands.region("VIEW_3D", "WINDOW")
     with bpy.context.temp_override(window=person.hands.window, area=area, region=region):
         view = keymark("operators.shell.footage_view").footage_view(person.scene, person.take, area, region)

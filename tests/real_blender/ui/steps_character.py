@@ -7,8 +7,7 @@ from person import Person, keymark
 from steps_reconstruct import cancelled, job
 
 RETARGET = "keymark.retarget"
-CLICKS_AT_MOST = 3
-"""From the final Action to the character that moves."""
+CLICKS_AT_MOST = 3  # From the final Action to the character that moves
 
 
 def character(person: Person) -> Steps[None]:

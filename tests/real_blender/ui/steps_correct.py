@@ -6,8 +6,7 @@ from driver import Steps, expect, turns, until
 from person import Person, keymark
 
 DRAGGED_PX = 42.0
-NEAR_PX = 3.0
-"""How near to the mouse a dragged joint must be seen."""
+NEAR_PX = 3.0  # How near to the mouse a dragged joint must be seen
 MOVED_M = 0.03
 
 
@@ -34,7 +33,6 @@ def correct(person: Person) -> Steps[None]:
 
 
 def go_to_keyframe(person: Person) -> Steps[None]:
-    """Go to a posed keyframe in the middle."""
     frames = keymark("operators.shell.keyed_frames").posed_frames(person.take)
     person.scene.frame_set(round(frames[len(frames) // 2]))
     person.step_done("Go to a keyframe")
@@ -133,7 +131,6 @@ def from_the_side(person: Person) -> Steps[None]:
 
 
 def taken_back(person: Person) -> Steps[None]:
-    """Undo once more, with the tool running."""
     yield from person.hands.undo()
     expect(person.jobs(), "undo ended the tool")
     bpy.context.view_layer.update()

@@ -11,14 +11,10 @@ from numpy.typing import NDArray
 from person import Person, keymark
 from steps_correct import seen
 
-MOST_FRAMES = 4
-"""Doubtful frames that a person in a hurry looks at."""
-BETTER = 0.85
-"""What is left of a pose's error where a person sees that another one is better."""
-SAME_M = 1e-3
-"""Change of that distance that is none."""
-RIGHT_M = 0.1
-"""Mean distance of the joints, with hips aligned, at which a person is content."""
+MOST_FRAMES = 4  # Doubtful frames that a person in a hurry looks at
+BETTER = 0.85  # What is left of a pose's error where a person sees that another one is better
+SAME_M = 1e-3  # Change of that distance that is none
+RIGHT_M = 0.1  # Mean distance of the joints, with hips aligned, at which a person is content
 LIMBS = {"elbow.L": "wrist.L", "elbow.R": "wrist.R", "knee.L": "ankle.L", "knee.R": "ankle.R"}
 """The joint over which a limb is flipped, and the one that shows most where the limb is."""
 
@@ -113,12 +109,10 @@ def _seen(person: Person) -> NDArray[np.float64]:
 
 
 def _shown(person: Person) -> NDArray[np.float64]:
-    """Where the actor's are."""
     return np.array(keymark("operators.bridge.object_space").joint_places(person.take.armature))
 
 
 def _points(person: Person, candidate: Any) -> NDArray[np.float64]:
-    """Where a candidate's are."""
     posture = keymark("operators.bridge.keyframes").candidate_posture(candidate)
     points: NDArray[np.float64] = person.known.body.points(person.known.body.pose(posture))
     return points

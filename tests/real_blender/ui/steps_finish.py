@@ -116,7 +116,6 @@ def shown_points(person: Person) -> Steps[np.ndarray]:
 
 
 def write_points(person: Person, file_name: str, places: np.ndarray) -> None:
-    """Write points as `motion.json` has them."""
     points = {
         name: np.round(places[:, i], 6).tolist()
         for i, name in enumerate(person.known.body.skeleton.point_names)

@@ -10,8 +10,7 @@ from person import Person
 from steps_prepare import choose_file
 from steps_reconstruct import job
 
-FRAMES_SEEN = 12
-"""As many pictures of the motion are waited for; a virtual screen draws a few a second."""
+FRAMES_SEEN = 12  # As many pictures of the motion are waited for; a virtual screen draws a few a second
 
 
 def sidebar(person: Person) -> Steps[None]:
@@ -38,14 +37,12 @@ def example(person: Person) -> Steps[None]:
 
 
 def reconstruct(person: Person) -> Steps[None]:
-    """One click."""
     yield from job(person, "keymark.reconstruct")
     expect(person.take.motion_action is not None, "there is no motion")
     yield from person.look("reconstructed")
 
 
 def play(person: Person) -> Steps[None]:
-    """Space over the viewport, and Space again."""
     yield from person.hands.move_over("VIEW_3D")
     seen = set()
     yield from person.hands.press("SPACE")

@@ -5,8 +5,7 @@ from person import Person, keymark
 from steps_finish import shown_points, write_points
 from steps_reconstruct import cancelled, job
 
-OTHER = 1
-"""Candidate that is tried instead of the first one."""
+OTHER = 1  # Candidate that is tried instead of the first one
 
 
 def match(person: Person, library: str) -> Steps[None]:
@@ -60,7 +59,6 @@ def choose(person: Person) -> Steps[None]:
 
 
 def reconstruct(person: Person) -> Steps[None]:
-    """The motion, from keyframes that were found."""
     yield from person.undoable("reconstructing", lambda: job(person, "keymark.reconstruct"))
     yield from person.look("unposed")
     points = yield from shown_points(person)

@@ -14,10 +14,8 @@ from steps_camera import find_camera
 
 FARTHEST_COLOR = 25.0
 """Between a sleeve's color in one frame and over the whole clip, made equally bright, of 255."""
-HIGHER_PX = 100
-"""What the timeline is made higher by."""
-ABOUT_PX = 5
-"""Side of the square about a click that a person sees wholly on the sleeve."""
+HIGHER_PX = 100  # What the timeline is made higher by
+ABOUT_PX = 5  # Side of the square about a click that a person sees wholly on the sleeve
 SEARCH_PX = 0.06
 """How far from where a sleeve should be a person looks for its color, as a share of the picture's width."""
 

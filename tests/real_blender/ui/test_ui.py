@@ -15,8 +15,7 @@ from keymark.core.take.take_file import read_take
 
 pytestmark = pytest.mark.ui
 
-UNPOSED_MM = 200.0
-"""Error with hips aligned beyond which a motion is no likeness of the performer's."""
+UNPOSED_MM = 200.0  # Error with hips aligned beyond which a motion is no likeness of the performer's
 GEOMETRY = ("0", "0", "1600", "1000")
 STEPS = (
     *("empty", "footage", "markers", "actor", "keyframes", "reconstructed", "review", "finish"),
@@ -36,8 +35,7 @@ MOST_CLICKS = 40
 """From the clip to the motion: a button, five sleeves, a few buttons more, and four doubtful keyframes."""
 SHELF_STEPS = ("libraries", "assets")
 MARKER_STEPS = ("asked", "masks_while_picking", "one_row", "warned", "brushing", "brushed", "still_area")
-CLICKS_MM = 4.0
-"""What a clicked point and a track in a single frame may change."""
+CLICKS_MM = 4.0  # What a clicked point and a track in a single frame may change
 AGREEMENT_MM = 1.5
 """The eyedropper's colors are a level or two off the take's, and the armature's bones are float32."""
 PATIENCE_S = 3000.0
@@ -53,25 +51,30 @@ def takes(repository: Path) -> dict[str, Path]:
 TAKES = takes(Path(__file__).resolve().parents[3])
 
 
-def run_script(blender: Blender, name: str, *words: Path | str) -> None:
-    """Run a session's script in a Blender with a screen; it must go through."""
+def run_script(
+    blender: Blender, name: str, pictured: tuple[str, ...], take: Path | None, folder: Path, *words: str
+) -> None:
+    """Run a session's script in a Blender with a screen; it must go through, and leave pictures."""
     script = Path(__file__).with_name(name)
     done = blender.run(
         *("--factory-startup", "--addons", "bl_ext.user_default.keymark", "--enable-event-simulate"),
-        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--", *words),
+        *("--window-geometry", *GEOMETRY, "--no-window-focus", "--python", script, "--"),
+        *([] if take is None else [take]),
+        folder,
+        *words,
         patience_s=PATIENCE_S,
     )
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     assert "Traceback" not in done.stdout + done.stderr, done.stdout[-4000:] + done.stderr[-4000:]
     assert "The script went through" in done.stdout
+    pictures = " ".join(file.name for file in folder.glob("*.png"))
+    assert [step for step in pictured if f"_{step}" not in pictures] == []
 
 
 def test_the_first_minutes(blender_on_screen: Blender, repository: Path) -> None:
     """From Blender as it starts to an example on a Rigify character, in few clicks, and all of it undone."""
     folder = repository / "build" / "screenshots" / "first"
-    run_script(blender_on_screen, "first_session.py", folder)
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in FIRST_STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "first_session.py", FIRST_STEPS, None, folder)
     clicks, _, _, keys = (folder / "summary.txt").read_text(encoding="utf-8").split()[:4]
     assert int(clicks) <= FIRST_CLICKS and int(keys) <= FIRST_KEYS
 
@@ -85,9 +88,7 @@ def test_a_session_leads_to_the_command_lines_motion(
     The extension has left its own folder as it was installed.
     """
     folder = repository / "build" / "screenshots" / name
-    run_script(blender_on_screen, "session.py", TAKES[name], folder)
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "session.py", STEPS, TAKES[name], folder)
 
     output = tmp_path / "out"
     words = ["convert", TAKES[name], "--output", output, "--quiet", "--no-report"]
@@ -105,9 +106,7 @@ def test_keyframes_are_found_and_chosen(blender_on_screen: Blender, repository: 
     """Matching, removing, Pose All and taking candidates by mouse and keys, each undone and redone."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "library"
-    run_script(blender_on_screen, "library_session.py", take, folder, "aerobic")
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in CHOOSING_STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "library_session.py", CHOOSING_STEPS, take, folder, "aerobic")
 
 
 def test_few_clicks_lead_from_the_clip_to_a_motion(
@@ -118,9 +117,7 @@ def test_few_clicks_lead_from_the_clip_to_a_motion(
     if not (take / "take.json").is_file():
         take = profile_take(repository / "presets" / "demo" / "aerobic", tmp_path / "profile")
     folder = repository / "build" / "screenshots" / "hurried"
-    run_script(blender_on_screen, "hurried_session.py", take, folder)
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in HURRIED_STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "hurried_session.py", HURRIED_STEPS, take, folder)
     clicks = int((folder / "summary.txt").read_text(encoding="utf-8").split()[0])
     assert clicks <= MOST_CLICKS
     assert _score(folder / "motion.json", take).rooted < UNPOSED_MM
@@ -132,9 +129,7 @@ def test_plain_clothes_lead_to_a_motion(
     """Keypoints loaded, points clicked on and keyframes posed by hand score as the command line does."""
     take = plain_take(repository / "presets" / "demo" / "aerobic", tmp_path / "plain")
     folder = repository / "build" / "screenshots" / "plain"
-    run_script(blender_on_screen, "plain_session.py", take, folder)
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in PLAIN_STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "plain_session.py", PLAIN_STEPS, take, folder)
     output = tmp_path / "out"
     done = blender.run(
         *("--command", "keymark", "convert", take, "--output", output, "--quiet", "--no-report")
@@ -148,22 +143,18 @@ def test_clutter_is_brushed_away(blender_on_screen: Blender, repository: Path, t
     """Five clicks with mistakes among them; then a panel of a sleeve's color is left out in both ways."""
     take = panelled_take(repository / "presets" / "demo" / "aerobic", tmp_path / "panelled")
     folder = repository / "build" / "screenshots" / "markers"
-    run_script(blender_on_screen, "markers_session.py", take, folder, ",".join(map(str, PANEL)))
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in MARKER_STEPS if f"_{step}" not in pictures] == []
+    panel = ",".join(map(str, PANEL))
+    run_script(blender_on_screen, "markers_session.py", MARKER_STEPS, take, folder, panel)
 
 
 def test_libraries_are_seen(blender_on_screen: Blender, repository: Path) -> None:
     """One that is learned: in the panel, and in the asset browser."""
     take = repository / "presets" / "demo" / "aerobic"
     folder = repository / "build" / "screenshots" / "shelf"
-    run_script(blender_on_screen, "shelf_session.py", take, folder)
-    pictures = " ".join(file.name for file in folder.glob("*.png"))
-    assert [step for step in SHELF_STEPS if f"_{step}" not in pictures] == []
+    run_script(blender_on_screen, "shelf_session.py", SHELF_STEPS, take, folder)
 
 
 def plain_take(demo: Path, folder: Path) -> Path:
-    """The demonstration without its markers."""
     folder.mkdir()
     for name in ("clip.mp4", "keyframes.json", "keypoints.json", "truth.json"):
         shutil.copy(demo / name, folder / name)
