@@ -15,10 +15,8 @@ from .maps.character_map import CharacterMap
 class Similarity:
     """From the armature's space to the world: turn, place and one scale."""
 
-    rotation: Array
-    """(3, 3)."""
-    location: Array
-    """(3,) [m]."""
+    rotation: Array  # (3, 3)
+    location: Array  # (3,) [m]
     scale: float
 
     def to_world(self, points: Array) -> Array:
@@ -34,28 +32,20 @@ class Similarity:
 class FootRest:
     """A foot of the character at rest on the ground."""
 
-    limb: str
-    """`leg.L` or `leg.R`."""
-    first: int
-    """The first frame of the rest, from 0."""
-    last: int
-    """Its last frame, included."""
-    floor_m: float
-    """Height of the ground there, along the character's up from the armature's origin [m]."""
+    limb: str  # `leg.L` or `leg.R`
+    first: int  # the first frame of the rest, from 0
+    last: int  # its last frame, included
+    floor_m: float  # height of the ground there, along the character's up from the armature's origin [m]
 
 
 @dataclass(frozen=True, eq=False)
 class HandGoal:
     """Where a hand of the character belongs by what the performer's hand is near."""
 
-    place_m: Array
-    """(F, 3) place of the wrist, canonical, before any way is taken off [m]."""
-    share: Array
-    """(F,) how much it counts against the direction of the arm, 0 to 1."""
-    floor_share: Array
-    """(F,) how much the floor counts in it, 0 to 1."""
-    in_reach: BoolArray
-    """(F,) whether the arm reaches it without being stretched."""
+    place_m: Array  # (F, 3) place of the wrist, canonical, before any way is taken off [m]
+    share: Array  # (F,) how much it counts against the direction of the arm, 0 to 1
+    floor_share: Array  # (F,) how much the floor counts in it, 0 to 1
+    in_reach: BoolArray  # (F,) whether the arm reaches it without being stretched
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,16 +57,13 @@ class CharacterMotion:
     bends: Mapping[str, Array]
     """(F, 3) by limb: unit vector from the line through the limb's ends toward its elbow or knee, without
     flips."""
-    root: Array | None
-    """(F, 4, 4) posed matrix of the root bone; None where it stays at rest."""
+    root: Array | None  # (F, 4, 4) posed matrix of the root bone; None where it stays at rest
     to_world: Similarity
     """Where the armature object stands; that of the object itself with `Placement.CHARACTER`."""
-    rests: tuple[FootRest, ...]
-    """Rests of the planted feet."""
+    rests: tuple[FootRest, ...]  # rests of the planted feet
     soles: Mapping[str, Array]
     """(N, 3) by role of foot and toe: points of the sole at rest, in the armature's space."""
-    size: float
-    """The character's size: its legs' length over the performer's."""
+    size: float  # the character's size: its legs' length over the performer's
     stance: Array = field(default_factory=lambda: np.eye(3))
     """(3, 3) from the armature's axes to canonical ones: Z up, facing -Y. *Canonical* places are in these
     axes and in meters, from the armature's origin."""
@@ -88,21 +75,17 @@ class CharacterMotion:
     """(F,) by limb of each planted foot: height of the ground under it, canonical [m]."""
     hands: Mapping[str, HandGoal] = field(default_factory=lambda: MappingProxyType({}))
     """Where hands belong, by side, of those that reach."""
-    notes: tuple[str, ...] = ()
-    """What a person should know, in sentences without a full stop."""
+    notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
 # --- How a character stands in its armature's space
 
 
-UP_SNAP_DEG = 15.0
-"""A body leans by a few degrees at rest; an axis this near to its length is up."""
+UP_SNAP_DEG = 15.0  # A body leans by a few degrees at rest; an axis this near to its length is up
 BENT_DEG = 30.0
 """Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not upright."""
-SIDE_SNAP_DEG = 3.0
-"""An axis this near to the line from side to side is that line."""
-PAIRS = (*LEG[:3], *ARM[1:])
-"""Parts whose joints lie clearly to the sides."""
+SIDE_SNAP_DEG = 3.0  # an axis this near to the line from side to side is that line
+PAIRS = (*LEG[:3], *ARM[1:])  # parts whose joints lie clearly to the sides
 
 
 def find_stance(character: Character, character_map: CharacterMap) -> Array:

@@ -10,12 +10,9 @@ from .maps.character_map import CharacterMap
 class FigureLine:
     """A part of the figure."""
 
-    start: str
-    """The bone whose head is its beginning."""
-    end: str | None
-    """The bone whose head is its end; None where that is the first bone's own tail."""
-    side: str
-    """`L`, `R`, or empty for the trunk."""
+    start: str  # the bone whose head is its beginning
+    end: str | None  # the bone whose head is its end; None where that is the first bone's own tail
+    side: str  # `L`, `R`, or empty for the trunk
 
 
 def figure_lines(character_map: CharacterMap) -> tuple[FigureLine, ...]:

@@ -22,10 +22,8 @@ def _both(*bones: tuple[str, str]) -> tuple[tuple[str, str], ...]:
 
 ARM_BONES = _both(("upper_arm", "forearm"), ("forearm", "hand"))
 """Joints at the ends of the long bones of arms."""
-LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))
-"""Joints at the ends of the long bones of legs."""
-FULL_SHARE = 0.95
-"""Share from which a hand's goal counts in full."""
+LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))  # joints at the ends of the long bones of legs
+FULL_SHARE = 0.95  # share from which a hand's goal counts in full
 MILLIMETERS = 1000.0
 
 
@@ -33,28 +31,21 @@ MILLIMETERS = 1000.0
 class Quality:
     """Figures of a motion on a character; None where there is nothing to measure."""
 
-    arms_deg: float | None = None
-    """Mean angle between the arms' bones and the performer's."""
+    arms_deg: float | None = None  # mean angle between the arms' bones and the performer's
     arms_worst_deg: float | None = None
-    legs_deg: float | None = None
-    """Mean angle between the legs' bones and the performer's."""
+    legs_deg: float | None = None  # mean angle between the legs' bones and the performer's
     legs_worst_deg: float | None = None
-    skate_mm: float | None = None
-    """Mean way of a resting foot from frame to frame."""
+    skate_mm: float | None = None  # mean way of a resting foot from frame to frame
     skate_worst_mm: float | None = None
-    penetration_mm: float | None = None
-    """Greatest depth of a sole below the ground."""
+    penetration_mm: float | None = None  # greatest depth of a sole below the ground
     hands_mm: float | None = None
     """Mean distance of wrists from where they belong by the body, the other hand and the floor, in reach."""
     hands_worst_mm: float | None = None
     hands_floor_mm: float | None = None
     """Greatest error of a wrist's height over the floor where the performer's hand is at the floor."""
-    ik_fk_mm: float | None = None
-    """Greatest distance of ankles and wrists between the limbs in FK and in IK."""
-    keys: int | None = None
-    """Keys of the motion."""
-    dense_keys: int | None = None
-    """Keys that one on every frame would be."""
+    ik_fk_mm: float | None = None  # greatest distance of ankles and wrists between the limbs in FK and in IK
+    keys: int | None = None  # keys of the motion
+    dense_keys: int | None = None  # keys that one on every frame would be
 
     def to_dict(self) -> dict[str, Any]:
         """The figures as JSON has them, rounded; those that are not there are left out."""

@@ -13,8 +13,7 @@ from ..shell.takes import find_take
 from .map_conversion import map_of
 from .map_properties import PART_TITLES, PARTS, role_title
 
-MOST_NAMED = 3
-"""Roles or bones that a sentence names."""
+MOST_NAMED = 3  # roles or bones that a sentence names
 
 
 def may_be_character(candidate: bpy.types.Object | None) -> bool:
@@ -140,12 +139,10 @@ def shown_result(character: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup 
 class SourceMotion:
     """An Action and the actor it moves."""
 
-    kind: str
-    """`FINAL`, `MOTION` or `ACTION`."""
+    kind: str  # `FINAL`, `MOTION` or `ACTION`
     action: bpy.types.Action
     actor: bpy.types.Object
-    title: str
-    """What a result is named after."""
+    title: str  # what a result is named after
 
 
 def source_of(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> SourceMotion:

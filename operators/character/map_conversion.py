@@ -8,8 +8,7 @@ from ...core.retarget.character import LIMBS, ROLES
 from ...core.retarget.maps.character_map import CharacterMap, IkControls, RoleBones, Setting, Switch
 from .map_properties import is_chain
 
-DIGITS = 7
-"""Significant digits of values that Blender keeps as float32."""
+DIGITS = 7  # significant digits of values that Blender keeps as float32
 WORDS = ("author", "license", "description")
 NO_DOUBTS: Mapping[str, str] = {}
 

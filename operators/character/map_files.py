@@ -126,9 +126,4 @@ def _title(character: bpy.types.PropertyGroup) -> str:
     return character.character_map.title.strip() or str(character.armature.name)
 
 
-register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_load_map,
-        KEYMARK_OT_save_map,
-    )
-)
+register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_load_map, KEYMARK_OT_save_map))

@@ -10,8 +10,7 @@ from .characters import active_character, find_character, full_title, is_shown, 
 from .map_properties import PART_TITLES, PARTS, SOURCE_WORDS, is_chain, role_title
 from .requirements import recognized
 
-LABEL_SHARE = 0.29
-"""Share of the width that a role's name takes."""
+LABEL_SHARE = 0.29  # share of the width that a role's name takes
 MOST_LINES = 5
 
 
@@ -165,8 +164,7 @@ def _draw_control(
 # --- The panel of step 8
 
 
-MOST_LINES_PANEL = 6
-"""Lines of a sentence."""
+MOST_LINES_PANEL = 6  # lines of a sentence
 
 
 class KEYMARK_UL_characters(RowList, bpy.types.UIList):

@@ -15,8 +15,7 @@ from .map_conversion import map_of, role_named, show_map
 from .recognition import RoleBoneOperator, active_bone_of, chain_role, give_bone, told
 from .requirements import armature
 
-NEAR_PX = 25.0
-"""Farthest that a click may be from a bone, at a UI scale of 1."""
+NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
 SAME_PX = 3.0
 """Bones that are hardly farther than the nearest lie over it; the one nearest to the viewer counts."""
 
@@ -280,10 +279,5 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_pick_bone,
-        KEYMARK_OT_add_chain_bone,
-        KEYMARK_OT_remove_chain_bone,
-        KEYMARK_OT_mirror_roles,
-    )
+    (KEYMARK_OT_pick_bone, KEYMARK_OT_add_chain_bone, KEYMARK_OT_remove_chain_bone, KEYMARK_OT_mirror_roles)
 )

@@ -31,22 +31,17 @@ if TYPE_CHECKING:
     from ..bridge.character.retarget import Retargeted
 
 
-READ = 0.1
-"""Share of the job at which the motion is read."""
+READ = 0.1  # share of the job at which the motion is read
 
 
 @dataclass(frozen=True, eq=False)
 class RetargetedCharacter:
     """A motion on a character of a take, not yet written."""
 
-    take: str
-    """The take's identifier."""
-    uids: tuple[int, int, int]
-    """Session numbers of the character's armature, the source Action and its actor."""
-    kind: str
-    """The kind of source motion."""
-    title: str
-    """What a new Action is named after, beside the character."""
+    take: str  # the take's identifier
+    uids: tuple[int, int, int]  # session numbers of the character's armature, the source Action and its actor
+    kind: str  # the kind of source motion
+    title: str  # what a new Action is named after, beside the character
     retargeted: "Retargeted"
 
 
@@ -173,10 +168,5 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (
-        KEYMARK_OT_retarget,
-        KEYMARK_OT_show_result,
-        KEYMARK_OT_remove_result,
-        KEYMARK_OT_mark_result_asset,
-    )
+    (KEYMARK_OT_retarget, KEYMARK_OT_show_result, KEYMARK_OT_remove_result, KEYMARK_OT_mark_result_asset)
 )

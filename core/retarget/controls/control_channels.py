@@ -21,14 +21,10 @@ class Control:
     """A bone that is keyed, and how its channels act."""
 
     plan: PlannedControl
-    mode: str
-    """Its rotation mode."""
-    space: ControlSpace
-    """Its space; turner and carrier are indices among all controls."""
-    turns: bool
-    """Whether its rotation is keyed."""
-    displaced: bool = False
-    """Whether it has a location already, which a motion must replace."""
+    mode: str  # its rotation mode
+    space: ControlSpace  # its space; turner and carrier are indices among all controls
+    turns: bool  # whether its rotation is keyed
+    displaced: bool = False  # whether it has a location already, which a motion must replace
 
     @property
     def name(self) -> str:
@@ -42,12 +38,9 @@ class ControlChannels:
 
     rotation: Array | None
     """(F, 3, 3) its rotation channels as a turn from rest; None where they are not keyed."""
-    location: Array | None
-    """(F, 3) its location channels; None where they are not keyed."""
-    turn: Array
-    """(F, 3, 3) its axes in the armature's space, as the channels give them."""
-    place: Array
-    """(F, 3) its head in the armature's space, as the channels give it."""
+    location: Array | None  # (F, 3) its location channels; None where they are not keyed
+    turn: Array  # (F, 3, 3) its axes in the armature's space, as the channels give them
+    place: Array  # (F, 3) its head in the armature's space, as the channels give it
 
     def on(self, carrier: "ControlChannels") -> "ControlChannels":
         """The same where turn and place are those in the axes of what carries it."""

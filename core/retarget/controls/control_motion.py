@@ -23,8 +23,7 @@ class KeyedControl:
     control: Control
     rotation: Array | Spline | None
     """(F, C) values of its rotation channels on every frame, or few keys; None where they are not keyed."""
-    location: Array | Spline | None
-    """(F, 3) those of its location."""
+    location: Array | Spline | None  # (F, 3) those of its location
 
     @property
     def channel_count(self) -> int:
@@ -41,44 +40,30 @@ class KeyedControl:
 class LimbPaths:
     """A limb of three joints."""
 
-    bones: tuple[str, str, str]
-    """The bones that begin at them."""
+    bones: tuple[str, str, str]  # the bones that begin at them
     joints: tuple[Array, Array, Array]
     """(F, 3) its root, its elbow or knee and its end, in the armature's space and units."""
-    root_control: int
-    """Index of the control that carries its root; NOTHING for none."""
-    root_place: Array
-    """(3,) the root in that control's axes, in the armature's units."""
-    bend: Array
-    """(F, 3) unit vector from the line between root and end toward elbow or knee."""
-    in_fk: bool
-    """Whether it is keyed in FK."""
-    in_ik: bool
-    """Whether it is keyed in IK, and shows it."""
-    pole_distance: float
-    """Distance of its pole from elbow or knee, in the armature's units."""
+    root_control: int  # index of the control that carries its root; NOTHING for none
+    root_place: Array  # (3,) the root in that control's axes, in the armature's units
+    bend: Array  # (F, 3) unit vector from the line between root and end toward elbow or knee
+    in_fk: bool  # whether it is keyed in FK
+    in_ik: bool  # whether it is keyed in IK, and shows it
+    pole_distance: float  # distance of its pole from elbow or knee, in the armature's units
 
 
 @dataclass(frozen=True, eq=False)
 class ControlMotion:
     """A motion on a character's controls, by channels for every frame."""
 
-    controls: tuple[Control, ...]
-    """Those that turn or carry others first."""
+    controls: tuple[Control, ...]  # those that turn or carry others first
     channels: tuple[ControlChannels, ...]
-    wanted: Mapping[str, Array]
-    """(F, 4, 4) by control the pose that it is to have, in the armature's space."""
-    offsets: Mapping[str, Array]
-    """(4, 4) by control the pose of its bone in its own axes."""
+    wanted: Mapping[str, Array]  # (F, 4, 4) by control the pose that it is to have, in the armature's space
+    offsets: Mapping[str, Array]  # (4, 4) by control the pose of its bone in its own axes
     points: tuple[HeldPoint, ...]
-    bones: Mapping[str, Array]
-    """(F, 4, 4) poses of the bones with roles, in the armature's space."""
-    limbs: Mapping[str, LimbPaths]
-    """The limbs whose three joints are moved."""
-    size: float
-    """The character's, in the armature's units."""
-    scale: float
-    """Meters a unit of the armature's space."""
+    bones: Mapping[str, Array]  # (F, 4, 4) poses of the bones with roles, in the armature's space
+    limbs: Mapping[str, LimbPaths]  # the limbs whose three joints are moved
+    size: float  # the character's, in the armature's units
+    scale: float  # meters a unit of the armature's space
 
     def points_of(self, index: int) -> list[tuple[HeldPoint, Array]]:
         """The points that a control moves rigidly, with their places (3,) in its axes [m]."""

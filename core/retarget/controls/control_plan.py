@@ -12,18 +12,12 @@ from ..options import LimbKeys, RetargetOptions, RootMotion
 class ControlKind(Enum):
     """What a control does."""
 
-    FK = "fk"
-    """It turns a bone, and places it where it can and must."""
-    HIPS = "hips"
-    """It turns and places the hips."""
-    GOAL = "goal"
-    """Hand or foot follow it by inverse kinematics."""
-    TOE = "toe"
-    """It turns the toes while the leg is in IK."""
-    POLE = "pole"
-    """Elbow or knee point to it."""
-    ROOT = "root"
-    """It carries the whole character."""
+    FK = "fk"  # it turns a bone, and places it where it can and must
+    HIPS = "hips"  # it turns and places the hips
+    GOAL = "goal"  # hand or foot follow it by inverse kinematics
+    TOE = "toe"  # it turns the toes while the leg is in IK
+    POLE = "pole"  # elbow or knee point to it
+    ROOT = "root"  # it carries the whole character
 
 
 @dataclass(frozen=True)
@@ -32,10 +26,8 @@ class PlannedControl:
 
     name: str
     kind: ControlKind
-    bone: str
-    """The bone with a role that it moves; for a pole the one that begins at elbow or knee."""
-    limb: str | None = None
-    """The limb of `roles.LIMBS` whose inverse kinematics it belongs to."""
+    bone: str  # the bone with a role that it moves; for a pole the one that begins at elbow or knee
+    limb: str | None = None  # the limb of `roles.LIMBS` whose inverse kinematics it belongs to
 
 
 def planned_controls(character_map: CharacterMap, options: RetargetOptions) -> tuple[PlannedControl, ...]:

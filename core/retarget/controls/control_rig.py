@@ -25,8 +25,7 @@ class ControlRig:
     """Some of the controls as a rig."""
 
     rig: Rig
-    moved: Mapping[int, int]
-    """Row of the rig's bone by the index of a control that is moved ..."""
+    moved: Mapping[int, int]  # row of the rig's bone by the index of a control that is moved ...
     turned: Mapping[int, int]
     """... and of the bone that carries its points and whatever hangs on it, turned where it is turned."""
 

@@ -13,12 +13,9 @@ import numpy as np
 from ...arrays import Array
 from ...body import rotations
 
-NOTHING = -1
-"""Instead of the index of a control: the armature itself."""
-RIGID = 1e-3
-"""Residual [rad, or shares of the character's size] below which a space is rigid."""
-MOVABLE = 1e-3
-"""Least length of the axes of location channels that do something."""
+NOTHING = -1  # instead of the index of a control: the armature itself
+RIGID = 1e-3  # residual [rad, or shares of the character's size] below which a space is rigid
+MOVABLE = 1e-3  # least length of the axes of location channels that do something
 LEAST_LENGTH = 1e-12
 
 
@@ -26,20 +23,13 @@ LEAST_LENGTH = 1e-12
 class ControlSpace:
     """The space in which a control's channels act."""
 
-    turner: int
-    """Index of the control that turns it; NOTHING for none."""
-    turn: Array
-    """(3, 3) the axes of its rotation channels, in those of its turner (of the armature)."""
-    carrier: int
-    """Index of the control that carries it; NOTHING for none."""
-    origin: Array
-    """(3,) its place without location channels, in its carrier's axes from its carrier's head."""
-    axes: Array
-    """(3, 3) takes its location channels to its carrier's axes."""
-    residual_rad: float
-    """Largest turn that the space does not explain."""
-    residual: float
-    """Largest distance that it does not explain, in the armature's units."""
+    turner: int  # index of the control that turns it; NOTHING for none
+    turn: Array  # (3, 3) the axes of its rotation channels, in those of its turner (of the armature)
+    carrier: int  # index of the control that carries it; NOTHING for none
+    origin: Array  # (3,) its place without location channels, in its carrier's axes from its carrier's head
+    axes: Array  # (3, 3) takes its location channels to its carrier's axes
+    residual_rad: float  # largest turn that the space does not explain
+    residual: float  # largest distance that it does not explain, in the armature's units
 
     def is_rigid(self, size: float) -> bool:
         """Whether the channels act as said; `size` is the character's, in the armature's units."""
@@ -63,12 +53,9 @@ class ControlSpace:
 class PosedControls:
     """Controls as posed at random, in S samples; the first of them without any location."""
 
-    channels: Array
-    """(S, C, 4, 4) each control's own rotation and location."""
-    poses: Array
-    """(S, C, 4, 4) its pose in the armature's space; scale is ignored."""
-    still: int
-    """Number of samples without location channels, at least two; four more have some."""
+    channels: Array  # (S, C, 4, 4) each control's own rotation and location
+    poses: Array  # (S, C, 4, 4) its pose in the armature's space; scale is ignored
+    still: int  # number of samples without location channels, at least two; four more have some
 
 
 def chosen(posed: PosedControls, indices: Sequence[int]) -> PosedControls:

@@ -17,16 +17,14 @@ from .control_motion import ControlMotion, LimbPaths
 from .control_plan import ControlKind, PlannedControl, joint_roles, limb_bones
 from .control_spaces import NOTHING
 
-SHORTEST_POLE = 0.25
-"""Least distance of a pole from its joint, in lengths of the limb."""
+SHORTEST_POLE = 0.25  # least distance of a pole from its joint, in lengths of the limb
 
 
 @dataclass(frozen=True, eq=False)
 class PoleSetting:
     """Where a pole belongs."""
 
-    distance: float
-    """Its distance from elbow or knee, in the armature's units."""
+    distance: float  # its distance from elbow or knee, in the armature's units
     offset_rad: float
     """Angle from the direction of the pole to that of elbow or knee, about the line from the limb's root to
     its end."""

@@ -12,24 +12,18 @@ from ..character import LIMBS, MIDDLE, Character
 from ..character_motion import CharacterMotion
 from ..maps.character_map import CharacterMap
 
-LEVER = 0.3
-"""Distance of a point that shows a bone's turn about its own length, in lengths of the bone."""
-END = 0.5
-"""Length of a limb's last part, in lengths of the part before it."""
-TRUNK = 0.15
-"""Distance of the points that show how a bone of the trunk turns, in lengths from hips to head."""
+LEVER = 0.3  # distance of a point that shows a bone's turn about its own length, in lengths of the bone
+END = 0.5  # length of a limb's last part, in lengths of the part before it
+TRUNK = 0.15  # distance of the points that show how a bone of the trunk turns, in lengths from hips to head
 LEAST_LENGTH = 1e-9
 
 
 class PointKind(Enum):
     """What a point is held for."""
 
-    BODY = "body"
-    """The look of the motion."""
-    END = "end"
-    """Wrist or ankle: the same in IK and FK."""
-    SOLE = "sole"
-    """It must neither slide nor pass the floor."""
+    BODY = "body"  # the look of the motion
+    END = "end"  # wrist or ankle: the same in IK and FK
+    SOLE = "sole"  # it must neither slide nor pass the floor
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +31,7 @@ class HeldPoint:
     """A point fixed to a bone with a role."""
 
     bone: str
-    place: Array
-    """(3,) in the bone's axes from its head, in the armature's units."""
+    place: Array  # (3,) in the bone's axes from its head, in the armature's units
     kind: PointKind
     limb: str | None
 
@@ -97,22 +90,16 @@ def _local(rest: Array, place: Array) -> Array:
 # --- How far key reduction may move a character's points
 
 
-NEAR_FLOOR_M = 0.03
-"""A sole this near to its lowest place nearby must not pass the floor."""
+NEAR_FLOOR_M = 0.03  # A sole this near to its lowest place nearby must not pass the floor
 NEIGHBORHOOD_S = 1.0
-FLOOR_M = 0.0015
-"""Largest error of a sole near the floor [m]."""
-SHOWN_REST_M = 0.00008
-"""Largest error of a resting foot that is shown [m]: it must not slide."""
-SWITCH_M = 0.0008
-"""Largest distance of wrists and ankles between IK and FK [m]."""
-CARRIED_SHARE = 0.5
-"""Share of the tolerance for a limb's root, and as much for elbow or knee on it."""
+FLOOR_M = 0.0015  # largest error of a sole near the floor [m]
+SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown [m]: it must not slide
+SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK [m]
+CARRIED_SHARE = 0.5  # share of the tolerance for a limb's root, and as much for elbow or knee on it
 LEAST_M = 0.0002
 """Tolerance of a limb's ends where it is all but straight [m]: less would bring keys and no likeness."""
 
-POLE_RAD = 0.04
-"""Turn of a limb about its own line that a pole's error may make [rad]."""
+POLE_RAD = 0.04  # turn of a limb about its own line that a pole's error may make [rad]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,12 +107,9 @@ class ToleranceRules:
     """What tolerances follow from."""
 
     motion: CharacterMotion
-    time_s: Array
-    """(F,) time of each frame [s]."""
-    up: Array
-    """(3,) away from the floor, in the armature's axes."""
-    general_m: float
-    """Tolerance of the body [m]."""
+    time_s: Array  # (F,) time of each frame [s]
+    up: Array  # (3,) away from the floor, in the armature's axes
+    general_m: float  # tolerance of the body [m]
 
     def of(self, point: HeldPoint, path: Array, shown: bool, ends_m: float) -> Array:
         """(F,) tolerance of a point [m].

@@ -37,22 +37,17 @@ IN_IK = (ControlKind.GOAL, ControlKind.TOE, ControlKind.POLE)
 class FollowingControls:
     """Controls that hang together and are fitted after what carries them."""
 
-    controls: tuple[int, ...]
-    """Indices among all controls, rising."""
-    carrier: int
-    """Index of the control that carries and turns them; NOTHING for none."""
-    leg: str | None = None
-    """The leg that they are in FK."""
+    controls: tuple[int, ...]  # indices among all controls, rising
+    carrier: int  # index of the control that carries and turns them; NOTHING for none
+    leg: str | None = None  # the leg that they are in FK
 
 
 @dataclass(frozen=True)
 class ControlStages:
     """The controls in the order of their fitting."""
 
-    body: tuple[int, ...]
-    """Indices of the controls that are fitted first, rising."""
-    following: tuple[FollowingControls, ...]
-    """The others."""
+    body: tuple[int, ...]  # indices of the controls that are fitted first, rising
+    following: tuple[FollowingControls, ...]  # the others
 
 
 def control_stages(
@@ -286,8 +281,7 @@ def _tolerance(
 # --- Few keys on a character's controls, FK and IK together, within a tolerance of the character itself
 
 
-BODY_SHARE = 0.5
-"""Share of the work that the body's controls are, where others follow."""
+BODY_SHARE = 0.5  # share of the work that the body's controls are, where others follow
 
 
 def reduce_controls(

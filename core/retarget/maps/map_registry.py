@@ -17,8 +17,7 @@ from ..recognition.recognize import recognize
 from ..retarget_record import GIVEN, RECOGNIZED, SAVED
 from .character_map import CharacterMap, map_digest, read_character_map
 
-MOST_NAMED = 5
-"""Missing bones that are named in a sentence."""
+MOST_NAMED = 5  # missing bones that are named in a sentence
 
 
 def missing_bones(character_map: CharacterMap, character: Character) -> tuple[str, ...]:
@@ -60,10 +59,8 @@ class RegisteredMap:
     """A character map file in a registered folder."""
 
     path: Path
-    character_map: CharacterMap | None
-    """The map; None if the file is invalid."""
-    problem: str = ""
-    """The sentence of the error that makes it invalid."""
+    character_map: CharacterMap | None  # the map; None if the file is invalid
+    problem: str = ""  # the sentence of the error that makes it invalid
 
     @property
     def title(self) -> str:
@@ -163,12 +160,9 @@ class ChosenMap:
     """A character's map, and where it comes from."""
 
     character_map: CharacterMap
-    origin: str
-    """One of `retarget_record.ORIGINS`."""
-    path: Path | None = None
-    """Its file; None where it was recognized."""
-    doubts: tuple[str, ...] = ()
-    """What was recognized without being sure, one sentence each."""
+    origin: str  # one of `retarget_record.ORIGINS`
+    path: Path | None = None  # its file; None where it was recognized
+    doubts: tuple[str, ...] = ()  # what was recognized without being sure, one sentence each
 
 
 def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> ChosenMap:

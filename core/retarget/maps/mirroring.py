@@ -12,8 +12,7 @@ from .character_map import CharacterMap, IkControls, RoleBones
 
 WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))
 """How names tell the sides."""
-NEAR = 0.03
-"""Share of the character's extent by which a mirrored bone may lie off."""
+NEAR = 0.03  # share of the character's extent by which a mirrored bone may lie off
 Partner = Callable[[str | None], str | None]
 """The bone of the other side that mirrors a bone; None where there is none."""
 

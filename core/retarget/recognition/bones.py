@@ -12,14 +12,10 @@ from .names import NameReading, read_name
 
 SAME_PLACE, NEAR_PLACE = 0.003, 0.03
 """Points closer than this share of the figure's size are one; and are meant to be one."""
-LARGEST_END = 0.2
-"""A foot or a hand with all below it reaches no farther than this, in sizes."""
-MEETING_TAILS = 0.5
-"""Least share of bones whose tail meets a child's head where tails say something."""
-ONWARD = 0.6
-"""Least cosine between a limb's last bone and the way to a bone that continues it."""
-UNEVEN = 3.0
-"""Neighboring bones of a limb differ in length by no more than this factor."""
+LARGEST_END = 0.2  # A foot or a hand with all below it reaches no farther than this, in sizes
+MEETING_TAILS = 0.5  # least share of bones whose tail meets a child's head where tails say something
+ONWARD = 0.6  # least cosine between a limb's last bone and the way to a bone that continues it
+UNEVEN = 3.0  # neighboring bones of a limb differ in length by no more than this factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +23,10 @@ class Bones:
     """N candidate bones in their tree of anatomy, parents before children."""
 
     names: tuple[str, ...]
-    head: Array
-    """(N, 3) in the armature's space."""
-    tail: Array
-    """(N, 3); NaN where tails say nothing."""
-    parent: IndexArray
-    """(N,) its parent in the tree of anatomy, by place in this table; -1 for none."""
-    size: float
-    """Largest extent of the heads."""
+    head: Array  # (N, 3) in the armature's space
+    tail: Array  # (N, 3); NaN where tails say nothing
+    parent: IndexArray  # (N,) its parent in the tree of anatomy, by place in this table; -1 for none
+    size: float  # largest extent of the heads
 
     @cached_property
     def readings(self) -> tuple[NameReading, ...]:

@@ -18,13 +18,10 @@ NAMES_WEIGHT, FEET_WEIGHT, KNEES_WEIGHT, ELBOWS_WEIGHT = 3.0, 2.5, 1.0, 0.8
 class Facing:
     """Which way a figure faces."""
 
-    ahead: float
-    """1 where it faces along the second axis of `Frame.place`, -1 where it faces the other way."""
+    ahead: float  # 1 where it faces along the second axis of `Frame.place`, -1 where it faces the other way
     confidence: float
-    by_names: float
-    """Vote of the names, positive for `ahead`; 0 where they name no sides."""
-    by_shape: float
-    """Vote of feet, knees and elbows, positive for `ahead`."""
+    by_names: float  # vote of the names, positive for `ahead`; 0 where they name no sides
+    by_shape: float  # vote of feet, knees and elbows, positive for `ahead`
 
 
 def find_facing(figure: Figure) -> Facing:
@@ -65,11 +62,9 @@ def _bulge(first: Array, middle: Array, last: Array) -> float:
 # them
 
 
-ON_GROUND = 0.15
-"""A root's head is no higher above the feet than this share of the hips' height."""
+ON_GROUND = 0.15  # A root's head is no higher above the feet than this share of the hips' height
 ROOT_WORDS = frozenset({"root", "master", "traj", "origin", "reference", "全ての親", "world", "motion"})
-SAME_JOINT = 0.02
-"""A bone this near to a hand's or foot's head, in heights of the hips, lies at its joint."""
+SAME_JOINT = 0.02  # A bone this near to a hand's or foot's head, in heights of the hips, lies at its joint
 
 
 def find_root(character: Character, character_map: CharacterMap, up: Array) -> str | None:

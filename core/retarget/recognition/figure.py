@@ -13,20 +13,16 @@ from ..character import ARM, LEG, MIDDLE
 from .names import CLEAR
 from .symmetry import Frame
 
-NAMES_WEIGHT = 1.3
-"""Names are trusted so much more than a measure of place."""
-LONGEST_CHAIN = 16
-"""Bones upward from a limb's end among which its other bones are sought."""
+NAMES_WEIGHT = 1.3  # names are trusted so much more than a measure of place
+LONGEST_CHAIN = 16  # bones upward from a limb's end among which its other bones are sought
 SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
 """Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
 MANY, FEW = 150, 40
 """Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
-CLOSE = 12.0
-"""Frames whose limbs fit worse than the best frame's by more than this are passed over."""
+CLOSE = 12.0  # frames whose limbs fit worse than the best frame's by more than this are passed over
 NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
 """Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
-SAME_JOINT = 0.02
-"""A bone this near to its parent, in heights of the trunk, begins where that does."""
+SAME_JOINT = 0.02  # A bone this near to its parent, in heights of the trunk, begins where that does
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +32,10 @@ class Figure:
     frame: Frame
     limbs: Mapping[str, int]
     """By part of `roles.ARM` and `LEG`, of the side that is `frame.one_side`; some may be missing."""
-    middle: Mapping[str, tuple[int, ...]]
-    """By part of `roles.MIDDLE`, from the hips upward."""
-    fit: float
-    """What the places alone add up to."""
+    middle: Mapping[str, tuple[int, ...]]  # by part of `roles.MIDDLE`, from the hips upward
+    fit: float  # what the places alone add up to
     score: float
-    upright: float
-    """Cosine between the trunk and up."""
+    upright: float  # cosine between the trunk and up
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +44,7 @@ class _Chains:
 
     bones: IndexArray
     """(C, 3) upper, middle and end bone; the end is -1 where the middle is a limb's last bone."""
-    attached: IndexArray
-    """(C,) bone of the middle on which each hangs; -1 for none."""
+    attached: IndexArray  # (C,) bone of the middle on which each hangs; -1 for none
 
 
 def near(value: Array | float, mean: float, deviation: float, most: float = 6.0) -> Array:

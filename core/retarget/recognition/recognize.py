@@ -23,18 +23,13 @@ from .symmetry import Frame, find_frames
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
 """Confidence of a role: of a preset and confirmed by its place, of a name, of a preset alone, of a place, and
 where something speaks against it."""
-SURE_SIDES = 0.9
-"""Confidence from which left and right are not doubted."""
-SAME_JOINT = 0.03
-"""Heads this near to each other, in sizes, are one joint."""
-LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7
-"""Least cosine between the trunk and up, and between a leg and down."""
-HANDS_ABOVE = 0.1
-"""Hands are at least so many lengths of a leg above the ankles."""
+SURE_SIDES = 0.9  # confidence from which left and right are not doubted
+SAME_JOINT = 0.03  # heads this near to each other, in sizes, are one joint
+LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7  # least cosine between the trunk and up, and between a leg and down
+HANDS_ABOVE = 0.1  # hands are at least so many lengths of a leg above the ankles
 LEAST_FIT, LEAST_FIT_NAMED = -12.0, -26.0
 """Least fit of a figure's places, and where names speak for its arms and legs."""
-CLEAR_FIT = -6.0
-"""Fit from which no other plane of symmetry is tried."""
+CLEAR_FIT = -6.0  # fit from which no other plane of symmetry is tried
 LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
 """Parts of limbs that a character must have, in words."""
 VALID = "a character stands on two legs and has two arms"
@@ -46,10 +41,8 @@ class Recognition:
 
     character_map: CharacterMap
     """Roles with confidence and source; of a preset also its controls and settings."""
-    doubts: tuple[str, ...] = ()
-    """What a person should look at, in sentences without a full stop."""
-    preset: str | None = None
-    """Identifier of the preset whose names the bones have."""
+    doubts: tuple[str, ...] = ()  # what a person should look at, in sentences without a full stop
+    preset: str | None = None  # identifier of the preset whose names the bones have
     extras: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: MappingProxyType({}))
     """By role of hand and foot: bones that lie at its joint and do not hang on it, such as goals of inverse
     kinematics; the motion leaves them behind."""

@@ -12,14 +12,10 @@ from .bones import Bones
 
 SAME = 0.02
 """A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
-LOOSE = 0.12
-"""Two branches may mirror each other although they are this far, in sizes, from doing so."""
-MOST_PLANES, MOST_SYMMETRIES = 60, 3
-"""Planes that are tried, and that are yielded."""
-ALIKE = 0.98
-"""Cosine between normals of planes from which they are taken for one."""
-LEVEL = 0.2
-"""Largest cosine between an axis that may point up and the way from side to side."""
+LOOSE = 0.12  # two branches may mirror each other although they are this far, in sizes, from doing so
+MOST_PLANES, MOST_SYMMETRIES = 60, 3  # planes that are tried, and that are yielded
+ALIKE = 0.98  # cosine between normals of planes from which they are taken for one
+LEVEL = 0.2  # largest cosine between an axis that may point up and the way from side to side
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +23,11 @@ class Frame:
     """Bones with their plane of symmetry, n·p = offset, and the direction that is taken for up."""
 
     bones: Bones
-    normal: Array
-    """(3,) unit vector from one side to the other."""
+    normal: Array  # (3,) unit vector from one side to the other
     offset: float
     partner: IndexArray
     """(N,) counterpart of each bone on the other side; itself in the middle; -1 where there is none."""
-    up: Array
-    """(3,) unit vector at right angles to the normal."""
+    up: Array  # (3,) unit vector at right angles to the normal
 
     @cached_property
     def place(self) -> Array:

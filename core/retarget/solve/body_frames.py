@@ -147,28 +147,20 @@ def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
 # --- Places on a body that carry over to another
 
 
-HEAD_HEIGHT = 0.10
-"""From the head's joint to the crown, as a share of stature."""
-HEAD_CENTER = 0.5
-"""Place of the head's center between its joint and the crown."""
-LEG_SHARE = 0.491
-"""The legs' share of stature (Drillis & Contini 1966)."""
-PROPORTION_RANGE = (0.5, 2.5)
-"""Range of a width over what the character's size alone would give."""
+HEAD_HEIGHT = 0.10  # from the head's joint to the crown, as a share of stature
+HEAD_CENTER = 0.5  # place of the head's center between its joint and the crown
+LEG_SHARE = 0.491  # the legs' share of stature (Drillis & Contini 1966)
+PROPORTION_RANGE = (0.5, 2.5)  # range of a width over what the character's size alone would give
 
 
 @dataclass(frozen=True, eq=False)
 class PartShape:
     """A part of the character as a place for hands."""
 
-    segment: str
-    """The performer's segment."""
-    bone: int
-    """Index of the character's bone that it is fixed to."""
-    origin: Array
-    """(3,) its origin from that bone's joint at rest, canonical [m]."""
-    scale: Array
-    """(3,) the character's width, depth and length over the performer's, in the segment's axes."""
+    segment: str  # the performer's segment
+    bone: int  # index of the character's bone that it is fixed to
+    origin: Array  # (3,) its origin from that bone's joint at rest, canonical [m]
+    scale: Array  # (3,) the character's width, depth and length over the performer's, in the segment's axes
 
 
 def part_shapes(body: RestBody, source: SegmentMotion, size: float) -> tuple[PartShape, ...]:

@@ -34,10 +34,8 @@ SLIDING_M_S = (0.4, 1.2)
 LARGEST_ROLL_RAD = np.radians(20.0)
 """Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
 rises higher than that front allows leaves the ground with it."""
-LARGEST_CHANGE_RAD = np.radians(45.0)
-"""Largest change of a foot's pitch for a foot of another shape."""
-BALL_AHEAD = 0.62
-"""Place of the ball between ankle and tip of the performer's foot."""
+LARGEST_CHANGE_RAD = np.radians(45.0)  # largest change of a foot's pitch for a foot of another shape
+BALL_AHEAD = 0.62  # place of the ball between ankle and tip of the performer's foot
 LONGEST_ROLL_S = 0.5
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
@@ -46,16 +44,11 @@ MOST_TOE_BEND_RAD = np.radians(75.0)
 class FootPath:
     """A foot over F frames."""
 
-    turn: Array
-    """(F, 3, 3) turn of the foot from its rest, canonical."""
-    ankle: Array
-    """(F, 3) where the ankle shall be [m]."""
-    planted: BoolArray
-    """(F,) whether the ankle must get there: the foot stands on the ground."""
-    over_m: Array
-    """(F,) how much higher that is than with the sole on the ground [m]."""
-    ground_m: Array
-    """(F,) height of the ground under it [m]."""
+    turn: Array  # (F, 3, 3) turn of the foot from its rest, canonical
+    ankle: Array  # (F, 3) where the ankle shall be [m]
+    planted: BoolArray  # (F,) whether the ankle must get there: the foot stands on the ground
+    over_m: Array  # (F,) how much higher that is than with the sole on the ground [m]
+    ground_m: Array  # (F,) height of the ground under it [m]
 
 
 def foot_turns(source: SegmentMotion, stage: Stage, ground: Ground, side: str) -> Array:

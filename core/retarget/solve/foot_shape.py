@@ -16,35 +16,26 @@ from .rest_body import RestBody
 TOE_ROOM = 0.05
 """Largest height of the lowest joint or toe over the armature's origin, as a share of the leg, at which the
 origin is the ground that the character stands on."""
-ANKLE_ROOM = 0.12
-"""The same where nothing is known of the foot but its ankle."""
-TOE_THICKNESS = 0.02
-"""Height of joints at the toes over the sole, as a share of the leg."""
+ANKLE_ROOM = 0.12  # the same where nothing is known of the foot but its ankle
+TOE_THICKNESS = 0.02  # height of joints at the toes over the sole, as a share of the leg
 ANKLE_HEIGHT = 0.08
 """Height of the ankle over the sole, as a share of the leg: 0.039 of a stature of which the leg is 0.49
 (Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
-FOOT_AHEAD = 0.21
-"""Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells."""
-TOE_BEYOND = 0.4
-"""Length of the toes, as a share of that from ankle to ball, where no bone tells."""
-HALF_WIDTH = 0.2
-"""Half-width of a sole, as a share of the length from ankle to tip."""
+FOOT_AHEAD = 0.21  # length from ankle to toe tip along the ground, as a share of the leg, where no bone tells
+TOE_BEYOND = 0.4  # length of the toes, as a share of that from ankle to ball, where no bone tells
+HALF_WIDTH = 0.2  # half-width of a sole, as a share of the length from ankle to tip
 
 
 @dataclass(frozen=True, eq=False)
 class FootShape:
     """A foot at rest, in canonical axes."""
 
-    foot: Array
-    """(N, 3) points of the sole fixed to the foot, from the ankle [m]."""
-    toe: Array
-    """(M, 3) points fixed to the toe bone, from its joint [m]; none without one."""
-    toe_joint: Array | None
-    """(3,) the toe's joint from the ankle [m]; None without one."""
+    foot: Array  # (N, 3) points of the sole fixed to the foot, from the ankle [m]
+    toe: Array  # (M, 3) points fixed to the toe bone, from its joint [m]; none without one
+    toe_joint: Array | None  # (3,) the toe's joint from the ankle [m]; None without one
     front: Array
     """(3,) where it rolls when the heel rises, from the ankle [m]: the ball; the tip without a toe."""
-    heel: Array
-    """(3,) where it rolls when the toes rise, from the ankle [m]."""
+    heel: Array  # (3,) where it rolls when the toes rise, from the ankle [m]
 
     @property
     def ankle_m(self) -> float:
@@ -174,28 +165,22 @@ def _ahead(ways: Array) -> Array:
 
 SAME_LEVEL_M = 0.03
 """Rests whose heights follow each other within this are on one level: the noise of an estimate ..."""
-LEVEL_RANGE_M = 0.05
-"""... if all of them lie within this; a slope is no level."""
+LEVEL_RANGE_M = 0.05  # ... if all of them lie within this; a slope is no level.
 SCENE_GROUND_M = 0.025
 """A level that near to the scene's ground, z = 0, is it: no ankle's height over its sole is known better."""
 CHANGE_S = 0.15
 """Time in which the ground under a moving foot changes its height, after a rest and before the next one."""
-LOW_SHARE = 5.0
-"""Percentile of the ankles' heights that stands for rest where no foot rests."""
+LOW_SHARE = 5.0  # percentile of the ankles' heights that stands for rest where no foot rests
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
     """The ground under a performer's feet."""
 
-    rests: tuple[Contact, ...]
-    """Rests of the ankles; points are counted left, right."""
-    levels_m: tuple[float, ...]
-    """Height of the ground at each of them [m]."""
-    height_m: Array
-    """(F, 2) height of the ground under the left and the right foot [m]."""
-    ankle_m: float
-    """Height of a resting ankle over the ground [m]."""
+    rests: tuple[Contact, ...]  # rests of the ankles; points are counted left, right
+    levels_m: tuple[float, ...]  # height of the ground at each of them [m]
+    height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
+    ankle_m: float  # height of a resting ankle over the ground [m]
 
 
 def find_ground(source: SegmentMotion) -> Ground:

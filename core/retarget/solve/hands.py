@@ -27,37 +27,28 @@ from .two_bone import LimbPose, reach_for, smallest_rotation, stretched_m
 NEAR_M = (0.03, 0.065)
 """Distance of a hand from the own body up to which its place there counts in full, and from which not at all;
 like the others for a performer of `OF_STATURE_M`."""
-TOGETHER_M = (0.15, 0.40)
-"""The same for the distance of the wrists from each other."""
-FLOOR_M = (0.12, 0.35)
-"""The same for the height of a wrist over the floor."""
+TOGETHER_M = (0.15, 0.40)  # the same for the distance of the wrists from each other
+FLOOR_M = (0.12, 0.35)  # the same for the height of a wrist over the floor
 PASSING_M_S = (0.25, 0.75)
 """Speed of a hand along a part of the body up to which it touches it, and from which it only swings past."""
 LINGER_S = 0.25
 """Standard deviation in time of the smoothing of that speed: a hand that turns round in its swing swings."""
 OF_STATURE_M = 1.75
-CHANGE_S = 0.1
-"""Standard deviation in time of the smoothing of what counts how much."""
-ARM_SOFT = 0.97
-"""Share of its length from which an arm resists being stretched."""
+CHANGE_S = 0.1  # standard deviation in time of the smoothing of what counts how much
+ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
-LEAST_HEADING = 0.02
-"""Part of the back of the hand in the heading of fingers."""
-ROUNDS = 4
-"""Rounds in which two hands find a place that both reach."""
+LEAST_HEADING = 0.02  # part of the back of the hand in the heading of fingers
+ROUNDS = 4  # rounds in which two hands find a place that both reach
 
 
 @dataclass(frozen=True, eq=False)
 class Nearness:
     """What the performer's hands are near, by how much (0 to 1)."""
 
-    parts: Mapping[str, Array]
-    """(K, F) by side: the parts of the body."""
-    floor: Mapping[str, Array]
-    """(F,) by side."""
-    together: Array
-    """(F,) the hands themselves."""
+    parts: Mapping[str, Array]  # (K, F) by side: the parts of the body
+    floor: Mapping[str, Array]  # (F,) by side
+    together: Array  # (F,) the hands themselves
 
 
 def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]) -> Nearness:

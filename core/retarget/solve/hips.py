@@ -12,18 +12,15 @@ from ...finish.foot_ground import smooth_step
 from ...numerics.vectors import columns_at, gaussian
 from .two_bone import STRAIGHTEST, LimbPose
 
-FADE_S = 0.2
-"""Time in which a correction fades on either side of a hold."""
+FADE_S = 0.2  # time in which a correction fades on either side of a hold
 
 
 @dataclass(frozen=True, eq=False)
 class Hold:
     """A stretch of frames with a correction."""
 
-    first: int
-    """Its first frame, from 0."""
-    offset: Array
-    """(N, 3) the correction in each of its N frames."""
+    first: int  # its first frame, from 0
+    offset: Array  # (N, 3) the correction in each of its N frames
 
     @property
     def last(self) -> int:
@@ -148,16 +145,11 @@ def _evenly(time_s: Array) -> tuple[Array, float]:
 # --- Hips
 
 
-LEG_SOFT = 0.988
-"""Share of its length from which a leg resists being stretched."""
-SINK_S = 0.12
-"""Time over which the hips go down and up again."""
-CARRY_S = 0.08
-"""Standard deviation in time of the smoothing of what they are moved by with the feet."""
-MOMENT_S = 0.07
-"""Standard deviation in time of the smoothing of how far a limb may be stretched."""
-DEEPEST_SHARE = 0.08
-"""Farthest that they go down or up, as a share of the legs' length."""
+LEG_SOFT = 0.988  # share of its length from which a leg resists being stretched
+SINK_S = 0.12  # time over which the hips go down and up again
+CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
+MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
+DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
 STANDING_SHARE = 0.04
 """Height of an ankle over its height on the ground, as a share of the leg, from which it does not stand."""
 STRAIGHT = 0.01
@@ -220,8 +212,7 @@ def lowered_m(needed: list[Array], time_s: Array, leg_m: float) -> Array:
 # --- The way over the ground
 
 
-WAY_S = 0.4
-"""Standard deviation in time of what counts as the way and heading; faster changes are sway."""
+WAY_S = 0.4  # standard deviation in time of what counts as the way and heading; faster changes are sway
 
 
 def smooth_way(hips: Array, time_s: Array) -> Array:

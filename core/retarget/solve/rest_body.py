@@ -20,8 +20,7 @@ from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
 
-SHORTEST_SHARE = 0.005
-"""Least length of a long bone, as a share of the body's extent."""
+SHORTEST_SHARE = 0.005  # least length of a long bone, as a share of the body's extent
 MEETING_SHARE = 0.02
 """Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
 
@@ -32,12 +31,9 @@ class RestBone:
 
     name: str
     role: str
-    number: int
-    """Its place in the role's chain, from 0."""
-    carrier: int
-    """Index of the bone that carries its joint; -1 for the hips."""
-    head: Array
-    """(3,) its joint, canonical [m]."""
+    number: int  # its place in the role's chain, from 0
+    carrier: int  # index of the bone that carries its joint; -1 for the hips
+    head: Array  # (3,) its joint, canonical [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +42,8 @@ class RestBody:
 
     character: Character
     character_map: CharacterMap
-    stance: Array
-    """(3, 3) from the armature's axes to canonical ones."""
-    bones: tuple[RestBone, ...]
-    """Carriers before what they carry; the hips first."""
+    stance: Array  # (3, 3) from the armature's axes to canonical ones
+    bones: tuple[RestBone, ...]  # carriers before what they carry; the hips first
 
     @classmethod
     def of(cls, character: Character, character_map: CharacterMap) -> "RestBody":
@@ -208,8 +202,7 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
 # --- What a rest pose says against its map
 
 
-CLEARLY = 0.05
-"""Share of the leg's length by which toes lie clearly behind their ankle."""
+CLEARLY = 0.05  # share of the leg's length by which toes lie clearly behind their ankle
 
 
 def rest_notes(body: RestBody) -> tuple[str, ...]:

@@ -38,10 +38,8 @@ class Solution:
     source: SegmentMotion
     stage: Stage
     ground: Ground
-    hips: Array
-    """(F, 3) the midpoint of the hip joints, canonical [m]."""
-    turns: list[Array]
-    """(F, 3, 3) a bone: its turn from rest, canonical."""
+    hips: Array  # (F, 3) the midpoint of the hip joints, canonical [m]
+    turns: list[Array]  # (F, 3, 3) a bone: its turn from rest, canonical
 
     @classmethod
     def by_directions(

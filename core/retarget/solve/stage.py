@@ -16,14 +16,10 @@ from .foot_shape import Ground
 class Stage:
     """From the performer's world to the character's canonical space [m]."""
 
-    heading_rad: float
-    """Where the performer faces at the first frame."""
-    under: Array
-    """(3,) the point of the performer's floor under the hips at the first frame [m]."""
-    stand: Array
-    """(3,) the point of the floor under the resting character's hips, canonical [m]."""
-    size: float
-    """The character's size: its legs' length over the performer's."""
+    heading_rad: float  # where the performer faces at the first frame
+    under: Array  # (3,) the point of the performer's floor under the hips at the first frame [m]
+    stand: Array  # (3,) the point of the floor under the resting character's hips, canonical [m]
+    size: float  # the character's size: its legs' length over the performer's
     lift_m: float
     """What the character's ankles are higher over their soles than those of a performer of its size [m]."""
 

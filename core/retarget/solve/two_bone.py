@@ -12,8 +12,7 @@ from ...arrays import Array
 from ...body import rotations
 from ...numerics.vectors import unit
 
-SOFT = 0.97
-"""Share of its length from which a limb resists being stretched further by a goal."""
+SOFT = 0.97  # share of its length from which a limb resists being stretched further by a goal
 STRAIGHTEST = 0.9999
 """Largest extension as a share of a limb's length; beyond it the bend would have no direction left."""
 LEAST_M = 1e-6
@@ -23,18 +22,12 @@ LEAST_M = 1e-6
 class LimbPose:
     """The two long bones of a limb over F frames."""
 
-    upper_turn: Array
-    """(F, 3, 3) turn of the upper bone from its aligned rest."""
-    lower_turn: Array
-    """(F, 3, 3)."""
-    start: Array
-    """(F, 3) hip or shoulder joint [m]."""
-    middle: Array
-    """(F, 3) knee or elbow [m]."""
-    end: Array
-    """(F, 3) ankle or wrist [m]."""
-    hinge: Array
-    """(F, 3) unit axis about which it bends."""
+    upper_turn: Array  # (F, 3, 3) turn of the upper bone from its aligned rest
+    lower_turn: Array  # (F, 3, 3)
+    start: Array  # (F, 3) hip or shoulder joint [m]
+    middle: Array  # (F, 3) knee or elbow [m]
+    end: Array  # (F, 3) ankle or wrist [m]
+    hinge: Array  # (F, 3) unit axis about which it bends
 
     @property
     def extension_m(self) -> Array:

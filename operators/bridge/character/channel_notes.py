@@ -14,8 +14,7 @@ from .controls import active_constraints, drivers
 
 CARRYING = ("CHILD_OF", "ARMATURE")
 """Constraints that carry a bone as a parent does: its own channels still count."""
-MOST_NAMES = 3
-"""Bones that a sentence names; more are counted."""
+MOST_NAMES = 3  # bones that a sentence names; more are counted
 NOTICEABLE_M = 0.005
 ADRIFT = 0.01
 """Distance, in sizes of the character, that random poses move a control from where its carrier has it."""

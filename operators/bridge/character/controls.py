@@ -26,8 +26,7 @@ def property_path(bone: str, name: str) -> str:
 # --- Pose a character for a moment, and leave no trace
 
 
-Property = tuple[str, str]
-"""Name of a pose bone, and of one of its custom properties."""
+Property = tuple[str, str]  # name of a pose bone, and of one of its custom properties
 Value = float | int | bool
 OBJECT_CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler", "scale")
 

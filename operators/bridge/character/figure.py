@@ -20,13 +20,10 @@ from ..object_space import evaluated
 from ..scene_frames import at_scene_frame
 from .import_character import skins
 
-MOST_TRIANGLES = 200_000
-"""With more, bones are drawn: a picture need not take half a minute."""
-WAIST, THICKNESS = 0.15, 0.09
-"""An octahedral bone's widest place and its half-width there, in bone lengths."""
+MOST_TRIANGLES = 200_000  # with more, bones are drawn: a picture need not take half a minute
+WAIST, THICKNESS = 0.15, 0.09  # an octahedral bone's widest place and its half-width there, in bone lengths
 LEAST_M = 1e-6
-NEW_GRAY, GAMMA = 0.8, 2.2
-"""Color of a new material, which nobody has chosen; and the display's exponent."""
+NEW_GRAY, GAMMA = 0.8, 2.2  # color of a new material, which nobody has chosen; and the display's exponent
 CORNERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 

@@ -18,8 +18,7 @@ from ..actions import curve_digest
 from ..blend_files import check_blend, one_line, showing_scene, write_blend
 from ..export_formats import FORMATS, export_motion
 
-MOST_NAMED = 5
-"""Armatures named in a sentence."""
+MOST_NAMED = 5  # armatures named in a sentence
 BLEND, VRM = ".blend", ".vrm"
 NOT_ALONG = ("ARMATURE", "CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE")
 """Kinds of objects that do not belong to a character because a constraint ties them to it."""
@@ -31,12 +30,10 @@ class ImportedCharacter:
 
     file: CharacterFile
     armature: bpy.types.Object
-    objects: tuple[bpy.types.Object, ...]
-    """All that is in the scene, the armature among them."""
+    objects: tuple[bpy.types.Object, ...]  # all that is in the scene, the armature among them
     texts: tuple[bpy.types.Text, ...] = ()
     """Scripts of its file that Blender registers when a person opens it, as Rigify's panel; not run here."""
-    notes: tuple[str, ...] = ()
-    """What a person should know, in sentences without a full stop."""
+    notes: tuple[str, ...] = ()  # what a person should know, in sentences without a full stop
 
 
 def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCharacter:

@@ -22,10 +22,8 @@ from ..scene_frames import at_scene_frame
 from .controls import Property, Value, posing, property_path
 from .write_retargeted import RetargetedKeys, write_keys
 
-TEMPORARY = "Keymark Measuring"
-"""Name of the Action that is there while a motion is measured."""
-FRAMES_A_YIELD = 10
-"""Frames shown between two reports of progress; in between the scene is as it was."""
+TEMPORARY = "Keymark Measuring"  # name of the Action that is there while a motion is measured
+FRAMES_A_YIELD = 10  # frames shown between two reports of progress; in between the scene is as it was
 SHOWN_SHARE = 0.5
 """Share of the work that the motion as it is shown takes; the rest is that of the other switch settings."""
 

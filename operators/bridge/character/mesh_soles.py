@@ -14,18 +14,12 @@ from .controls import active_constraints, constraint_bones
 from .import_character import is_deformed, skins
 
 PARTS = ("foot", "toe")
-NEAR = 0.35
-"""Largest distance of a sole's vertex from ankle or toe, in lengths of the leg."""
-SOLE = 0.02
-"""Height of the band above the lowest vertex of a foot that is its sole, in lengths of the leg."""
-LOWEST, HIGHEST = 0.01, 0.3
-"""Height of an ankle over its sole, in lengths of the leg; others are not feet."""
-HEEL = 0.01
-"""Least length of a foot's sole on either side of the ankle, in lengths of the leg."""
-DIRECTIONS = 8
-"""Directions along the ground in which a sole's outermost vertices are kept."""
-MOST_VERTICES = 400_000
-"""Vertices of a mesh that is looked at."""
+NEAR = 0.35  # largest distance of a sole's vertex from ankle or toe, in lengths of the leg
+SOLE = 0.02  # height of the band above the lowest vertex of a foot that is its sole, in lengths of the leg
+LOWEST, HIGHEST = 0.01, 0.3  # height of an ankle over its sole, in lengths of the leg; others are not feet
+HEEL = 0.01  # least length of a foot's sole on either side of the ankle, in lengths of the leg
+DIRECTIONS = 8  # directions along the ground in which a sole's outermost vertices are kept
+MOST_VERTICES = 400_000  # vertices of a mesh that is looked at
 MOST_STEPS = 64
 
 

@@ -33,14 +33,10 @@ from .controls import (
 from .write_retargeted import ONE, scaled_bones
 
 SEED = 4
-STILL, MOVED = 3, 4
-"""Poses at random, without and with locations."""
-TURN_RAD = 0.4
-"""Standard deviation of random turns about each axis."""
-MOVE_SHARE = 0.1
-"""Standard deviation of random locations, in sizes of the character."""
-DISPLACED = 1e-5
-"""Location of a control that counts as one, in sizes of the character."""
+STILL, MOVED = 3, 4  # poses at random, without and with locations
+TURN_RAD = 0.4  # standard deviation of random turns about each axis
+MOVE_SHARE = 0.1  # standard deviation of random locations, in sizes of the character
+DISPLACED = 1e-5  # location of a control that counts as one, in sizes of the character
 FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
 """Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
 STRAIGHT = 0.005
@@ -53,14 +49,10 @@ NOTICEABLE_RAD, NOTICEABLE = 0.3, 0.05
 class ProbedControls:
     """A character's controls, and how the bones with roles follow them."""
 
-    controls: tuple[Control, ...]
-    """Those that turn or carry others first."""
-    offsets: Mapping[str, Array]
-    """(4, 4) by control the pose of its bone in its own axes."""
-    poles: Mapping[str, PoleSetting]
-    """By pole where it belongs."""
-    size: float
-    """The character's, in the armature's units."""
+    controls: tuple[Control, ...]  # those that turn or carry others first
+    offsets: Mapping[str, Array]  # (4, 4) by control the pose of its bone in its own axes
+    poles: Mapping[str, PoleSetting]  # by pole where it belongs
+    size: float  # the character's, in the armature's units
     notes: tuple[str, ...]
 
 

@@ -96,18 +96,14 @@ FEWEST_FRAMES = 2
 class Retargeted:
     """A character's motion, not yet written."""
 
-    session_uid: int
-    """Blender's number of the armature object in this session."""
+    session_uid: int  # Blender's number of the armature object in this session
     character: Character
-    character_map: CharacterMap
-    """The map, completed."""
+    character_map: CharacterMap  # the map, completed
     options: RetargetOptions
     motion: CharacterMotion
     keys: RetargetedKeys
-    quality: Quality
-    """What was measured of the character as Blender shows it."""
-    notes: tuple[str, ...]
-    """What a person should know, in sentences without a full stop."""
+    quality: Quality  # what was measured of the character as Blender shows it
+    notes: tuple[str, ...]  # what a person should know, in sentences without a full stop
 
     @property
     def size(self) -> float:

@@ -24,8 +24,7 @@ from ..result_files import set_look
 from ..rotation_modes import ALL_PATHS, bone_path
 from ..scene_frames import scene_frames
 
-READ, SEEN = 0.7, 0.8
-"""Shares of the job at which the curves are read, and their postures known."""
+READ, SEEN = 0.7, 0.8  # shares of the job at which the curves are read, and their postures known
 
 
 def read_source(

@@ -37,8 +37,7 @@ def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tup
 # --- Where an armature object stands, as channels that an Action may hold
 
 
-PlacementKeys = tuple[tuple[str, Array], ...]
-"""Data paths of the object's channels with their values."""
+PlacementKeys = tuple[tuple[str, Array], ...]  # data paths of the object's channels with their values
 CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_euler")
 
 
@@ -101,21 +100,17 @@ def require_placeable(armature_object: bpy.types.Object) -> None:
 
 MADE_BY_KEYMARK = "keymark_retargeted"
 """Custom property of an Action: which curves of which slot retargeting made, as JSON."""
-OBJECT_GROUP = "Object Transforms"
-"""Blender's own name for the group of an object's channels."""
+OBJECT_GROUP = "Object Transforms"  # Blender's own name for the group of an object's channels
 
 
 @dataclass(frozen=True, eq=False)
 class RetargetedKeys:
     """All that is keyed of a character's motion."""
 
-    frames: Array
-    """(F,) scene frames."""
+    frames: Array  # (F,) scene frames
     controls: tuple[KeyedControl, ...]
-    properties: Mapping[Property, Value]
-    """Custom properties that are keyed at the first frame."""
-    placement: PlacementKeys
-    """The object's channels that are keyed at the first frame."""
+    properties: Mapping[Property, Value]  # custom properties that are keyed at the first frame
+    placement: PlacementKeys  # the object's channels that are keyed at the first frame
     scaled: tuple[str, ...] = ()
     """Bones whose scale is keyed at one, but where curves or drivers give them a scale."""
 

@@ -8,11 +8,7 @@ from typing import Any
 import pytest
 from _character_maps import full_record
 from keymark.core.errors import InputError
-from keymark.core.retarget.retarget_record import (
-    RECORD_FILE,
-    read_retarget_record,
-    write_retarget_record,
-)
+from keymark.core.retarget.retarget_record import RECORD_FILE, read_retarget_record, write_retarget_record
 
 
 def test_a_record_comes_back_as_it_was(tmp_path: Path) -> None:
