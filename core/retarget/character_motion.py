@@ -89,11 +89,9 @@ PAIRS = (*LEG[:3], *ARM[1:])  # parts whose joints lie clearly to the sides
 
 
 def find_stance(character: Character, character_map: CharacterMap) -> Array:
-    """Rotation from the armature's axes to a stance with Z up, facing -Y, the character's left at +X.
+    """Rotation (3, 3) from the armature's axes to a stance with Z up, facing -Y, the character's left at +X.
 
-    Returns:
-        (3, 3); `rotation @ point` turns a point of the armature's space. The identity where the map lacks the
-        limbs that would tell.
+    The identity where the map lacks the limbs that would tell.
     """
     left = _sideways(character, character_map)
     up = _upward(character, character_map)

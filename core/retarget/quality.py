@@ -59,12 +59,9 @@ class Quality:
 def direction_errors_deg(
     source: Mapping[str, Array], shown: Mapping[str, Array], bones: Sequence[tuple[str, str]]
 ) -> Array:
-    """(F, B) angle between the directions of the bones whose two joints both bodies have.
+    """(F, B) angle between the directions of the bones whose two joints (F, 3) by role both bodies have.
 
-    Args:
-        source: (F, 3) joints of the performer by role, turned as the character faces.
-        shown: (F, 3) joints of the character by role.
-        bones: Roles whose joints are at a bone's two ends.
+    The performer's are turned as the character faces.
     """
     there = [bone for bone in bones if all(role in paths for role in bone for paths in (source, shown))]
     if not there:
@@ -79,12 +76,7 @@ def direction_errors_deg(
 
 
 def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
-    """(N,) way of resting feet from each frame to the next, of all rests.
-
-    Args:
-        ankles: (F, 3) by limb, `leg.L` and `leg.R`.
-        rests: When which foot rests.
-    """
+    """(N,) way of resting feet from each frame to the next, of all rests; ankles (F, 3) are by limb."""
     steps = [
         np.linalg.norm(np.diff(ankles[rest.limb][rest.first : rest.last + 1], axis=0), axis=-1)
         for rest in rests
@@ -94,12 +86,7 @@ def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
 
 
 def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> float | None:
-    """Greatest depth of soles below the ground; 0 where none is.
-
-    Args:
-        heights_m: (F, N) height of the points of each sole, by role of foot and toe.
-        ground_m: (F,) height of the ground under each foot by limb, `leg.L` and `leg.R`.
-    """
+    """Greatest depth below the ground (F,) by leg of soles (F, N) by role of foot and toe; 0 for none."""
     depths = [
         float((ground_m[limb][:, None] - heights).max())
         for role, heights in heights_m.items()
@@ -111,13 +98,7 @@ def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]
 def hand_distances_mm(
     wrists: Mapping[str, Array], goals: Mapping[str, Array], counted: Mapping[str, BoolArray]
 ) -> Array:
-    """(N,) distance of wrists from their goals where those count.
-
-    Args:
-        wrists: (F, 3) by side.
-        goals: (F, 3) by side.
-        counted: (F,) by side.
-    """
+    """(N,) distance of wrists (F, 3) by side from their goals where those count (F,)."""
     found = [
         np.linalg.norm(wrists[side] - goals[side], axis=-1)[counted[side]] for side in goals if side in wrists
     ]
@@ -144,11 +125,8 @@ def measured(
 ) -> Quality:
     """The figures of what is shown of a solved motion, without those of controls and keys.
 
-    Args:
-        source: (F, 3) joints of the performer by role, in the world.
-        motion: What was solved.
-        shown: (F, 3) joints of the character by role, in the world, as they are shown.
-        soles: (F, N, 3) points of the soles by role of foot and toe, in the world, as they are shown.
+    In the world: joints (F, 3) by role of the performer and of the character, and points (F, N, 3) of its
+    soles.
     """
     space = motion.to_world
     up, turn = space.rotation @ motion.stance.T, motion.facing

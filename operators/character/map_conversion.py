@@ -55,13 +55,7 @@ def map_of(group: bpy.types.PropertyGroup) -> CharacterMap:
 def show_map(
     group: bpy.types.PropertyGroup, character_map: CharacterMap, doubts: Mapping[str, str] = NO_DOUBTS
 ) -> None:
-    """Set properties to a character map; every role has an entry then, those without bones an empty one.
-
-    Args:
-        group: The properties.
-        character_map: The map.
-        doubts: Sentences by role on why its bones may be the wrong ones.
-    """
+    """Set properties to a character map, with doubts by role; roles without bones have an empty entry."""
     clear_map(group)
     group.title, group.root = character_map.title, character_map.root or ""
     group.preset = character_map.preset or ""

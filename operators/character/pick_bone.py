@@ -23,14 +23,7 @@ SAME_PX = 3.0
 def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
-    """Return the name of the visible bone nearest to the mouse; None where none is near.
-
-    Args:
-        context: Its window is searched for a 3D viewport.
-        armature_object: The character.
-        mouse_x: Mouse position in the window, from its left edge [px].
-        mouse_y: The same from its bottom edge [px].
-    """
+    """Name of the visible bone nearest to the mouse [window px], in any 3D viewport; None where none is near."""
     for area in context.screen.areas:
         if area.type != "VIEW_3D":
             continue
@@ -70,13 +63,9 @@ def _nearest(
 
 
 def nearest_segment(point: Array, ends: Array, depths: Array, near: float) -> int | None:
-    """Index of the segment nearest to a point; None where all are farther than `near`.
+    """Index of the segment (N, 2, 2) nearest to a point [px]; None where all are farther than `near`.
 
-    Args:
-        point: (2,) [px].
-        ends: (N, 2, 2) first and second end of each segment [px].
-        depths: (N,) distance of each from the viewer; of segments over each other the nearest counts.
-        near: Largest distance [px].
+    Of segments over each other the one nearest to the viewer, by depth (N,), counts.
     """
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     squared = np.maximum(np.sum(along**2, axis=1), 1e-12)

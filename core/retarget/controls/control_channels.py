@@ -85,13 +85,10 @@ def control_channels(
     size: float,
     known: Mapping[int, ControlChannels] = MappingProxyType({}),
 ) -> tuple[ControlChannels, ...]:
-    """The channels that give controls the poses they are to have, or the nearest that they can.
+    """The channels that give controls the poses (F, 4, 4) they are to have, or the nearest that they can.
 
-    Args:
-        controls: The controls, those that turn or carry others before them.
-        wanted: (F, 4, 4) by name the pose of each in the armature's space; of a pole only the place counts.
-        size: The character's, in the armature's units.
-        known: Controls by index whose channels are known already.
+    Controls that turn or carry others come before them; channels in `known`, by index, stay. Poses are in the
+    armature's space, the character's size in its units; of a pole only the place counts.
     """
     frames = len(next(iter(wanted.values()), np.zeros((1, 4, 4))))
     still, origin = np.broadcast_to(np.eye(3), (frames, 3, 3)), np.zeros((frames, 3))

@@ -69,16 +69,9 @@ def control_rig(
     points: Mapping[int, Array],
     scale: float,
 ) -> ControlRig:
-    """The rig of some controls.
+    """The rig of the controls at some rising indices, with points (N, 3) fixed to each, from its head [m].
 
     What turns or carries one of them and is not among them is taken as still: the rig's axes are its axes.
-
-    Args:
-        controls: All controls, those that turn or carry others first.
-        channels: The channels of each, which say what is keyed.
-        chosen: Indices of the controls of the rig, rising.
-        points: (N, 3) by control points fixed to it, in its axes from its head [m].
-        scale: Meters a unit of the armature's space.
     """
     bones: list[RigBone] = []
     moved: dict[int, int] = {}

@@ -132,15 +132,9 @@ def _least(others: Array, nothing: Array) -> list[int]:
 
 
 def rigid_offset(leading: Array, following: Array) -> tuple[Array, float, float]:
-    """The pose of a bone in another one's axes, as it is on average.
+    """The mean pose (4, 4) without scale of a following bone (S, 4, 4) in the axes of the leading one.
 
-    Args:
-        leading: (S, 4, 4) poses of the bone that leads.
-        following: (S, 4, 4) poses of the bone that follows.
-
-    Returns:
-        The offset (4, 4) with `following = leading @ offset`, without scale; by how much turn [rad] and place
-        [the poses' unit] differ from it at most.
+    With it come the largest turn [rad] and the largest distance [the poses' unit] by which a sample differs.
     """
     axes = np.swapaxes(unscaled(leading[:, :3, :3]), -1, -2)
     turn, turn_rad = constant_turn(axes @ unscaled(following[:, :3, :3]))

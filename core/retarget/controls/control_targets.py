@@ -39,12 +39,8 @@ def control_targets(
 ) -> dict[str, Array]:
     """(F, 4, 4) by name the pose that each control is to have in the armature's space.
 
-    Args:
-        planned: The controls.
-        motion: The poses of the bones with roles.
-        offsets: (4, 4) by control the pose of its bone in its own axes.
-        poles: The poles by name.
-        limbs: The bones at the three joints of each limb.
+    `offsets` are the poses (4, 4) of bones in their controls' axes, `limbs` the bones at the joints of each
+    limb.
     """
     targets = {}
     for control in planned:
@@ -61,15 +57,10 @@ def control_targets(
 
 
 def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Array:
-    """(F, 4, 4) places of a pole, as matrices.
+    """(F, 4, 4) places of a pole, as matrices, from the joints (F, 3) of its limb and the way it bends.
 
     A pole without an offset lies beyond elbow or knee; others are as far from the line between the limb's
     root and its end.
-
-    Args:
-        joints: (F, 3) the limb's root, its elbow or knee, and its end.
-        bend: (F, 3) unit vector from the line between root and end toward elbow or knee.
-        setting: The pole.
     """
     root, middle, end = joints
     axis = unit(end - root)
@@ -82,14 +73,7 @@ def pole_poses(joints: Sequence[Array], bend: Array, setting: PoleSetting) -> Ar
 
 
 def pole_offset(root: Array, middle: Array, end: Array, pole: Array) -> float:
-    """Angle [rad] from a pole's direction to that of the joint that it guides, about the limb's line.
-
-    Args:
-        root: (3,) the limb's root.
-        middle: (3,) elbow or knee.
-        end: (3,) the limb's end.
-        pole: (3,).
-    """
+    """Angle [rad] from a pole's direction to that of the elbow or knee it guides, about the limb's line."""
     axis = unit(end - root)
     toward = [point - root - ((point - root) @ axis) * axis for point in (pole, middle)]
     return float(np.arctan2(np.cross(toward[0], toward[1]) @ axis, toward[0] @ toward[1]))
@@ -109,16 +93,7 @@ def limb_paths(
     offsets: Mapping[str, Array],
     poles: Mapping[str, PoleSetting],
 ) -> dict[str, LimbPaths]:
-    """The limbs whose three joints are moved, by name.
-
-    Args:
-        character: The character.
-        character_map: Its map.
-        motion: Its motion.
-        controls: Its controls.
-        offsets: (4, 4) by control the pose of its bone in its own axes.
-        poles: Where its poles belong.
-    """
+    """The limbs whose three joints are moved, by name."""
     found = {}
     in_ik = {control.plan.limb for control in controls if control.plan.kind is ControlKind.GOAL}
     in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}

@@ -39,13 +39,7 @@ class HeldPoint:
 def held_points(
     character: Character, character_map: CharacterMap, soles: Mapping[str, Array]
 ) -> tuple[HeldPoint, ...]:
-    """The points that show how each bone with a role is placed and turned.
-
-    Args:
-        character: The character.
-        character_map: Its map.
-        soles: (N, 3) by role points of the soles at rest, in the armature's space.
-    """
+    """The points that show how each bone with a role is placed and turned; soles (N, 3) are at rest."""
     return (*_trunk_points(character, character_map), *_limb_points(character, character_map, soles))
 
 
@@ -112,13 +106,10 @@ class ToleranceRules:
     general_m: float  # tolerance of the body [m]
 
     def of(self, point: HeldPoint, path: Array, shown: bool, ends_m: float) -> Array:
-        """(F,) tolerance of a point [m].
+        """(F,) tolerance of a point on a path (F, 3) in the armature's axes [m].
 
-        Args:
-            point: The point.
-            path: (F, 3) its places in the armature's axes [m].
-            shown: Whether the point is what the character shows; otherwise it is what a switch would show.
-            ends_m: Tolerance of wrists and ankles [m].
+        A point that is not `shown` is what a switch between IK and FK would show; `ends_m` is for wrists and
+        ankles.
         """
         allowed = np.full(len(path), self.general_m)
         if point.kind is PointKind.END:
@@ -146,12 +137,7 @@ class ToleranceRules:
 
 
 def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> Array:
-    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m].
-
-    Args:
-        joints: (F, 3) the limb's root, elbow or knee, and end [m].
-        general_m: The tolerance [m].
-    """
+    """(F,) error of a limb's length between root and end that moves elbow or knee by the tolerance [m]."""
     root, middle, end = joints
     line = end - root
     length = np.linalg.norm(line, axis=-1)
@@ -166,10 +152,7 @@ def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> A
 def pole_tolerance_m(joints: tuple[Array, Array, Array], distance_m: float, general_m: float) -> Array:
     """(F,) error of a pole that moves elbow or knee by the tolerance, or turns the limb by `POLE_RAD` [m].
 
-    Args:
-        joints: (F, 3) the limb's root, elbow or knee, and end [m].
-        distance_m: Distance of the pole from elbow or knee [m].
-        general_m: The tolerance [m].
+    `distance_m` is that of the pole from elbow or knee.
     """
     root, middle, end = joints
     line = unit(end - root)

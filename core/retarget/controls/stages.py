@@ -109,18 +109,7 @@ NO_FRAMES = np.zeros(0, dtype=np.intp)
 def reduce_body(
     motion: ControlMotion, times: Array, rules: ToleranceRules, of: ChannelValues, stages: ControlStages
 ) -> Part[tuple[dict[int, KeyedControl], dict[int, ControlChannels]]]:
-    """Find the keys of the body's controls.
-
-    Args:
-        motion: The controls' motion.
-        times: (F,) rising scene frames.
-        rules: How far points may stray.
-        of: Values of rotation channels.
-        stages: The controls in the order of their fitting.
-
-    Returns:
-        By index what is keyed on each control, and its channels with the poses that the keys show.
-    """
+    """Find the keys of the body's controls, by index, and the channels with the poses that they show."""
     body = stages.body
     held = {index: motion.points_of(index) for index in body}
     roots = _limb_roots(motion, stages)
@@ -177,18 +166,9 @@ def reduce_following(
     group: FollowingControls,
     shown: Mapping[int, ControlChannels],
 ) -> Part[tuple[dict[int, KeyedControl], dict[int, ControlChannels]]]:
-    """Find the keys of controls that hang together.
+    """Find the keys of controls that hang together, and the channels with the poses that these keys show.
 
-    Args:
-        motion: The controls' motion.
-        times: (F,) rising scene frames.
-        rules: How far points may stray.
-        of: Values of rotation channels.
-        group: The controls.
-        shown: Channels of the controls fitted before, with the poses that their keys show.
-
-    Returns:
-        By index what is keyed on each control, and its channels with the poses that the keys show.
+    `shown` has those of the controls fitted before.
     """
     known = {index: shown.get(index, channels) for index, channels in enumerate(motion.channels)}
     carrier = known.get(group.carrier)
@@ -287,17 +267,7 @@ BODY_SHARE = 0.5  # share of the work that the body's controls are, where others
 def reduce_controls(
     motion: ControlMotion, times: Array, rules: ToleranceRules, of: ChannelValues
 ) -> Part[tuple[KeyedControl, ...]]:
-    """Find few keys for every control.
-
-    Args:
-        motion: The controls' motion.
-        times: (F,) rising scene frames, at least two.
-        rules: How far points may stray.
-        of: Values of rotation channels.
-
-    Returns:
-        What is keyed on each control.
-    """
+    """Find few keys for every control of a motion at rising scene frames (F,), at least two."""
     stages = control_stages(motion.controls, _legs(motion))
     shown: dict[int, ControlChannels] = {}
     keyed: dict[int, KeyedControl] = {}

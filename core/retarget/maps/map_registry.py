@@ -28,13 +28,9 @@ def missing_bones(character_map: CharacterMap, character: Character) -> tuple[st
 def check_map(character_map: CharacterMap, character: Character, where: str = "") -> None:
     """Refuse a map for another character, or one without the roles that every character has.
 
-    Args:
-        character_map: The map.
-        character: The character that it is to be used for.
-        where: The map's file for the sentence; by default it is named by its title.
-
     Raises:
-        InputError: A bone or a role is missing.
+        InputError: A bone or a role is missing; the sentence begins with `where`, by default the map's
+            title.
     """
     name = where or f"character map {shown(character_map.title)}"
     missing = missing_bones(character_map, character)
@@ -116,11 +112,7 @@ def find_map(name_or_path: str | Path, folders: Sequence[Path]) -> RegisteredMap
 
 
 def map_for(character: Character, folders: Sequence[Path]) -> RegisteredMap | None:
-    """The registered map all of whose bones a character has; of several the one that names the most bones.
-
-    Returns:
-        The map; None where there is none.
-    """
+    """The registered map all of whose bones a character has; of several the one that names the most bones."""
     fitting = [
         (len(entry.character_map.named_bones), entry)
         for entry in registered_maps(folders)
@@ -166,13 +158,9 @@ class ChosenMap:
 
 
 def choose_map(character: Character, wanted: str, folders: Sequence[Path]) -> ChosenMap:
-    """The map of a character.
+    """The map of a character: the one with the wanted title or path, or the one found.
 
-    Args:
-        character: The character.
-        wanted: A map's title or path; `auto` for a saved one that knows the character's bones, else
-            recognition; `none` for recognition alone.
-        folders: Where saved maps are found.
+    `auto` takes a saved one that knows the character's bones, else recognition; `none` recognition alone.
 
     Raises:
         InputError: There is no such map, it is for another character, or the bones are no character's.

@@ -22,8 +22,7 @@ def mirrored_map(
 ) -> tuple[CharacterMap, tuple[str, ...]]:
     """Copy one side of a map to the other, with its controls.
 
-    Returns:
-        The map, and the roles of the other side for which no bone was found, which stay as they were.
+    With the map come the roles of the other side for which no bone was found, which stay as they were.
     """
     given = {
         role: bones.bones for role, bones in character_map.roles.items() if role.endswith(f".{from_side}")

@@ -58,15 +58,10 @@ def read_preset(path: Path) -> Preset:
 
 
 def preset_from_json(value: Any, where: str, identifier: str) -> Preset:
-    """Read a preset from JSON that is not trusted.
-
-    Args:
-        value: The JSON: a character map's fields, and `requires` and `lacks`.
-        where: Location of the JSON, with which sentences begin.
-        identifier: The preset's identifier.
+    """Read a preset from JSON that is not trusted: a character map's fields, and `requires` and `lacks`.
 
     Raises:
-        InputError: The JSON is no valid preset.
+        InputError: The JSON is no valid preset; the sentence begins with `where`.
     """
     read = _PresetFields.from_json(value, where)
     given = {name: getattr(read, name) for name in declared(CharacterMap)}
@@ -84,11 +79,8 @@ def shipped_presets() -> tuple[Preset, ...]:
 def find_preset(character: Character, presets: tuple[Preset, ...] | None = None) -> CharacterMap | None:
     """The map of the convention that a character's bones follow, with the character's own names.
 
-    Of several the one that requires most bones; what the character lacks is left out of the map.
-
-    Args:
-        character: The character.
-        presets: The presets to choose from; by default the shipped ones.
+    Of several (by default the shipped ones) the one that requires most bones; what the character lacks is
+    left out.
     """
     found: list[tuple[int, int, CharacterMap]] = []
     for preset in shipped_presets() if presets is None else presets:

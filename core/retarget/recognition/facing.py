@@ -70,10 +70,7 @@ SAME_JOINT = 0.02  # A bone this near to a hand's or foot's head, in heights of 
 def find_root(character: Character, character_map: CharacterMap, up: Array) -> str | None:
     """The lowest bone above all that is keyed that lies near the ground, or is named after what it does.
 
-    Args:
-        character: The character.
-        character_map: Its map; the bones with roles are keyed where it gives no controls.
-        up: (3,) in the armature's axes.
+    Bones with roles are keyed where the map gives no controls; up (3,) is in the armature's axes.
     """
     hips = character_map.bone("hips")
     if hips is None:

@@ -106,10 +106,7 @@ def segment_of(role: str) -> str:
 def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:
     """(F, 3, 3) a bone: its turn from the character's rest, in canonical axes.
 
-    Args:
-        body: The character at rest.
-        turn: (F, 3, 3) by segment of the performer, on the character's stage.
-        alignment: (3, 3) by role.
+    The performer's segments are turned (F, 3, 3) on the character's stage; the alignment is (3, 3) by role.
     """
     found: list[Array] = []
     chest = turn["chest" if body.is_moved("spine") else "pelvis"]
@@ -217,16 +214,10 @@ def places_by_part(
     alignment: Mapping[int, Array],
     points: Array,
 ) -> Array:
-    """(K, F, 3) where points near the performer belong on the character, by each of K parts, canonical [m].
+    """(K, F, 3) where world points (F, 3) near the performer belong on the character, by each of K parts [m].
 
-    Args:
-        parts: The parts.
-        source: The performer's motion.
-        stage: Where the character performs.
-        places: (F, 3) the joint of each of the character's bones [m].
-        turns: (F, 3, 3) turn of each bone from its rest.
-        alignment: (3, 3) by bone: the turn from the character's rest to the performer's.
-        points: (F, 3) in the world [m].
+    Canonical are joints (F, 3) and turns from rest (F, 3, 3) of the character's bones; the alignment (3, 3)
+    by bone turns its rest to the performer's.
     """
     found = []
     for part in parts:

@@ -69,16 +69,7 @@ def leveled(turn: Array, share: Array) -> Array:
 def plan_foot(
     source: SegmentMotion, stage: Stage, ground: Ground, shape: FootShape, side: str, leg: LimbPose
 ) -> FootPath:
-    """Plan a foot.
-
-    Args:
-        source: The performer's motion.
-        stage: Where the character performs.
-        ground: The performer's ground.
-        shape: The character's foot.
-        side: `L` or `R`.
-        leg: The leg by the performer's directions, canonical [m].
-    """
+    """The path of a foot, from the leg by the performer's directions."""
     point, time_s, ankle = SIDES.index(side), source.time_s, leg.end
     ground_m = stage.heights(ground.height_m[:, point])
     turn = _rolled(source, stage, ground, shape, side, ankle[:, 2] - ground_m)
@@ -117,13 +108,7 @@ def sole_depth_m(turn: Array, shape: FootShape) -> Array:
 
 
 def toe_bends(turn: Array, shape: FootShape, height_m: Array) -> Array:
-    """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ground demands.
-
-    Args:
-        turn: (F, 3, 3) of the foot.
-        shape: The foot, with a toe.
-        height_m: (F,) height of the ankle over the ground [m].
-    """
+    """(F, 3, 3) turns of the toes, bent up against the foot just as far as the ankle's height demands."""
     if shape.toe_joint is None or not len(shape.toe):
         return turn
     joint_m = height_m + turn[:, 2] @ shape.toe_joint

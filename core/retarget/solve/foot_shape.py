@@ -58,13 +58,7 @@ def rest_floor_m(body: RestBody) -> float:
 
 
 def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
-    """The foot of a side, from the map's soles or from the bones.
-
-    Args:
-        body: The character at rest.
-        side: `L` or `R`.
-        floor_m: Height of the ground it stands on at rest [m].
-    """
+    """The foot of a side at rest on ground of some height [m], from the map's soles or from the bones."""
     ankle = body.joint(f"foot.{side}")
     toe = body.joint(f"toe.{side}") if body.is_moved(f"toe.{side}") else None
     given = {

@@ -96,15 +96,8 @@ def hand_goals(
 ) -> dict[str, HandGoal]:
     """Where the wrists belong by the body, the floor and the other hand, by side.
 
-    Args:
-        body: The character at rest.
-        source: The performer's motion.
-        stage: Where the character performs.
-        ground: The performer's ground.
-        places: (F, 3) the joint of each of the character's bones, trunk and legs solved [m].
-        turns: (F, 3, 3) turn of each bone from its rest.
-        alignment: (3, 3) by role.
-        arms: By side, by their directions.
+    Places (F, 3) [m] and turns from rest (F, 3, 3) are of the character's bones, trunk and legs solved, arms
+    by directions; the alignment (3, 3) is by role.
     """
     shapes = part_shapes(body, source, stage.size)
     nearness = find_nearness(source, ground, [shape.segment for shape in shapes])
@@ -164,10 +157,8 @@ def reach(arm: LimbPose, goal: Array, share: Array) -> LimbPose:
 def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
     """(F, 3, 3) turns of a hand, bent back at the wrist where it would be in the floor.
 
-    Args:
-        turn: (F, 3, 3) of the hand, canonical.
-        wrist_m: (F,) height of the wrist over the floor [m].
-        along: (3,) from wrist to fingertips at rest, palm down, canonical [m].
+    `wrist_m` is the wrist's height over the floor, `along` (3,) goes from wrist to fingertips at rest, palm
+    down [m].
     """
     length_m = float(np.linalg.norm(along))
     fingers = turn @ (along / length_m)

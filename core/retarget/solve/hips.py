@@ -31,12 +31,7 @@ class Hold:
 def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array:
     """(F, 3) the corrections of holds, fading on either side without a jump in place or speed.
 
-    Two holds that follow each other closely are joined by one cubic.
-
-    Args:
-        holds: In order, none overlapping another.
-        time_s: (F,) time of each frame [s].
-        fade_s: Time in which a correction fades [s].
+    Holds are in order and do not overlap; two that follow each other closely are joined by one cubic.
     """
     offset = np.zeros((len(time_s), 3))
     for hold in holds:
@@ -96,12 +91,8 @@ def speeds(path: Array, time_s: Array) -> Array:
 def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool = True) -> Array:
     """Values (F, ...) smoothed by a Gaussian in time.
 
-    Args:
-        values: (F, ...).
-        time_s: (F,) time of each frame [s].
-        deviation_s: Standard deviation of the Gaussian [s].
-        ends_kept: Whether the first and last values stay and slopes go on beyond them, as a way's do; else
-            they are as smooth as all others.
+    With `ends_kept` the first and last values stay and slopes go on beyond them, as a way's do; else they are
+    as smooth as all others.
     """
     if len(values) < 3:
         return np.array(values)
@@ -120,13 +111,7 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
 
 
 def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
-    """A smooth signal (F,) that is nowhere below the needed one: its running maximum, smoothed.
-
-    Args:
-        needed: (F,).
-        time_s: (F,) time of each frame [s].
-        reach_s: Time over which it rises and falls to either side [s].
-    """
+    """A smooth signal (F,) nowhere below the needed one: its running maximum over the reach, smoothed."""
     if len(needed) < 3 or not needed.any():
         return np.array(needed)
     step = float(np.median(np.diff(time_s)))
@@ -159,15 +144,7 @@ LEAST_WEIGHT = 1.0
 
 
 def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
-    """(F,) how much lower a limb must begin to reach its goal [m].
-
-    Args:
-        limb: The limb by the performer's directions.
-        goal: (F, 3) ankle or wrist [m].
-        needed: (F,) whether the goal must be reached.
-        soft: Share of its length from which the limb resists.
-        time_s: (F,) time of each frame [s].
-    """
+    """(F,) how much lower a limb must begin to reach its goal (F, 3) where that is needed (F,) [m]."""
     own = np.minimum(limb.extension_m / limb.length_m, 1.0)
     # A knee that is straight for a moment only is not stretched to the limit for it: it would snap.
     allowed = np.maximum(soft, np.minimum(own, smoothed(own, time_s, MOMENT_S, ends_kept=False)))
@@ -187,12 +164,7 @@ def raised_m(
 ) -> Array:
     """(F,) how much higher the hips go, or lower, for the legs that stand to keep their bend [m].
 
-    Args:
-        legs: The legs by the performer's directions.
-        ankles: (F, 3) where their ankles shall be [m].
-        over_m: (F,) how much higher that is than an ankle on the ground [m].
-        time_s: (F,) time of each frame [s].
-        leg_m: Length of the legs [m].
+    `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
     """
     total, weights = np.zeros(len(time_s)), np.full(len(time_s), LEAST_WEIGHT)
     for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
@@ -227,14 +199,7 @@ def smooth_headings_rad(headings_rad: Array, time_s: Array) -> Array:
 
 
 def root_poses(rest: Array, stand: Array, way: Array, heading_rad: Array) -> Array:
-    """(F, 4, 4) poses of a root bone that goes along a way and turns, canonical [m].
-
-    Args:
-        rest: (4, 4) the bone at rest, canonical [m].
-        stand: (3,) the point that goes along the way, at rest [m].
-        way: (F, 3) [m].
-        heading_rad: (F,).
-    """
+    """(F, 4, 4) poses of a root bone that goes along a way (F, 3) from where it stands, and turns [m]."""
     turn = yaw_rotation(heading_rad)
     poses = np.broadcast_to(np.eye(4), (len(way), 4, 4)).copy()
     poses[:, :3, :3] = turn @ rest[:3, :3]

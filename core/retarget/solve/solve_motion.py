@@ -26,17 +26,7 @@ def solve_motion(
     options: RetargetOptions,
     object_space: Similarity,
 ) -> Job[CharacterMotion]:
-    """Solve a motion for a character.
-
-    Args:
-        character: The character at rest.
-        character_map: Which of its bones play which role.
-        source: The performer's motion, F frames.
-        options: What a person chose.
-        object_space: Where the armature object stands now; it stays there with `Placement.CHARACTER`.
-
-    Returns:
-        The poses of the role bones.
+    """Solve a performer's motion for a character; `object_space` stays with `Placement.CHARACTER`.
 
     Raises:
         InputError: The map does not fit the character.

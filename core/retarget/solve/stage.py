@@ -51,14 +51,9 @@ class Stage:
 
 
 def find_stage(source: SegmentMotion, ground: Ground, stand: Array, leg_m: float, ankle_m: float) -> Stage:
-    """The stage for a character.
+    """The stage for a character whose hips rest over a point (3,) of the floor, canonical [m].
 
-    Args:
-        source: The performer's motion.
-        ground: The ground under the performer.
-        stand: (3,) point of the floor under the resting character's hips, canonical [m].
-        leg_m: Length of the character's legs [m].
-        ankle_m: Height of the character's ankles over its soles [m].
+    `ankle_m` is the height of its ankles over its soles.
     """
     size = leg_m / source_leg_m(source)
     hips = 0.5 * (source.start["thigh.L"][0] + source.start["thigh.R"][0])

@@ -37,13 +37,7 @@ def posing(
     properties: Sequence[Property] = (),
     action: bpy.types.Action | None = None,
 ) -> Iterator[None]:
-    """Let a pose be changed, or an Action be shown; afterwards all is as it was, to the last bit.
-
-    Args:
-        armature_object: The character.
-        properties: Custom properties that may be changed as well.
-        action: The Action to show meanwhile; none by default.
-    """
+    """Let a pose and properties be changed, or an Action be shown; afterwards all is as before."""
     had_data, data = armature_object.animation_data is not None, armature_object.animation_data_create()
     with_strips, bones = data.use_nla, armature_object.pose.bones
     values = {(bone, name): bones[bone][name] for bone, name in properties}

@@ -131,12 +131,8 @@ def character_picture(
 ) -> Image | None:
     """Draw a character that shows its motion in a scene with the footage; None where there is no footage.
 
-    Args:
-        scene: A scene with the footage's clip and camera; its current frame is as before afterwards.
-        armature_object: The character, with the Action.
-        character_map: Its map, for a character without a mesh.
-        frames: (F,) scene frames of the motion, the clip's frames in order.
-        floor_m: Height of the floor under the character in the world [m].
+    `frames` are the scene frames of the motion, the clip's frames in order; `floor_m` is the floor's height
+    under the character in the world. The scene's frame is as before afterwards.
 
     Raises:
         InputError: The clip cannot be read.

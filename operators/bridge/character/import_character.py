@@ -230,19 +230,10 @@ def write_character_files(
     blend: Path,
     exports: Mapping[str, Path],
 ) -> str:
-    """Write a character with its Action.
+    """Write a character with its Action into a .blend, and into files by name of `export_formats.FORMATS`.
 
-    A failure may leave half a file at these paths: the caller passes a staging folder.
-
-    Args:
-        scene: The scene with the character, its camera and range.
-        imported: The character, which the Action animates.
-        action: The motion.
-        blend: Path of the .blend; its folder exists.
-        exports: Paths by name of a format of `export_formats.FORMATS`.
-
-    Returns:
-        SHA-256 of the Action's curves: files of one motion differ, their curves do not.
+    A failure may leave half a file at these paths: the caller passes a staging folder. Returned is the
+    SHA-256 of the Action's curves: files of one motion differ, their curves do not.
 
     Raises:
         ConversionError: Blender could not write a file.

@@ -60,20 +60,9 @@ def measure(
     character_map: CharacterMap,
     in_fk: Mapping[Property, Value],
 ) -> Part[Quality]:
-    """Measure the motion that an Action gives a character.
+    """Measure the motion that an Action, assigned or not, gives a character in scene frames (F,).
 
-    Args:
-        armature_object: The character.
-        action: The Action, assigned or not.
-        frames: (F,) its scene frames.
-        source: The performer's motion.
-        motion: What was solved.
-        character: The character at rest.
-        character_map: Its map.
-        in_fk: The switches' values with which its limbs show FK; none where nothing can be switched.
-
-    Returns:
-        The figures, without those of keys.
+    `in_fk` are the switches' values with which its limbs show FK; none where nothing can be switched.
     """
     bones = {role: str(character_map.bone(role)) for role in character_map.roles}
     settings = [(setting.bone, setting.property) for setting in character_map.settings]

@@ -59,13 +59,7 @@ class ProbedControls:
 def probe_controls(
     armature_object: bpy.types.Object, character_map: CharacterMap, planned: Sequence[PlannedControl]
 ) -> ProbedControls:
-    """How the planned controls act; afterwards everything is as it was.
-
-    Args:
-        armature_object: A character that `require_character` accepts.
-        character_map: Its map; settings and switches are set as the motion will have them.
-        planned: The controls.
-    """
+    """How the planned controls act, settings and switches as the motion has them; nothing stays changed."""
     size = character_size(armature_object, character_map)
     notes: list[str] = []
     in_fk = fk_shown(character_map)

@@ -136,20 +136,13 @@ def retarget(
     character_map: CharacterMap,
     options: RetargetOptions,
 ) -> Job[Retargeted]:
-    """Retarget a motion to a character.
+    """Retarget a motion of F frames to a character, at rising scene frames (F,).
 
-    Args:
-        armature_object: The character's armature.
-        source: The performer's motion, F frames.
-        scene_frames: (F,) the scene frames that show it, rising.
-        character_map: Which bones and controls play which role.
-        options: What a person chose.
-
-    Yields:
-        Progress; nothing in Blender stays changed.
+    Nothing in Blender stays changed.
 
     Raises:
-        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one frame.
+        InputError: The armature cannot be retargeted, the map does not fit it, or the motion has one
+            frame.
     """
     yield Progress("Reading the character", 0.0)
     if len(scene_frames) < FEWEST_FRAMES:

@@ -52,10 +52,8 @@ def enable_rigify() -> None:
 def add_rigify_human(stature_m: float | None = None) -> bpy.types.Object:
     """Add the basic human at the world's origin and generate its rig, which becomes the active object.
 
-    The meta-rig is removed again. Blender must be in Object Mode, with Rigify enabled.
-
-    Args:
-        stature_m: Height from the floor to the top of the head; by default Rigify's own.
+    The meta-rig is removed again. Blender must be in Object Mode, with Rigify enabled; the stature is
+    Rigify's own by default.
 
     Raises:
         RuntimeError: Rigify could not; what it had made is gone again.

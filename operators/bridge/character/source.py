@@ -30,15 +30,9 @@ READ, SEEN = 0.7, 0.8  # shares of the job at which the curves are read, and the
 def read_source(
     armature_object: bpy.types.Object, action: bpy.types.Action
 ) -> Job[tuple[SegmentMotion, Array]]:
-    """The motion that an Action holds for an actor, in the time of the actor's scene.
+    """The motion that an Action holds for an actor, and its scene frames (F,); nothing in Blender is changed.
 
     Hands and feet are as keyed; those without keys as the motion alone would turn them.
-
-    Yields:
-        Progress; nothing in Blender is changed.
-
-    Returns:
-        The motion of F frames, and their scene frames (F,).
 
     Raises:
         InputError: The armature is not an actor's, or the Action holds no motion of it.
@@ -86,15 +80,9 @@ USUAL_SIZE = (1920, 1080)
 
 
 def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> Array:
-    """Show a result's footage behind its camera, with rate, range and look.
+    """Show a result's footage behind its camera, with rate, range and look; returns the scene frames (F,).
 
-    Args:
-        scene: The scene to change.
-        blend: The result's motion.blend; None where there is none, and the scene gets rate and range alone.
-        motion: Its motion, F frames.
-
-    Returns:
-        (F,) scene frames of the motion.
+    Without a .blend the scene gets rate and range alone.
 
     Raises:
         InputError: Blender cannot read the .blend.

@@ -42,12 +42,7 @@ CHANNELS = ("location", "rotation_quaternion", "rotation_axis_angle", "rotation_
 
 
 def placement_keys(armature_object: bpy.types.Object, to_world: Similarity) -> PlacementKeys:
-    """The object's location and rotation, in its own rotation mode, with which it stands somewhere.
-
-    Args:
-        armature_object: The object, with any parent; its scale stays.
-        to_world: From its own space to the world.
-    """
+    """The object's location and rotation, in its rotation mode and under any parent, to stand somewhere."""
     world = np.eye(4)
     world[:3, :3], world[:3, 3] = to_world.rotation, to_world.location
     basis = np.linalg.inv(_around(armature_object)) @ world
