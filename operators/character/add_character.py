@@ -29,7 +29,6 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask which, where there are several and none is selected."""
         found = candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
@@ -48,7 +47,6 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}  # each entry is a step of its own
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add it, and recognize its bones."""
         chosen = self._chosen(context)
         character = add_character(active_take(context.scene), chosen)
         if character.problem:
@@ -95,7 +93,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     requirements = (take, rigify, bones_editable, idle)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Ask before an add-on is enabled, which stays in the preferences."""
         if is_rigify_enabled():
             return self.execute(context)
         return context.window_manager.invoke_confirm(
@@ -107,7 +104,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         )
 
     def run(self, context: bpy.types.Context) -> None:
-        """Generate the rig, and make it the chosen character where that has no armature yet."""
         active = context.view_layer.objects.active
         if active is not None and active.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
@@ -143,7 +139,6 @@ class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     requirements = (character, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; the one before it is chosen."""
         take = active_take(context.scene)
         index = min(take.active_character, len(take.characters) - 1)
         take.characters.remove(index)
@@ -170,7 +165,6 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     requirements = (linked, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Override the character and all that belongs to it, and choose the override."""
         character = active_character(context.scene)
         original = character.armature
         instance = _instance_of(context.scene, original)

@@ -173,7 +173,6 @@ class KEYMARK_UL_characters(RowList, bpy.types.UIList):
     def draw_row(
         self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
     ) -> None:
-        """Draw one character."""
         row = layout.row(align=True)
         done = any(result.action is not None for result in item.results)
         name = item.armature.name if item.armature is not None else "No Armature"
@@ -189,7 +188,6 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     step = "character"
 
     def draw_step(self, context: bpy.types.Context) -> None:
-        """Draw the list, the chosen character, and its result."""
         take, character = active_take(context.scene), find_character(context.scene)
         if character is None:
             buttons = self.body.column()
@@ -288,7 +286,6 @@ class CharacterPart(TakePanel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Whether the chosen character has an armature."""
         character = find_character(context.scene)
         return super().poll(context) and character is not None and character.armature is not None
 
@@ -299,7 +296,6 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
     bl_label = "Options"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw them."""
         column, options = self.column(), active_character(context.scene).options
         column.prop(options, "arms")
         column.prop(options, "legs")
@@ -319,14 +315,12 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
     bl_label = "Bones"
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        """Draw a mark, so that doubts are noticed while the panel is closed."""
         character = active_character(context.scene)
         doubtful = any(role.doubt for role in character.character_map.roles)
         if doubtful or len(character.doubts) or missing_roles(character):
             self.layout.label(text="", icon="ERROR")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw recognition, the map's file, and the roles by limb."""
         draw_map(self.layout, context, active_character(context.scene))
 
 

@@ -103,13 +103,11 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
-        """Return the tooltip, which says where the role's bone comes from."""
         known = told(context, properties.role)
         asked = "Click on the bone in the viewport to choose it"
         return f"{known}. {asked}" if known else asked
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Wait for a click on a bone."""
         if self.bone or bpy.app.background:
             return self.execute(context)
         self._ask(context, "")
@@ -119,7 +117,6 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Name the bone under the mouse, and take the one that is clicked on."""
         if cancel_click(self, context, event):
             return {"CANCELLED"}
         with reported(self):
@@ -164,13 +161,11 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         context.workspace.status_text_set(words)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Restore cursor and status bar; Blender calls this as well."""
         if context.window is not None:
             context.window.cursor_modal_restore()
             context.workspace.status_text_set(None)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Give the bone to the role."""
         if not self.bone:
             raise InputError("no bone is chosen; click on one in Pose Mode, or give its name")
         give_bone(active_character(context.scene), self.role, self.index, self.bone)
@@ -188,7 +183,6 @@ class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operat
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Add the bone that continues the last one; an empty field where none does."""
         character = active_character(context.scene)
         shown = role_named(character.character_map, chain_role(self.role))
         taken = {entry.bone for role in character.character_map.roles for entry in role.bones}
@@ -205,7 +199,6 @@ class KEYMARK_OT_remove_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Ope
     requirements = (armature,)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it; a chain without bones keeps an empty field."""
         shown = role_named(active_character(context.scene).character_map, chain_role(self.role))
         if self.index >= len(shown.bones):
             raise InputError(
@@ -246,7 +239,6 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
     side: bpy.props.EnumProperty(name="Direction", description="Which side is copied", items=SIDES)
 
     def run(self, context: bpy.types.Context) -> set[str] | None:
-        """Find the partner of every bone of the side."""
         from ...core.retarget.maps.mirroring import mirrored_map
         from ..bridge.character.read_character import read_character
 

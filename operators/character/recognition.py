@@ -192,7 +192,6 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     requirements = (armature, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Recognize the bones, and show them."""
         character = active_character(context.scene)
         recognize_bones(character)
         doubts = all_doubts(character)

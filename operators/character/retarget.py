@@ -54,7 +54,6 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     requirements = (source, editable, recognized, idle)
 
     def start(self, scene: bpy.types.Scene) -> "Job[RetargetedCharacter]":
-        """Read the motion and solve it on the character, with the options at the start of the job."""
         from ..bridge.character.retarget import retarget
         from ..bridge.character.source import read_source
 
@@ -71,7 +70,6 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
         return RetargetedCharacter(identifier, uids, motion.kind, motion.title, retargeted)
 
     def finish(self, scene: bpy.types.Scene, result: RetargetedCharacter) -> None:
-        """Write the Action, and list it with what was measured of it."""
         take = take_by_identifier(scene, result.take)
         character = next((each for each in take.characters if _uid(each.armature) == result.uids[0]), None)
         source_action = next((each for each in bpy.data.actions if _uid(each) == result.uids[1]), None)
@@ -111,7 +109,6 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
     index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Assign the Action, and choose the result."""
         character = active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
             raise InputError(f"there is no result number {self.index}; retarget the motion again")
@@ -133,7 +130,6 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
     index: bpy.props.IntProperty(name="Index", description="Number of the result in the list, from 0", min=0)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Remove it."""
         chosen = active_character(context.scene)
         if self.index >= len(chosen.results):
             raise InputError(
@@ -155,7 +151,6 @@ class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
     requirements = (result, idle)
 
     def run(self, context: bpy.types.Context) -> None:
-        """Mark the Action; its picture is the performer's, who moves alike."""
         take, made = active_take(context.scene), shown_result(active_character(context.scene))
         if made is None or made.action is None:
             raise InputError("the result's Action has been deleted; retarget the motion again")

@@ -29,7 +29,6 @@ def height_m(rig: bpy.types.Object) -> float:
 
 
 def test_the_rigs_are_the_performers_size_and_recognized(file: Path) -> None:
-    """The first fills the entry that waited for an armature, the second is added and chosen."""
     bpy.ops.wm.open_mainfile(filepath=str(file), use_scripts=False)
     take = active_take(bpy.context.scene)
     assert [each.armature.name for each in take.characters] == ["Human", "Human.001"]
@@ -47,7 +46,6 @@ def test_the_rigs_are_the_performers_size_and_recognized(file: Path) -> None:
 
 
 def test_each_rig_has_its_own_body_and_no_metarig_is_left(file: Path) -> None:
-    """A mesh that follows the rig's bones, as wide and as tall as the rig is."""
     bpy.ops.wm.open_mainfile(filepath=str(file), use_scripts=False)
     take = active_take(bpy.context.scene)
     rigs = [each.armature for each in take.characters]
@@ -60,7 +58,6 @@ def test_each_rig_has_its_own_body_and_no_metarig_is_left(file: Path) -> None:
 
 
 def test_without_a_take_there_is_nothing_to_add_it_to() -> None:
-    """The tooltip says what comes first."""
     with pytest.raises(RuntimeError, match="Load the footage or open a take first"):
         bpy.ops.keymark.add_rigify_human()
 
@@ -68,7 +65,6 @@ def test_without_a_take_there_is_nothing_to_add_it_to() -> None:
 def test_a_blender_without_rigify_says_so(
     take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Some systems' own Blender lacks it."""
     monkeypatch.setattr(add_rigify_human, "has_rigify", lambda: False)
     with pytest.raises(RuntimeError, match="comes without the add-on Rigify"):
         bpy.ops.keymark.add_rigify_human()
@@ -77,7 +73,6 @@ def test_a_blender_without_rigify_says_so(
 def test_where_rigify_fails_nothing_is_left(
     take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Its own sentence is passed on, with what to do instead, and what it had made is removed."""
 
     def fail() -> None:
         bpy.ops.object.armature_add()

@@ -30,7 +30,6 @@ def named(name: str) -> Character:
 def test_the_selected_armature_is_added_and_recognized(
     take: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """Of two, the selected one; nothing was asked."""
     other = build_character(named("Other"))
     for each, selected in ((rig, True), (other, False)):
         each.select_set(selected)
@@ -47,7 +46,6 @@ def test_the_selected_armature_is_added_and_recognized(
 def test_the_only_armature_is_added_without_being_selected(
     take: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """The actor, which is selected, is none."""
     rig.select_set(False)
     bpy.context.view_layer.objects.active = take.armature
     take.armature.select_set(True)
@@ -56,7 +54,6 @@ def test_the_only_armature_is_added_without_being_selected(
 
 
 def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.PropertyGroup) -> None:
-    """Two armatures, none selected: an entry without one, and Retarget says what is missing."""
     for name in ("One", "Two"):
         build_character(named(name)).select_set(False)
     bpy.context.view_layer.objects.active = None
@@ -69,7 +66,6 @@ def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.Proper
 def test_an_actor_is_no_character_and_a_character_no_actor(
     take: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """Neither field lists what belongs into the other, a mesh, or an actor that has lost a hand."""
     bpy.ops.keymark.add_character(armature=rig.name)
     character, mesh = take.characters[0], bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
     other = build_armature(bpy.context.scene, Body(Actor.from_stature(1.5)))
@@ -87,7 +83,6 @@ def test_an_actor_is_no_character_and_a_character_no_actor(
 def test_a_script_that_gives_a_take_another_armature_is_told(
     take: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """One sentence from every step that needs the actor, with what to do."""
     take.armature = rig
     for operator in (bpy.ops.keymark.bake_motion, bpy.ops.keymark.show_action):
         with pytest.raises(
@@ -97,7 +92,6 @@ def test_a_script_that_gives_a_take_another_armature_is_told(
 
 
 def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyGroup) -> None:
-    """A field has no report: the sentence is drawn beside it, and Recognize gives it again."""
     bones = plain_character().bones[:2]
     post = build_character(Character("Post", bones))
     character = take.characters.add()
@@ -112,7 +106,6 @@ def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyG
 def test_several_characters_are_added_and_removed(
     take: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """Each with a map of its own; the armatures stay when entries go."""
     second = build_character(named("Second"))
     for each in (rig, second):
         bpy.ops.keymark.add_character(armature=each.name)
@@ -130,7 +123,6 @@ def test_several_characters_are_added_and_removed(
 def test_another_take_knows_what_was_corrected(
     character: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """The same armature in a second take begins with the map of the first."""
     character.character_map.roles["hand.L"].bones[0].bone = "finger.L"
     other = add_take(bpy.context.scene, "Jump")
     other.characters.add().armature = rig
@@ -139,13 +131,11 @@ def test_another_take_knows_what_was_corrected(
 
 
 def test_a_character_without_a_take_asks_for_one() -> None:
-    """The step belongs to a take."""
     with pytest.raises(RuntimeError, match="Load the footage or open a take first"):
         bpy.ops.keymark.add_character()
 
 
 def test_removed_and_renamed_things_are_said(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
-    """A bone that got another name, a required role without a bone, an armature that was deleted."""
     armature = character.armature
     armature.data.bones["shin.L"].name = "Unterschenkel"
     with pytest.raises(RuntimeError, match=r"has no bone 'shin\.L' any more"):

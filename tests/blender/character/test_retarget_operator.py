@@ -30,7 +30,6 @@ def shown(character: bpy.types.PropertyGroup) -> bpy.types.Action:
 def test_the_motion_becomes_an_action_of_the_character(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """New, with its slot, named after motion and character; the motion and the frame stay."""
     bpy.context.scene.frame_set(7)
     before = curve_digest(take.armature)
     assert bpy.ops.keymark.retarget() == {"FINISHED"}
@@ -49,7 +48,6 @@ def test_the_motion_becomes_an_action_of_the_character(
 def test_again_replaces_only_what_it_made(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """The same Action, the same number of Actions; with Keep Earlier another, and both can be shown."""
     bpy.ops.keymark.retarget()
     first, count = shown(character), len(bpy.data.actions)
     bpy.ops.keymark.retarget()
@@ -70,7 +68,6 @@ def test_again_replaces_only_what_it_made(
 
 
 def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGroup) -> None:
-    """The entry without an Action goes."""
     bpy.ops.keymark.retarget()
     bpy.data.actions.remove(shown(character))
     assert character.results[0].action is None
@@ -81,7 +78,6 @@ def test_a_result_that_was_deleted_is_made_anew(character: bpy.types.PropertyGro
 
 
 def test_another_armature_begins_without_results(character: bpy.types.PropertyGroup) -> None:
-    """The first one's Action is not written over, and is listed still where the same one is chosen again."""
     bpy.ops.keymark.retarget()
     first, before = character.armature, shown(character)
     digest = curve_digest(first)
@@ -96,7 +92,6 @@ def test_another_armature_begins_without_results(character: bpy.types.PropertyGr
 def test_the_newest_motion_is_performed(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """The final Action, unless the reconstructed one is newer; or the one that is asked for."""
     assert source_of(take, character).kind == "MOTION"
     bpy.ops.keymark.bake_motion()
     assert source_of(take, character).action == take.finish.action
@@ -110,7 +105,6 @@ def test_the_newest_motion_is_performed(
 
 
 def test_a_newer_motion_marks_the_result(opened: bpy.types.Scene) -> None:
-    """Reconstructing and baking do; retargeting again takes the mark away."""
     take = active_take(opened)
     take.method = "interpolation"
     bpy.ops.keymark.reconstruct()
@@ -128,7 +122,6 @@ def test_a_newer_motion_marks_the_result(opened: bpy.types.Scene) -> None:
 def test_any_action_of_an_actor_is_performed(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """With a result of its own, which a newer motion of the take does not make outdated."""
     bpy.ops.keymark.retarget()
     other = take.motion_action.copy()
     other.name = "Jump"
@@ -150,7 +143,6 @@ def test_any_action_of_an_actor_is_performed(
 
 
 def test_an_action_that_is_not_the_actors_changes_nothing(character: bpy.types.PropertyGroup) -> None:
-    """A script may choose what the field does not list."""
     before = scene_state()
     foreign = bpy.data.actions.new("Foreign")
     character.source, character.source_action = "ACTION", foreign
@@ -165,7 +157,6 @@ def test_an_action_that_is_not_the_actors_changes_nothing(character: bpy.types.P
 def test_each_of_several_characters_has_results_of_its_own(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """The chosen one is retargeted, the other's Action stays."""
     second = build_character(Character("Second", plain_character().bones))
     bpy.ops.keymark.add_character(armature=second.name)
     for number in (1, 0):
@@ -180,7 +171,6 @@ def test_each_of_several_characters_has_results_of_its_own(
 
 
 def test_what_was_measured_is_said_in_few_lines(character: bpy.types.PropertyGroup) -> None:
-    """Feet, floor, hands, keys."""
     bpy.ops.keymark.retarget()
     said = [line.text for line in character.results[0].lines if line.level == "INFO"]
     assert 3 <= len(said) <= 4
@@ -188,7 +178,6 @@ def test_what_was_measured_is_said_in_few_lines(character: bpy.types.PropertyGro
 
 
 def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> None:
-    """Closed in the middle as Esc does it, wherever that is."""
     from keymark.operators.character.retarget import KEYMARK_OT_retarget
 
     before = scene_state()
@@ -204,7 +193,6 @@ def test_a_cancelled_job_leaves_no_trace(character: bpy.types.PropertyGroup) -> 
 def test_what_is_removed_while_the_job_runs_is_said(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """The character, its armature, or the motion: one sentence, and no Action."""
     from keymark.operators.character.retarget import KEYMARK_OT_retarget
 
     scene = bpy.context.scene
@@ -219,7 +207,6 @@ def test_what_is_removed_while_the_job_runs_is_said(
 
 
 def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy.types.Object) -> None:
-    """Adding, correcting, mirroring, retargeting, showing, removing: one undo each."""
     ops = bpy.ops.keymark
     steps: list[tuple[str, Callable[[], object]]] = [
         ("add", lambda: ops.add_character(armature="Character")),
@@ -250,7 +237,6 @@ def test_every_step_is_undone_and_redone(take: bpy.types.PropertyGroup, rig: bpy
 def test_the_result_is_an_asset_like_the_actors(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """The same details and a picture; the actor's own Action is not marked by it."""
     bpy.ops.keymark.retarget()
     take.finish.catalog, take.finish.tags, take.finish.author = "", "walk, calm", "Ann"
     assert bpy.ops.keymark.mark_result_asset() == {"FINISHED"}
@@ -263,7 +249,6 @@ def test_the_result_is_an_asset_like_the_actors(
 def test_the_actor_is_still_animated_by_its_own(
     character: bpy.types.PropertyGroup, take: bpy.types.PropertyGroup
 ) -> None:
-    """Retargeting while the actor shows its keyframes reads the motion all the same."""
     keyframes = bpy.data.actions.new("Keyframes")
     assign_action(take.armature, keyframes)
     bpy.ops.keymark.retarget()
@@ -274,14 +259,12 @@ def test_the_actor_is_still_animated_by_its_own(
 def test_removing_a_take_with_its_data_keeps_the_character(
     character: bpy.types.PropertyGroup, rig: bpy.types.Object
 ) -> None:
-    """The Actions that Keymark made go, the armature is the animator's."""
     bpy.ops.keymark.retarget()
     bpy.ops.keymark.remove_take(delete_data=True)
     assert list(bpy.data.actions) == [] and rig in list(bpy.data.objects)
 
 
 def test_the_figures_of_a_motion_in_words() -> None:
-    """Of feet, floor, hands and keys, or of limbs where hands reach nothing; what is unknown is left out."""
     quality = Quality(
         arms_deg=0.04, legs_deg=2.26, skate_mm=0.021, penetration_mm=1.06, keys=12, dense_keys=90
     )

@@ -40,7 +40,6 @@ def add_box(armature: bpy.types.Object, color: tuple[float, float, float, float]
 
 
 def test_bones_are_drawn_from_joint_to_joint_in_the_world(armature: bpy.types.Object) -> None:
-    """Without a mesh the figure is as tall as the character, left and right in their colors."""
     figure = character_figure(armature, figure_lines(plain_map(plain_character())))
     low, high = figure.points.min(axis=0), figure.points.max(axis=0)
     assert high[2] == pytest.approx(1.72, abs=0.02) and low[2] == pytest.approx(0.0, abs=0.03)
@@ -53,7 +52,6 @@ def test_bones_are_drawn_from_joint_to_joint_in_the_world(armature: bpy.types.Ob
 
 
 def test_triangles_face_outwards(armature: bpy.types.Object) -> None:
-    """Every triangle of an octahedron looks away from its middle."""
     figure = character_figure(armature, figure_lines(plain_map(plain_character())))
     for first in range(0, len(figure.triangles), 8):
         corners = figure.points[figure.triangles[first : first + 8]]
@@ -66,7 +64,6 @@ def test_triangles_face_outwards(armature: bpy.types.Object) -> None:
 def test_a_mesh_is_drawn_instead_in_the_color_it_has(
     armature: bpy.types.Object, color: tuple[float, float, float, float] | None, redder: bool
 ) -> None:
-    """The box's twelve triangles, in meters; a mesh without materials has the color of skin."""
     add_box(armature, color)
     figure = character_figure(armature, figure_lines(plain_map(plain_character())))
     assert len(figure.triangles) == 12
@@ -76,7 +73,6 @@ def test_a_mesh_is_drawn_instead_in_the_color_it_has(
 
 
 def test_without_footage_there_is_no_picture(armature: bpy.types.Object) -> None:
-    """A scene without a clip has nothing to be beside."""
     shown = character_picture(
         bpy.context.scene, armature, plain_map(plain_character()), np.arange(1.0, 5.0), 0.0
     )

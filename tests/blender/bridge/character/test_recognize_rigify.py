@@ -49,7 +49,6 @@ def played(found: Recognition, character: Character, original: Character) -> dic
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*PEOPLE, "generated"])
 def test_people_are_recognized_with_names_and_without(rigs: dict[str, Character], name: str) -> None:
-    """All roles; without names on the bones that deform, which begin at the same joints."""
     character = rigs[name]
     found = recognize(character)
     assert found.preset == ("rigify" if name == "generated" else "rigify_metarig")
@@ -62,14 +61,12 @@ def test_people_are_recognized_with_names_and_without(rigs: dict[str, Character]
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ANIMALS)
 def test_animals_are_refused_with_names_and_without(rigs: dict[str, Character], name: str) -> None:
-    """The wolf too."""
     for character in (rigs[name], renamed(rigs[name])):
         with pytest.raises(InputError):
             recognize(character)
 
 
 def test_controls_of_a_generated_rig_are_those_it_has(rigify: bpy.types.Object) -> None:
-    """Every control and property that the preset names; and each control begins where its bone does."""
     found = recognize(read_character(rigify))
     character_map, bones = found.character_map, rigify.pose.bones
     assert found.preset == "rigify" and found.doubts == ()

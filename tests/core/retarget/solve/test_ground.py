@@ -18,7 +18,6 @@ def raised(*heights_m: float) -> SegmentMotion:
 
 
 def test_rests_on_the_scenes_ground_are_on_it() -> None:
-    """An ankle's height over its sole is not known to the millimeter: near 0, it is 0."""
     ground = find_ground(steps())
     assert set(ground.levels_m) == {0.0}
     assert not ground.height_m.any()
@@ -26,7 +25,6 @@ def test_rests_on_the_scenes_ground_are_on_it() -> None:
 
 
 def test_steps_keep_their_heights() -> None:
-    """Two levels a stair apart are two, each of them level; under moving feet the ground is the lower one."""
     ground = find_ground(raised(0.0, 0.2))
     levels = np.unique(np.round(ground.levels_m, 6))
     assert len(levels) == 2 and levels[0] == 0.0
@@ -35,19 +33,16 @@ def test_steps_keep_their_heights() -> None:
 
 
 def test_noise_is_leveled() -> None:
-    """Rests a centimeter apart are on one level, though not the scene's."""
     ground = find_ground(raised(0.5, 0.51))
     assert len(set(ground.levels_m)) == 1
 
 
 def test_a_slope_is_not_leveled() -> None:
-    """Rests ever two centimeters higher keep their heights."""
     ground = find_ground(raised(*np.arange(1.0, 1.12, 0.02)))
     assert np.ptp(ground.levels_m) > 0.08
 
 
 def test_without_rests_the_lowest_feet_tell() -> None:
-    """A sliding performer still stands on the floor."""
     body, posture = stepping()
     sliding = posture.translation + np.linspace([0.0, 0.0, 0.3], [9.0, 0.0, 0.3], posture.batch[0])
     source = performance(body, Posture(posture.skeleton, sliding, posture.rotations, posture.angles))
