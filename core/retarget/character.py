@@ -32,6 +32,11 @@ SOURCES = ("preset", "names", "shape", "you")
 """Where a role may come from: a convention's preset, the bones' names, their places, or the person."""
 
 
+def joint_roles(limb: str) -> tuple[str, ...]:
+    """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
+    return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+
+
 # --- A character's bones at rest, as arrays
 
 

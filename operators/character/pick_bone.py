@@ -23,7 +23,7 @@ SAME_PX = 3.0
 def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
-    """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is near."""
+    """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
     for area in context.screen.areas:
         if area.type != "VIEW_3D":
             continue

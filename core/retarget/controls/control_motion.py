@@ -6,14 +6,11 @@ from dataclasses import dataclass
 from ...arrays import Array
 from ...finish.hermite import Spline
 from .control_channels import Control, ControlChannels
-from .control_plan import ControlKind
+from .control_plan import IN_FK, ControlKind
 from .point_tolerances import HeldPoint
 
 ChannelValues = Callable[[Array, str], Array]
 """From turns (F, 3, 3) and a rotation mode to the values (F, C) of its channels, without jumps."""
-
-FOLLOWED = (ControlKind.FK, ControlKind.HIPS, ControlKind.GOAL, ControlKind.TOE)
-"""Kinds of controls that a bone follows rigidly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +65,7 @@ class ControlMotion:
     def points_of(self, index: int) -> list[tuple[HeldPoint, Array]]:
         """The points that a control moves rigidly, with their places (3,) in its axes [m]."""
         control = self.controls[index]
-        if control.plan.kind not in FOLLOWED:
+        if control.plan.kind not in (*IN_FK, ControlKind.GOAL, ControlKind.TOE):
             return []
         offset = self.offsets[control.name]
         return [
@@ -88,13 +85,8 @@ class ControlMotion:
 
     def fk_control(self, bone: str) -> int | None:
         """Index of the control that moves a bone in FK."""
-        kinds = (ControlKind.FK, ControlKind.HIPS)
-        found = (
-            index
-            for index, control in enumerate(self.controls)
-            if control.plan.bone == bone and control.plan.kind in kinds
-        )
-        return next(found, None)
+        plans = enumerate(control.plan for control in self.controls)
+        return next((index for index, plan in plans if plan.bone == bone and plan.kind in IN_FK), None)
 
 
 def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedControl, ...]:

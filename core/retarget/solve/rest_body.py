@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import LIMBS, MIDDLE, Character
+from ..character import LIMBS, MIDDLE, Character, joint_roles
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
@@ -143,9 +143,8 @@ class RestBody:
             InputError: Two joints of a limb lie in one place.
         """
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
-        for limb, roles in LIMBS.items():
-            long_bones = roles[1:] if limb.startswith("arm") else roles[:3]
-            there = [role for role in long_bones if role in self.first]
+        for limb in LIMBS:
+            there = [role for role in joint_roles(limb) if role in self.first]
             for role, below in zip(there, there[1:], strict=False):
                 if not self.length_m(role, below) > SHORTEST_SHARE * extent:
                     raise InputError(

@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
-from ..character import LIMBS
+from ..character import LIMBS, joint_roles
 from ..character_motion import FootRest, HandGoal
 from .body_frames import bone_turns, joint_places
 from .feet import FootPath, foot_turns, plan_foot, toe_bends
@@ -65,7 +65,7 @@ class Solution:
 
     def limb(self, limb: str) -> LimbPose | None:
         """A limb as it is; None where its end is not there or one of its bones is left alone."""
-        roles = LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+        roles = joint_roles(limb)
         if not all(self.body.is_moved(role) for role in roles):
             return None
         places = self.places()

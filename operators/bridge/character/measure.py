@@ -10,9 +10,8 @@ import numpy as np
 from ....core.arrays import Array
 from ....core.body.kinematics import SegmentMotion
 from ....core.progress import Part, scaled
-from ....core.retarget.character import LIMBS, Character
+from ....core.retarget.character import LIMBS, Character, joint_roles
 from ....core.retarget.character_motion import CharacterMotion
-from ....core.retarget.controls.control_plan import joint_roles
 from ....core.retarget.controls.control_spaces import unscaled
 from ....core.retarget.maps.character_map import CharacterMap
 from ....core.retarget.quality import Quality, farthest_mm, measured

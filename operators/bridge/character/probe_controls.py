@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from ....core.arrays import Array
 from ....core.retarget.controls.control_channels import ALWAYS_MOVED, Control, ordered_controls
-from ....core.retarget.controls.control_plan import ControlKind, PlannedControl, limb_bones
+from ....core.retarget.controls.control_plan import IN_FK, ControlKind, PlannedControl, limb_bones
 from ....core.retarget.controls.control_spaces import (
     NOTHING,
     ControlSpace,
@@ -144,7 +144,7 @@ def _offsets(
     for index, plan in enumerate(planned):
         control, bone = _rests(armature_object, [plan.name, plan.bone])
         offsets[plan.name] = np.linalg.inv(control) @ bone
-        if plan.kind not in (ControlKind.FK, ControlKind.HIPS):
+        if plan.kind not in IN_FK:
             continue
         # Locations of other controls may stretch what lies between: only the first poses count.
         offset, turn_rad, distance = rigid_offset(

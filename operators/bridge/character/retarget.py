@@ -11,12 +11,11 @@ from ....core.errors import InputError
 from ....core.progress import Job, Progress, stretch, within
 from ....core.retarget.character import Character
 from ....core.retarget.character_motion import CharacterMotion, Similarity, find_stance
-from ....core.retarget.controls.control_channels import control_channels
 from ....core.retarget.controls.control_motion import ControlMotion, KeyedControl, dense_controls
-from ....core.retarget.controls.control_plan import ControlKind, limb_bones, planned_controls
-from ....core.retarget.controls.control_targets import control_targets, limb_paths
-from ....core.retarget.controls.point_tolerances import ToleranceRules, held_points
-from ....core.retarget.controls.stages import reduce_controls
+from ....core.retarget.controls.control_plan import ControlKind, planned_controls
+from ....core.retarget.controls.control_targets import on_controls
+from ....core.retarget.controls.point_tolerances import ToleranceRules
+from ....core.retarget.controls.reduction import reduce_controls
 from ....core.retarget.maps.character_map import CharacterMap, IkControls, Switch
 from ....core.retarget.maps.map_registry import check_map
 from ....core.retarget.options import Placement, RetargetOptions
@@ -30,7 +29,7 @@ from .channel_notes import channel_notes
 from .controls import fk_properties, shown_properties
 from .measure import measure_keys
 from .mesh_soles import mesh_soles
-from .probe_controls import ProbedControls, probe_controls
+from .probe_controls import probe_controls
 from .read_character import read_character
 from .write_retargeted import RetargetedKeys, placement_keys, require_placeable, scaled_bones, write_keys
 
@@ -169,7 +168,9 @@ def retarget(
         ),
     )
     yield Progress("Bringing the motion onto the controls", PROBED)
-    controls = _on_controls(character, character_map, motion, probed)
+    controls = on_controls(
+        character, character_map, motion, probed.controls, probed.offsets, probed.poles, probed.size
+    )
     yield Progress("Finding the keys", PROBED)
     keyed = yield from _keyed(controls, motion, source, scene_frames, options)
     keys = RetargetedKeys(
@@ -213,23 +214,3 @@ def _keyed(
     rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)
     reducing = reduce_controls(controls, scene_frames, rules, rotation_values)
     return (yield from within("Finding the keys", reducing, PROBED, REDUCED))
-
-
-def _on_controls(
-    character: Character, character_map: CharacterMap, motion: CharacterMotion, probed: ProbedControls
-) -> ControlMotion:
-    """The motion on the controls, by channels for every frame."""
-    planned = [control.plan for control in probed.controls]
-    limbs = {limb: limb_bones(character_map, limb) for limb in {plan.limb for plan in planned} if limb}
-    wanted = control_targets(planned, motion, probed.offsets, probed.poles, limbs)
-    return ControlMotion(
-        controls=probed.controls,
-        channels=control_channels(probed.controls, wanted, probed.size),
-        wanted=wanted,
-        offsets=probed.offsets,
-        points=held_points(character, character_map, motion.soles),
-        bones=motion.poses,
-        limbs=limb_paths(character, character_map, motion, probed.controls, probed.offsets, probed.poles),
-        size=probed.size,
-        scale=character.scale,
-    )

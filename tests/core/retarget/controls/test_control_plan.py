@@ -26,7 +26,7 @@ from keymark.core.retarget.controls.point_tolerances import (
     pole_tolerance_m,
     reach_tolerance_m,
 )
-from keymark.core.retarget.controls.stages import FollowingControls, control_stages
+from keymark.core.retarget.controls.reduction import FollowingControls, control_stages
 from keymark.core.retarget.maps.character_map import CharacterMap
 from keymark.core.retarget.options import LimbKeys, RetargetOptions, RootMotion
 
@@ -88,15 +88,15 @@ def test_legs_follow_the_body_and_goals_follow_the_legs() -> None:
         control("odd", goal, NOTHING, 0),
         control("chest", fk, 0, 0),
     ]
-    stages = control_stages(controls, {"leg.L": (0, [1, 2])})
-    assert stages.body == (0, 6, 7)
-    assert stages.following == (
+    body, following = control_stages(controls, {"leg.L": (0, [1, 2])})
+    assert body == (0, 6, 7)
+    assert following == (
         FollowingControls((1, 2), 0, "leg.L"),
         FollowingControls((3, 4), NOTHING),
         FollowingControls((5,), 0),
     )
     on_leg = [*controls[:3], control("knife", fk, 2, 2)]
-    assert control_stages(on_leg, {"leg.L": (0, [1, 2])}).body == (0, 1, 2, 3)
+    assert control_stages(on_leg, {"leg.L": (0, [1, 2])})[0] == (0, 1, 2, 3)
 
 
 def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:

@@ -23,7 +23,7 @@ from keymark.core.retarget.controls.control_motion import ControlMotion, KeyedCo
 from keymark.core.retarget.controls.control_plan import ControlKind, PlannedControl
 from keymark.core.retarget.controls.control_spaces import NOTHING, ControlSpace
 from keymark.core.retarget.controls.point_tolerances import ToleranceRules
-from keymark.core.retarget.controls.stages import reduce_controls
+from keymark.core.retarget.controls.reduction import reduce_controls
 from keymark.core.retarget.options import LimbKeys, RetargetOptions
 from keymark.core.retarget.solve.solve_motion import solve_motion
 
