@@ -37,6 +37,12 @@ def joint_roles(limb: str) -> tuple[str, ...]:
     return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
 
 
+def other_side(role: str) -> str:
+    """The same role or limb of the other side; the role itself in the middle."""
+    part, dot, side = role.partition(".")
+    return part + dot + {"L": "R", "R": "L"}.get(side, "")
+
+
 # --- A character's bones at rest, as arrays
 
 

@@ -42,7 +42,6 @@ def candidates(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> list[
 
 
 def _instanced(shown: bpy.types.Object) -> list[bpy.types.Object]:
-    """The objects of a collection that an empty shows, as a linked character often stands in a scene."""
     collection = shown.instance_collection if shown.instance_type == "COLLECTION" else None
     return [] if collection is None else list(collection.all_objects)
 
@@ -179,7 +178,6 @@ def missing_source(take: bpy.types.PropertyGroup, character: bpy.types.PropertyG
 
 
 def _kind(take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup) -> str:
-    """The kind of motion, where the newest is asked for the newest."""
     if character.source != "NEWEST":
         return str(character.source)
     final = take.finish

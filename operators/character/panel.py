@@ -42,7 +42,6 @@ def draw_map(
 def _draw_parts(
     layout: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
 ) -> None:
-    """Draw the roles of each part of the body in a panel of its own, which opens where there is a doubt."""
     for part, roles in PARTS.items():
         shown = [
             character.character_map.roles[role] for role in roles if role in character.character_map.roles
@@ -60,7 +59,6 @@ def _draw_parts(
 
 
 def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyGroup]) -> None:
-    """Draw where the bones of a part come from, and how sure the least certain is."""
     found = [role for role in shown if any(entry.bone for entry in role.bones)]
     if not found:
         return
@@ -86,7 +84,6 @@ def _draw_role(
     character: bpy.types.PropertyGroup,
     role: bpy.types.PropertyGroup,
 ) -> None:
-    """Draw a role: a row for each of its bones, and why it is doubtful."""
     bones = character.armature.data.bones
     for index, entry in enumerate(role.bones):
         split = column.split(factor=LABEL_SHARE, align=True)
@@ -107,7 +104,6 @@ def _draw_role(
 
 
 def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:
-    """Draw the eyedropper, and what takes an empty field out of a chain."""
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
     if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
@@ -121,7 +117,6 @@ def _draw_controls(
     part: str,
     shown: list[bpy.types.PropertyGroup],
 ) -> None:
-    """Draw the controls that are keyed for a part, where the map has any."""
     keyed = [(role, entry) for role in shown for entry in role.bones if entry.control]
     limb = character.character_map.limbs.get(part)
     controls = [name for name in ("goal", "pole", "toe") if limb is not None and getattr(limb, name)]
@@ -220,7 +215,6 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
 def _draw_choice(
     panel: KEYMARK_PT_character, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
 ) -> bpy.types.UILayout:
-    """Draw the list of characters and the chosen one's armature; a single character is one row."""
     row = panel.body.row()
     single = len(take.characters) == 1
     if single:
@@ -242,7 +236,6 @@ def _draw_choice(
 def _draw_source(
     column: bpy.types.UILayout, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
 ) -> None:
-    """Draw which motion is performed."""
     column.prop(character, "source")
     if character.source == "ACTION":
         column.prop(character, "source_action")
@@ -252,7 +245,6 @@ def _draw_source(
 def _draw_results(
     column: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
 ) -> None:
-    """Draw the switch between the results, and what is known of the chosen one."""
     column.separator()
     rows = column.column(align=True)
     for index, result in enumerate(character.results):

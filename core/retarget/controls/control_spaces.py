@@ -31,10 +31,6 @@ class ControlSpace:
     residual_rad: float  # largest turn that the space does not explain
     residual: float  # largest distance that it does not explain, in the armature's units
 
-    def is_rigid(self, size: float) -> bool:
-        """Whether the channels act as said; `size` is the character's, in the armature's units."""
-        return self.residual_rad < RIGID and self.is_placed(size)
-
     def is_placed(self, size: float) -> bool:
         """Whether its carrier places it as said."""
         return self.residual < RIGID * size

@@ -97,7 +97,6 @@ def _limb_paths(
     offsets: Mapping[str, Array],
     poles: Mapping[str, PoleSetting],
 ) -> dict[str, LimbPaths]:
-    """The limbs whose three joints are moved, by name."""
     found = {}
     in_ik = {control.plan.limb for control in controls if control.plan.kind is ControlKind.GOAL}
     in_fk = {control.plan.bone for control in controls if control.plan.kind in IN_FK}

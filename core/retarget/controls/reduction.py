@@ -312,7 +312,6 @@ def _followed(
 def _tolerance(
     motion: ControlMotion, rules: ToleranceRules, group: FollowingControls, point: HeldPoint, path: Array
 ) -> Array:
-    """(F,) tolerance of a point that follows [m]."""
     shows_ik, limb = motion.shows_ik(point.limb), motion.limbs.get(str(point.limb))
     if group.leg is not None:
         allowed = rules.of(point, path, not shows_ik, rules.general_m)

@@ -58,13 +58,11 @@ def _bulge(first: Array, middle: Array, last: Array) -> float:
     return float(off[1]) / float(np.sqrt(reach))
 
 
-# --- The bone that carries the whole character, and bones that lie at hands and feet without hanging on
-# them
+# --- The bone that carries the whole character
 
 
 ON_GROUND = 0.15  # A root's head is no higher above the feet than this share of the hips' height
 ROOT_WORDS = frozenset({"root", "master", "traj", "origin", "reference", "全ての親", "world", "motion"})
-SAME_JOINT = 0.02  # A bone this near to a hand's or foot's head, in heights of the hips, lies at its joint
 
 
 def find_root(character: Character, character_map: CharacterMap, up: Array) -> str | None:
@@ -89,32 +87,6 @@ def find_root(character: Character, character_map: CharacterMap, up: Array) -> s
         if carries and (low or named):
             return character.bones[bone].name
     return None
-
-
-def extra_ends(character: Character, character_map: CharacterMap) -> dict[str, tuple[str, ...]]:
-    """By role of hand and foot the bones at its joint that hang neither on it nor on its limb."""
-    hips = character_map.bone("hips")
-    ankle = character_map.bone("foot.L")
-    if hips is None or ankle is None:
-        return {}
-    heads = np.array([bone.head for bone in character.bones])
-    near = SAME_JOINT * float(np.linalg.norm(character.bone(hips).head - character.bone(ankle).head))
-    found = {}
-    for part, upper in (("hand", "upper_arm"), ("foot", "thigh")):
-        for side in "LR":
-            role, own = character_map.bone(f"{part}.{side}"), character_map.bone(f"{upper}.{side}")
-            if role is None or own is None:
-                continue
-            limb = {character.index[role], character.index[own]}
-            at_joint = np.flatnonzero(np.linalg.norm(heads - heads[character.index[role]], axis=1) < near)
-            extras = tuple(
-                character.bones[bone].name
-                for bone in map(int, at_joint)
-                if limb.isdisjoint((bone, *_ancestors(character, bone)))
-            )
-            if extras:
-                found[f"{part}.{side}"] = extras
-    return found
 
 
 def _ancestors(character: Character, bone: int) -> list[int]:

@@ -138,7 +138,6 @@ def _names(frame: Frame, part: str) -> Array:
 
 
 def _names_of(frame: Frame, chains: _Chains, parts: tuple[str, ...]) -> Array:
-    """(C,) what the names of chains say of parts."""
     found = np.zeros(len(chains.bones))
     for bones, part in zip(chains.bones.T, parts, strict=True):
         found += np.where(bones >= 0, _names(frame, part)[bones], 0.0)
@@ -158,7 +157,6 @@ def _best_limbs(frame: Frame, chains: _Chains, fits: Array, parts: tuple[str, ..
 
 
 def _leg_fits(frame: Frame, chains: _Chains) -> Array:
-    """(C,) how well chains fit a leg by the places of their bones."""
     hip, knee, ankle = (frame.place[bones] for bones in chains.bones.T)
     upper, lower = _length(knee - hip), _length(ankle - knee)
     length = np.maximum(upper + lower, 1e-9)
@@ -174,7 +172,6 @@ def _leg_fits(frame: Frame, chains: _Chains) -> Array:
 
 
 def _arm_fits(frame: Frame, chains: _Chains) -> Array:
-    """(C,) how well chains fit an arm by the places of their bones."""
     shoulder, elbow, wrist = (frame.place[bones] for bones in chains.bones.T)
     ends = frame.ends[chains.bones[:, 1]]
     has_hand = chains.bones[:, 2:] >= 0
@@ -294,7 +291,6 @@ def _toes(frame: Frame, foot: int, thigh: int) -> dict[int, float]:
 
 
 def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
-    """Bones above an upper arm that may be its collar bone, and their scores."""
     place, names = frame.place, _names(frame, "shoulder")
     length = _reach(frame, upper_arm)
     above = [bone for bone in frame.bones.ancestors(upper_arm) if frame.one_side[bone]]
@@ -310,7 +306,6 @@ def _shoulders(frame: Frame, upper_arm: int) -> dict[int, float]:
 def _trunk(
     frame: Frame, hip: Array, shoulder: Array, arms_on: int, fork: int
 ) -> tuple[dict[str, tuple[int, ...]], float]:
-    """Hips, spine, neck and head between given joints, and how well their places fit."""
     bones, place = frame.bones, frame.place
     names = {part: _names(frame, part) for part in MIDDLE}
     height = max(float(shoulder[2] - hip[2]), 1e-6)

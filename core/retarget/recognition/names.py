@@ -180,7 +180,6 @@ def read_name(name: str) -> NameReading:
 
 
 def _words(name: str) -> tuple[str, ...]:
-    """The name's words in lower case; compounds such as `lforearm` are taken apart."""
     text = _NAMESPACE.sub("", unicodedata.normalize("NFKC", name[:LONGEST_NAME])) or name[:LONGEST_NAME]
     found: list[str] = []
     for piece in _PIECES.findall(text):

@@ -45,7 +45,6 @@ def rest_alignment(body: RestBody) -> Mapping[str, Array]:
 
 
 def _correction(body: RestBody, role: str) -> Array:
-    """The map's correction of a role's rest, in canonical axes."""
     given = body.character_map.rest_corrections.get(role)
     if given is None:
         return np.eye(3)

@@ -116,7 +116,6 @@ def _sole_of_bones(
 
 
 def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:
-    """(3,) the tip of the toes at rest [m]."""
     if toe is not None:
         ball = (toe - ankle) * [1.0, 1.0, 0.0]
         tip = body.tip(f"toe.{side}")
@@ -172,7 +171,6 @@ class Ground:
     """The ground under a performer's feet."""
 
     rests: tuple[Contact, ...]  # rests of the ankles; points are counted left, right
-    levels_m: tuple[float, ...]  # height of the ground at each of them [m]
     height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
     ankle_m: float  # height of a resting ankle over the ground [m]
 
@@ -186,7 +184,7 @@ def find_ground(source: SegmentMotion) -> Ground:
     if not rests:
         low = float(np.percentile(ankles[..., 2].min(axis=1), LOW_SHARE))
         level = _level_m(low - flat)
-        return Ground((), (), np.full(ankles.shape[:2], level), max(low - level, 0.5 * flat))
+        return Ground((), np.full(ankles.shape[:2], level), max(low - level, 0.5 * flat))
     heights = np.array(
         [np.median((ankles[..., 2] - depth)[rest.first : rest.last + 1, rest.point]) for rest in rests]
     )
@@ -203,7 +201,7 @@ def find_ground(source: SegmentMotion) -> Ground:
         lowest = -smooth_above(depth[:, number] - ankles[:, number, 2], source.time_s, CHANGE_S)
         lowered = np.minimum(under[:, number], lowest + SAME_LEVEL_M)
         under[:, number] = np.where(under[:, number] > 0.0, np.maximum(lowered, 0.0), under[:, number])
-    return Ground(rests, tuple(levels), under, float(np.median(standing)) if standing else flat)
+    return Ground(rests, under, float(np.median(standing)) if standing else flat)
 
 
 def is_rigid(source: SegmentMotion, side: str) -> bool:

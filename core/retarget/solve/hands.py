@@ -197,7 +197,6 @@ def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
 
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
-    """Length of the character's arms over the performer's."""
     lengths = source.body.actor.segments_m
     own, other = 0.0, 0.0
     for side in SIDES:

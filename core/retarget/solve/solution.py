@@ -175,9 +175,8 @@ class Solution:
 
     def rests(self, feet: Mapping[str, FootPath]) -> tuple[FootRest, ...]:
         """Rests of the planted feet."""
-        levels = self.stage.heights(np.array(self.ground.levels_m))
         return tuple(
-            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last, float(level))
-            for rest, level in zip(self.ground.rests, levels, strict=True)
+            FootRest(f"leg.{SIDES[rest.point]}", rest.first, rest.last)
+            for rest in self.ground.rests
             if SIDES[rest.point] in feet
         )

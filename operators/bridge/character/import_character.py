@@ -62,7 +62,6 @@ def import_character(file: CharacterFile, scene: bpy.types.Scene) -> ImportedCha
 
 
 def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[bpy.types.Text, ...]]:
-    """All objects of a .blend by their names there, and its scripts."""
     check_blend(file.path, "a character")
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == file.path.resolve():
         raise InputError(
@@ -81,7 +80,6 @@ def _appended(file: CharacterFile) -> tuple[dict[str, bpy.types.Object], tuple[b
 
 
 def _imported(file: CharacterFile, scene: bpy.types.Scene) -> dict[str, bpy.types.Object]:
-    """The objects that an importer makes of a file, by their names there."""
     before = {one.name for one in bpy.data.objects}
     with showing_scene(scene), tempfile.TemporaryDirectory() as folder:
         path = real_path(file.path)
@@ -116,7 +114,6 @@ def _unreadable(path: Path, error: Exception) -> InputError:
 
 
 def _chosen(file: CharacterFile, found: dict[str, bpy.types.Object]) -> bpy.types.Object:
-    """The named armature, else the only one."""
     armatures = {name: one for name, one in found.items() if one.type == "ARMATURE"}
     names = listed(map(shown, sorted(armatures)), MOST_NAMED)
     if not armatures:
@@ -160,7 +157,6 @@ def _is_moved_by(one: bpy.types.Object, armature: bpy.types.Object) -> bool:
 
 
 def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
-    """Mute what would play below the new motion; the note says so."""
     tracks = armature.animation_data.nla_tracks if armature.animation_data is not None else ()
     playing = [track for track in tracks if not track.mute]
     for track in playing:
@@ -171,7 +167,6 @@ def _mute_tracks(armature: bpy.types.Object) -> tuple[str, ...]:
 
 
 def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Object]) -> tuple[str, ...]:
-    """Take away the motions of an exchange file, and the pose that they leave."""
     for one in members:
         one.animation_data_clear()
         keys = getattr(one.data, "shape_keys", None)
@@ -183,7 +178,6 @@ def _clear_motions(armature: bpy.types.Object, members: Iterable[bpy.types.Objec
 
 
 def _into_collection(scene: bpy.types.Scene, name: str, members: Sequence[bpy.types.Object]) -> None:
-    """Link the members, and nothing else, to a new collection of the scene."""
     collection = bpy.data.collections.new(name)
     scene.collection.children.link(collection)
     for one in list(scene.objects):

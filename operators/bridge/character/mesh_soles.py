@@ -104,7 +104,6 @@ def _near_feet(places: Array, character: Character, character_map: CharacterMap)
 
 
 def _leg(character: Character, character_map: CharacterMap, side: str) -> float:
-    """Length of a leg, in the armature's units."""
     joints = [
         character.bone(str(character_map.bone(f"{part}.{side}"))).head for part in ("thigh", "shin", "foot")
     ]

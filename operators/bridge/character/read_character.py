@@ -119,7 +119,6 @@ def _require_evaluated(armature_object: bpy.types.Object) -> None:
 
 
 def _bones(armature: bpy.types.Armature) -> tuple[CharacterBone, ...]:
-    """All bones, parents before their children."""
     ordered: list[bpy.types.Bone] = []
     waiting = [bone for bone in armature.bones if bone.parent is None]
     while waiting:

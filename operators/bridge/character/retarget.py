@@ -208,7 +208,6 @@ def _keyed(
     scene_frames: Array,
     options: RetargetOptions,
 ) -> Job[tuple[KeyedControl, ...]]:
-    """What is keyed on each control."""
     if options.tolerance_m is None:
         return dense_controls(controls, rotation_values)
     rules = ToleranceRules(motion, source.time_s, motion.stance[2], options.tolerance_m)

@@ -55,7 +55,6 @@ def read_source(
 
 
 def _keyed_extremities(armature_object: bpy.types.Object, action: bpy.types.Action) -> tuple[str, ...]:
-    """Names of the hands and feet that an Action turns."""
     channelbag = existing_channelbag(action, armature_object)
     curves = channelbag.fcurves if channelbag is not None else ()
     keyed = {curve.data_path for curve in curves if not curve.mute and not curve.is_empty}
@@ -99,7 +98,6 @@ def show_result(scene: bpy.types.Scene, blend: Path | None, motion: Motion) -> A
 
 
 def _copy_footage(scene: bpy.types.Scene, blend: Path) -> None:
-    """Take camera, clip, size and rate from the first scene of a .blend that shows a clip."""
     check_blend(blend, "a result")
     try:
         with bpy.data.libraries.load(str(real_path(blend)), link=False) as (inside, wanted):

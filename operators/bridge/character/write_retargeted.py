@@ -165,7 +165,6 @@ def _write_first(
 
 
 def _remove_made(action: bpy.types.Action, channelbag: bpy.types.ActionChannelbag) -> None:
-    """Remove the curves that an earlier retargeting made in a slot."""
     for path, index in _made(action).get(channelbag.slot.identifier, []):
         fcurve = channelbag.fcurves.find(path, index=index)
         if fcurve is not None:

@@ -28,7 +28,7 @@ def test_skate_counts_in_rests_alone() -> None:
     path = np.zeros((10, 3))
     path[:, 0] = 0.002 * np.arange(10)
     path[0] = 1.0
-    rests = [FootRest("leg.L", 2, 6, 0.0), FootRest("leg.R", 0, 9, 0.0)]
+    rests = [FootRest("leg.L", 2, 6), FootRest("leg.R", 0, 9)]
     np.testing.assert_allclose(skate_mm({"leg.L": path}, rests), [2.0] * 4)
     assert skate_mm({}, rests).size == 0
 

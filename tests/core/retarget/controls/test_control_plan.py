@@ -105,7 +105,7 @@ def still_motion(rests: tuple[FootRest, ...]) -> CharacterMotion:
 
 
 def test_resting_and_low_feet_are_held_more_tightly() -> None:
-    motion = still_motion((FootRest("leg.L", 5, 9, 0.0),))
+    motion = still_motion((FootRest("leg.L", 5, 9),))
     rules = ToleranceRules(motion, np.arange(FRAMES) / 30.0, np.array([0.0, 0.0, 1.0]), 0.005)
     path = np.zeros((FRAMES, 3))
     path[20:, 2] = 0.2

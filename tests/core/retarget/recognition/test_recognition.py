@@ -66,13 +66,13 @@ def test_names_of_every_convention_are_recognized(convention: str) -> None:
     character = plain_character(names=names, arms_down_deg=40.0)
     truth = {role: tuple(names[b] for b in bones) for role, bones in plain_truth(plain_character()).items()}
     found = recognize(character)
-    assert found.preset == PRESET_OF[convention]
+    assert found.character_map.preset == PRESET_OF[convention]
     assert wrong_roles(found, truth) == []
-    assert found.doubts == () or not found.preset
+    assert found.doubts == () or not found.character_map.preset
     sources = {bones.source for role, bones in found.character_map.roles.items() if role != "hips"}
-    assert sources <= {"preset"} if found.preset else "names" in sources
+    assert sources <= {"preset"} if found.character_map.preset else "names" in sources
     by_names = recognize(character, presets=())
-    assert by_names.preset is None
+    assert by_names.character_map.preset is None
     assert wrong_roles(by_names, truth) == []
 
 
@@ -180,7 +180,7 @@ def test_a_presets_sides_are_exchanged_where_the_shape_is_against_them() -> None
     other = {"L": "R", "R": "L"}
     mirrored = {key: names[key[:-1] + other.get(key[-1], key[-1]) if "." in key else key] for key in names}
     found = recognize(plain_character(names=mirrored))
-    assert found.preset == "mixamo"
+    assert found.character_map.preset == "mixamo"
     assert found.character_map.bones("upper_arm.L") == ("mixamorig:RightArm",)
     assert any("left and right" in doubt for doubt in found.doubts)
 
@@ -197,7 +197,9 @@ def test_a_preset_alone_is_enough_where_the_shape_says_nothing() -> None:
     with pytest.raises(InputError):
         recognize(renamed(flat))
     found = recognize(flat)
-    assert found.preset == "mixamo" and found.character_map.bones("foot.L") == ("mixamorig:LeftFoot",)
+    assert found.character_map.preset == "mixamo" and found.character_map.bones("foot.L") == (
+        "mixamorig:LeftFoot",
+    )
     assert any("no body was recognized" in doubt for doubt in found.doubts)
 
 
@@ -209,13 +211,8 @@ def test_a_hand_may_be_missing_on_one_side() -> None:
     assert any("hand.R" in doubt for doubt in found.doubts)
 
 
-def test_the_root_and_goals_at_the_joints_are_named() -> None:
-    character = plain_character(root="Base")
-    wrist = character.bone("hand.L")
-    goal = replace(wrist, name="goal.L", parent=0, deforms=False)
-    found = recognize(replace(character, bones=(*character.bones, goal)))
-    assert found.character_map.root == "Base"
-    assert found.extras == {"hand.L": ("goal.L",)}
+def test_the_root_is_found() -> None:
+    assert recognize(plain_character(root="Base")).character_map.root == "Base"
     assert recognize(plain_character()).character_map.root is None
 
 
