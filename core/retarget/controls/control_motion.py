@@ -25,12 +25,17 @@ class KeyedControl:
     @property
     def channel_count(self) -> int:
         """Number of its channels."""
-        return sum(_values(held).shape[1] for held in (self.rotation, self.location) if held is not None)
+        return sum(values_of(held).shape[1] for held in (self.rotation, self.location) if held is not None)
 
     @property
     def key_count(self) -> int:
         """Number of keys on all its channels."""
-        return sum(_values(held).size for held in (self.rotation, self.location) if held is not None)
+        return sum(values_of(held).size for held in (self.rotation, self.location) if held is not None)
+
+
+def values_of(held: Array | Spline) -> Array:
+    """(K, C) values of keys, or of every frame."""
+    return held.values if isinstance(held, Spline) else held
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +102,3 @@ def dense_controls(motion: ControlMotion, of: ChannelValues) -> tuple[KeyedContr
         )
         for control, keyed in zip(motion.controls, motion.channels, strict=True)
     )
-
-
-def _values(held: Array | Spline) -> Array:
-    return held.values if isinstance(held, Spline) else held
