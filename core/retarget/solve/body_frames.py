@@ -39,8 +39,7 @@ def rest_alignment(body: RestBody) -> Mapping[str, Array]:
         _align(body, turns, arm, np.array([out, 0.0, 0.0]), np.array([0.0, 0.0, -out]))
         _align(body, turns, leg, np.array([0.0, 0.0, -1.0]), np.array([1.0, 0.0, 0.0]))
         if f"hand.{side}" in turns:
-            own = turns[f"hand.{side}"]
-            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ own
+            turns[f"hand.{side}"] = turns[f"forearm.{side}"] @ turns[f"hand.{side}"]
     return turns
 
 
@@ -48,8 +47,7 @@ def _correction(body: RestBody, role: str) -> Array:
     given = body.character_map.rest_corrections.get(role)
     if given is None:
         return np.eye(3)
-    w, x, y, z = given
-    turn = Rotation.from_quat([x, y, z, w]).as_matrix()
+    turn = Rotation.from_quat(np.roll(given, -1)).as_matrix()
     return np.asarray(body.stance @ turn @ body.stance.T)
 
 
@@ -81,25 +79,10 @@ def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Arra
 # --- Turns of bones that follow from the performer's segments alone, and where they put the joints
 
 
-SEGMENTS = {
-    "hips": "pelvis",
-    "head": "head",
-    "shoulder": "girdle",
-    "upper_arm": "upper_arm",
-    "forearm": "forearm",
-    "hand": "hand",
-    "thigh": "thigh",
-    "shin": "shin",
-    "foot": "foot",
-    "toe": "foot",
-}
-"""The performer's segment that a role follows; spine and neck lie between two of them."""
-
-
 def segment_of(role: str) -> str:
-    """The performer's segment that a role of one bone follows."""
+    """The performer's segment that a role of one bone follows; spine and neck lie between two of them."""
     part, dot, side = role.partition(".")
-    return f"{SEGMENTS[part]}{dot}{side}"
+    return {"hips": "pelvis", "shoulder": "girdle", "toe": "foot"}.get(part, part) + dot + side
 
 
 def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str, Array]) -> list[Array]:
@@ -111,16 +94,14 @@ def bone_turns(body: RestBody, turn: Mapping[str, Array], alignment: Mapping[str
     chest = turn["chest" if body.is_moved("spine") else "pelvis"]
     for bone in body.bones:
         if not body.is_moved(bone.role):
-            found.append(
-                found[bone.carrier] if bone.carrier >= 0 else np.broadcast_to(np.eye(3), chest.shape)
-            )
+            still = np.broadcast_to(np.eye(3), chest.shape)
+            found.append(found[bone.carrier] if bone.carrier >= 0 else still)
             continue
         if bone.role in ("spine", "neck"):
             lower, upper = (turn["pelvis"], turn["chest"]) if bone.role == "spine" else (chest, turn["head"])
             share = body.character_map.shares(bone.role)[bone.number]
-            wanted = lower @ rotations.exponential(
-                share * rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
-            )
+            turn_up = rotations.logarithm(np.swapaxes(lower, -1, -2) @ upper)
+            wanted = lower @ rotations.exponential(share * turn_up)
         else:
             wanted = turn[segment_of(bone.role)]
         found.append(np.asarray(wanted @ alignment[bone.role]))
@@ -144,7 +125,6 @@ def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
 
 
 HEAD_HEIGHT = 0.10  # from the head's joint to the crown, as a share of stature
-HEAD_CENTER = 0.5  # place of the head's center between its joint and the crown
 LEG_SHARE = 0.491  # the legs' share of stature (Drillis & Contini 1966)
 PROPORTION_RANGE = (0.5, 2.5)  # range of a width over what the character's size alone would give
 
@@ -162,46 +142,39 @@ class PartShape:
 def part_shapes(body: RestBody, source: SegmentMotion, size: float) -> tuple[PartShape, ...]:
     """The parts of a character that hands may be near: head, chest, pelvis and legs."""
     lengths = source.body.actor.segments_m
+    parts: list[PartShape] = []
+
+    def add(segment: str, bone: int, origin: Array, *scale: float) -> None:
+        parts.append(PartShape(segment, bone, origin - body.bones[bone].head, np.array(scale)))
+
+    def width(part: str, own_m: float) -> float:
+        ratio = np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")) / own_m
+        return float(np.clip(ratio, *np.multiply(PROPORTION_RANGE, size)))
+
     trunk = float(np.linalg.norm(body.shoulder_joints - body.hip_joints)) / lengths["trunk"]
-    shoulders = _width_m(body, "upper_arm") / lengths["shoulder_width"]
-    hips = _width_m(body, "thigh") / lengths["hip_width"]
-    shoulders, hips = (
-        float(np.clip(ratio, *np.multiply(PROPORTION_RANGE, size))) for ratio in (shoulders, hips)
-    )
+    shoulders, hips = width("upper_arm", lengths["shoulder_width"]), width("thigh", lengths["hip_width"])
+    add("pelvis", 0, body.hip_joints, hips, np.sqrt(hips * size), trunk)
     chest = body.last.get("spine", 0)
-    parts = [
-        _part(body, "pelvis", 0, body.hip_joints, (hips, np.sqrt(hips * size), trunk)),
-        _part(body, "chest", chest, body.shoulder_joints, (shoulders, np.sqrt(shoulders * trunk), trunk)),
-    ]
+    add("chest", chest, body.shoulder_joints, shoulders, np.sqrt(shoulders * trunk), trunk)
     if "head" in body.first:
         joint, tip = body.joint("head"), body.tip("head")
         height = HEAD_HEIGHT * body.leg_m / LEG_SHARE
         if tip is not None and tip[2] - joint[2] > 0.5 * height:
             height = float(tip[2] - joint[2])
         ratio = height / (HEAD_HEIGHT * source.body.actor.stature_m)
-        center = joint + [0.0, 0.0, HEAD_CENTER * height]
-        parts.append(_part(body, "head", body.first["head"], center, (ratio, ratio, ratio)))
+        add("head", body.first["head"], joint + [0.0, 0.0, 0.5 * height], ratio, ratio, ratio)
     for side in SIDES:
         for name, below in (("thigh", "shin"), ("shin", "foot")):
             role = f"{name}.{side}"
             ratio = body.length_m(role, f"{below}.{side}") / lengths[role]
-            parts.append(_part(body, role, body.first[role], body.joint(role), (size, size, ratio)))
+            add(role, body.first[role], body.joint(role), size, size, ratio)
     return tuple(parts)
-
-
-def source_origin(source: SegmentMotion, segment: str) -> Array:
-    """(F, 3) the origin of a performer's part in the world [m]."""
-    if segment == "head":
-        return source.end["head"]
-    if segment == "chest":
-        return source.end["chest"]
-    return source.start[segment]
 
 
 def in_segment(source: SegmentMotion, segment: str, points: Array) -> Array:
     """(F, 3) points of the world in the axes of a performer's segment, from its origin [m]."""
-    local = points - source_origin(source, segment)
-    return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ local[..., None])[..., 0])
+    origin = source.end[segment] if segment in ("head", "chest") else source.start[segment]
+    return np.asarray((np.swapaxes(source.turn[segment], -1, -2) @ (points - origin)[..., None])[..., 0])
 
 
 def places_by_part(
@@ -229,36 +202,18 @@ def places_by_part(
 
 def distances_m(source: SegmentMotion, segment: str, points: Array) -> Array:
     """(F,) distance of points (F, 3) from the surface of one of the performer's segments; 0 inside [m]."""
-    piece = segment_piece(source.body, segment)
-    start, axis = _piece_axis(source, segment)
+    piece, turn = segment_piece(source.body, segment), source.turn[segment]
+    own = next(each for each in source.body.skeleton.segments if each.name == segment)
+    start = source.start[segment] + turn @ (piece.start - source.body.local(own.start))
+    axis = turn @ (piece.end - piece.start)
     way = points - start
     length = np.linalg.norm(axis, axis=-1)
     along = np.sum(way * axis, axis=-1) / length
     share = np.clip(along / length, 0.0, 1.0)
     overhang = along - share * length
-    turn = source.turn[segment]
     sideways = [np.sum(way * (turn @ direction), axis=-1) for direction in (piece.lateral, piece.sagittal)]
     widths = piece.half_widths[0] + share[:, None] * (piece.half_widths[1] - piece.half_widths[0])
     radius = np.hypot(sideways[0], sideways[1])
     relative = np.hypot(sideways[0] / widths[:, 0], sideways[1] / widths[:, 1])
     outside = radius * np.maximum(1.0 - 1.0 / np.maximum(relative, 1e-9), 0.0)
     return np.hypot(outside, overhang)
-
-
-def _piece_axis(source: SegmentMotion, segment: str) -> tuple[Array, Array]:
-    """Start and axis (F, 3) of a segment's volume in the world [m]."""
-    piece = segment_piece(source.body, segment)
-    own = next(each for each in source.body.skeleton.segments if each.name == segment)
-    turn = source.turn[segment]
-    start = source.start[segment] + turn @ (piece.start - source.body.local(own.start))
-    return start, turn @ (piece.end - piece.start)
-
-
-def _part(
-    body: RestBody, segment: str, bone: int, origin: Array, scale: tuple[float, float, float]
-) -> PartShape:
-    return PartShape(segment, bone, origin - body.bones[bone].head, np.array(scale))
-
-
-def _width_m(body: RestBody, part: str) -> float:
-    return float(np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")))

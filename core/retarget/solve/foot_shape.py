@@ -174,6 +174,11 @@ class Ground:
     height_m: Array  # (F, 2) height of the ground under the left and the right foot [m]
     ankle_m: float  # height of a resting ankle over the ground [m]
 
+    @property
+    def lowest_m(self) -> Array:
+        """(F,) the lower of both heights [m]."""
+        return np.asarray(self.height_m.min(axis=1))
+
 
 def find_ground(source: SegmentMotion) -> Ground:
     """Find the ground under a performer."""

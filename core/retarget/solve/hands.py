@@ -6,7 +6,6 @@ as much as it is near; everywhere else the directions hold.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -39,28 +38,8 @@ ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
 LEAST_HEADING = 0.02  # part of the back of the hand in the heading of fingers
+ARM_BONES = (("upper_arm", "forearm"), ("forearm", "hand"))
 ROUNDS = 4  # rounds in which two hands find a place that both reach
-
-
-@dataclass(frozen=True, eq=False)
-class Nearness:
-    """What the performer's hands are near, by how much (0 to 1)."""
-
-    parts: Mapping[str, Array]  # (K, F) by side: the parts of the body
-    floor: Mapping[str, Array]  # (F,) by side
-    together: Array  # (F,) the hands themselves
-
-
-def find_nearness(source: SegmentMotion, ground: Ground, segments: Sequence[str]) -> Nearness:
-    """Find what the performer's hands are near."""
-    parts = {}
-    for side in SIDES:
-        wrist, end = source.start[f"hand.{side}"], source.end[f"hand.{side}"]
-        along = [wrist, 0.5 * (wrist + end), end]
-        parts[side] = np.stack([_near_part(source, name, along) for name in segments])
-    floor = {side: near_floor(source, ground, side) for side in SIDES}
-    apart_m = np.linalg.norm(source.start["hand.R"] - source.start["hand.L"], axis=-1)
-    return Nearness(parts, floor, _near(source, apart_m, TOGETHER_M))
 
 
 def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
@@ -74,8 +53,7 @@ def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Ar
 
 def near_floor(source: SegmentMotion, ground: Ground, side: str) -> Array:
     """(F,) how near the performer's hand is to the floor, 0 to 1."""
-    height_m = source.start[f"hand.{side}"][:, 2] - ground.height_m.min(axis=1)
-    return _near(source, height_m, FLOOR_M)
+    return _near(source, source.start[f"hand.{side}"][:, 2] - ground.lowest_m, FLOOR_M)
 
 
 def _near(source: SegmentMotion, distance_m: Array, bounds: tuple[float, float]) -> Array:
@@ -100,32 +78,31 @@ def hand_goals(
     by directions; the alignment (3, 3) is by role.
     """
     shapes = part_shapes(body, source, stage.size)
-    nearness = find_nearness(source, ground, [shape.segment for shape in shapes])
     aligned = {
         index: alignment[bone.role] if body.is_moved(bone.role) else np.eye(3)
         for index, bone in enumerate(body.bones)
     }
-    floor_m = stage.heights(ground.height_m.min(axis=1))
-    goals, shares = {}, {}
+    goals, shares, floors = {}, {}, {}
     for side in arms:
         wrist, own = source.start[f"hand.{side}"], arms[side].end
         by_part = places_by_part(shapes, source, stage, places, turns, aligned, wrist)
-        weight = nearness.parts[side]
-        mean = (weight[..., None] * (by_part - own)).sum(axis=0) / np.maximum(weight.sum(axis=0), 1e-9)[
-            :, None
-        ]
+        end, floors[side] = source.end[f"hand.{side}"], near_floor(source, ground, side)
+        along = [wrist, 0.5 * (wrist + end), end]
+        weight = np.stack([_near_part(source, shape.segment, along) for shape in shapes])
+        total = np.maximum(weight.sum(axis=0), 1e-9)[:, None]
+        mean = (weight[..., None] * (by_part - own)).sum(axis=0) / total
         share = 1.0 - np.prod(1.0 - weight, axis=0)
         goal = own + share[:, None] * mean
-        height = floor_m + stage.size * (wrist[:, 2] - ground.height_m.min(axis=1))
-        goal[:, 2] += nearness.floor[side] * (height - goal[:, 2])
-        goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - nearness.floor[side])
+        goal[:, 2] += floors[side] * (stage.heights(wrist[:, 2]) - goal[:, 2])
+        goals[side], shares[side] = goal, 1.0 - (1.0 - share) * (1.0 - floors[side])
     if len(arms) == len(SIDES):
         between = source.start["hand.R"] - source.start["hand.L"]
+        together = _near(source, np.linalg.norm(between, axis=-1), TOGETHER_M)
         apart = _arm_ratio(body, source) * between @ stage.turn.T
-        goals = _brought_together(goals, arms, apart, nearness.together)
-        shares = {side: 1.0 - (1.0 - share) * (1.0 - nearness.together) for side, share in shares.items()}
+        goals = _brought_together(goals, arms, apart, together)
+        shares = {side: 1.0 - (1.0 - share) * (1.0 - together) for side, share in shares.items()}
     return {
-        side: HandGoal(goals[side], shares[side], nearness.floor[side], _in_reach(arms[side], goals[side]))
+        side: HandGoal(goals[side], shares[side], floors[side], _in_reach(arms[side], goals[side]))
         for side in arms
     }
 
@@ -134,9 +111,8 @@ def floor_goals(
     source: SegmentMotion, stage: Stage, ground: Ground, arm: LimbPose, side: str
 ) -> tuple[Array, Array]:
     """The wrist's goal (F, 3) by the floor alone [m], and how much it counts (F,)."""
-    low = ground.height_m.min(axis=1)
     goal = arm.end.copy()
-    goal[:, 2] = stage.heights(low) + stage.size * (source.start[f"hand.{side}"][:, 2] - low)
+    goal[:, 2] = stage.heights(source.start[f"hand.{side}"][:, 2])
     return goal, near_floor(source, ground, side)
 
 
@@ -198,9 +174,5 @@ def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
     lengths = source.body.actor.segments_m
-    own, other = 0.0, 0.0
-    for side in SIDES:
-        own += body.length_m(f"upper_arm.{side}", f"forearm.{side}")
-        own += body.length_m(f"forearm.{side}", f"hand.{side}")
-        other += lengths[f"upper_arm.{side}"] + lengths[f"forearm.{side}"]
-    return own / other
+    bones = [(f"{one}.{side}", f"{end}.{side}") for side in SIDES for one, end in ARM_BONES]
+    return sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)

@@ -140,7 +140,7 @@ class Solution:
 
     def _keep_above_floor(self, side: str, wrist: Array) -> None:
         role = f"hand.{side}"
-        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.height_m.min(axis=1))
+        tip, floor_m = self.body.tip(role), self.stage.heights(self.ground.lowest_m)
         if tip is not None:
             aligned = self.alignment[role]
             turn = self.turns[self.body.first[role]] @ aligned.T
