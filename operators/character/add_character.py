@@ -127,9 +127,6 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
             self.report({"INFO"}, f"Recognized the bones of '{rig.name}'")
 
 
-# --- Remove a character from a take's list
-
-
 class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
     """Remove the chosen character from the list; its armature and Actions stay"""
 

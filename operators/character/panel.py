@@ -202,7 +202,10 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             draw_sentence(column, context, character.problem, "ERROR", MOST_LINES_PANEL)
         elif (unmet := recognized(context)) is not None:
             draw_sentence(column, context, unmet, "ERROR", MOST_LINES_PANEL)
-        _draw_source(column, take, character)
+        column.prop(character, "source")
+        if character.source == "ACTION":
+            column.prop(character, "source_action")
+            column.prop(character, "source_actor")
         row = column.row()
         row.scale_y = 1.4
         if not draw_progress(row, context, "keymark.retarget"):
@@ -233,15 +236,6 @@ def _draw_choice(
     return column
 
 
-def _draw_source(
-    column: bpy.types.UILayout, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
-) -> None:
-    column.prop(character, "source")
-    if character.source == "ACTION":
-        column.prop(character, "source_action")
-        column.prop(character, "source_actor")
-
-
 def _draw_results(
     column: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
 ) -> None:
@@ -253,11 +247,9 @@ def _draw_results(
             row.label(text="Deleted", icon="ACTION")
         else:
             icon = "ERROR" if result.outdated else "ACTION"
-            shown = is_shown(character, result)
-            text = result.action.name
-            row.operator(
-                "keymark.show_result", text=text, icon=icon, depress=shown, translate=False
-            ).index = index
+            text, shown = result.action.name, is_shown(character, result)
+            show = row.operator("keymark.show_result", text=text, icon=icon, depress=shown, translate=False)
+            show.index = index
         row.operator("keymark.remove_result", text="", icon="X").index = index
     chosen = shown_result(character)
     if chosen is None or chosen.action is None:
@@ -289,13 +281,8 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         column, options = self.column(), active_character(context.scene).options
-        column.prop(options, "arms")
-        column.prop(options, "legs")
-        column.prop(options, "root_motion")
-        column.prop(options, "placement")
-        column.prop(options, "plant_feet")
-        column.prop(options, "reach_hands")
-        column.prop(options, "keys")
+        for name in ("arms", "legs", "root_motion", "placement", "plant_feet", "reach_hands", "keys"):
+            column.prop(options, name)
         few = column.column()
         few.active = options.keys == "TOLERANCE"
         few.prop(options, "tolerance_mm")

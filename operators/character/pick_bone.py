@@ -171,9 +171,6 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         give_bone(active_character(context.scene), self.role, self.index, self.bone)
 
 
-# --- Add a bone to a chain, or take one away
-
-
 class KEYMARK_OT_add_chain_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Add the next bone upward to the chain"""
 

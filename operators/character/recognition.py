@@ -180,9 +180,6 @@ def _not_a_character(armature_object: bpy.types.Object | None) -> InputError:
     )
 
 
-# --- Recognize a character's bones
-
-
 class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
     """Find out which bones play which role, by their names and places; replaces what you chose before"""
 
@@ -197,9 +194,8 @@ class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
         doubts = all_doubts(character)
         for doubt in doubts:
             warn(self, doubt)
-        if doubts:
-            return
-        self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
+        if not doubts:
+            self.report({"INFO"}, f"Recognized the bones of '{character.armature.name}'")
 
 
 register, unregister = bpy.utils.register_classes_factory((KEYMARK_OT_recognize_character,))

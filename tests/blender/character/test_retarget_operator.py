@@ -16,7 +16,7 @@ from keymark.core.retarget.quality import Quality
 from keymark.operators.bridge.actions import assign_action, curve_digest, existing_channelbag
 from keymark.operators.bridge.actor_bones import moves_an_actor
 from keymark.operators.character.characters import source_of
-from keymark.operators.character.figures import figures
+from keymark.operators.character.retarget import figures
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
