@@ -5,6 +5,7 @@ A role of a side ends in `.L` or `.R`, the character's own left and right.
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -35,6 +36,10 @@ SOURCES = ("preset", "names", "shape", "you")
 def joint_roles(limb: str) -> tuple[str, ...]:
     """The roles that begin at a limb's three joints: upper arm, forearm and hand, or thigh, shin and foot."""
     return LIMBS[limb][1:] if limb.startswith("arm") else LIMBS[limb][:3]
+
+
+LONG_BONES = {limb: tuple(pairwise(joint_roles(limb))) for limb in LIMBS}
+"""By limb the roles at both ends of its two long bones."""
 
 
 def other_side(role: str) -> str:

@@ -13,18 +13,10 @@ import numpy as np
 
 from ..arrays import Array, BoolArray
 from ..body.skeleton import SIDES
+from .character import LONG_BONES
 from .character_motion import CharacterMotion, FootRest
 
-
-def _both(*bones: tuple[str, str]) -> tuple[tuple[str, str], ...]:
-    return tuple((f"{start}.{side}", f"{end}.{side}") for side in SIDES for start, end in bones)
-
-
-ARM_BONES = _both(("upper_arm", "forearm"), ("forearm", "hand"))
-"""Joints at the ends of the long bones of arms."""
-LEG_BONES = _both(("thigh", "shin"), ("shin", "foot"))  # joints at the ends of the long bones of legs
 FULL_SHARE = 0.95  # share from which a hand's goal counts in full
-MILLIMETERS = 1000.0
 
 
 @dataclass(frozen=True)
@@ -82,7 +74,7 @@ def skate_mm(ankles: Mapping[str, Array], rests: Sequence[FootRest]) -> Array:
         for rest in rests
         if rest.limb in ankles
     ]
-    return MILLIMETERS * np.concatenate(steps) if steps else np.empty(0)
+    return 1000.0 * np.concatenate(steps) if steps else np.empty(0)
 
 
 def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]) -> float | None:
@@ -92,7 +84,7 @@ def penetration_mm(heights_m: Mapping[str, Array], ground_m: Mapping[str, Array]
         for role, heights in heights_m.items()
         if heights.size and (limb := f"leg.{role.rpartition('.')[2]}") in ground_m
     ]
-    return MILLIMETERS * max(0.0, *depths) if depths else None
+    return 1000.0 * max(0.0, *depths) if depths else None
 
 
 def hand_distances_mm(
@@ -102,7 +94,7 @@ def hand_distances_mm(
     found = [
         np.linalg.norm(wrists[side] - goals[side], axis=-1)[counted[side]] for side in goals if side in wrists
     ]
-    return MILLIMETERS * np.concatenate(found) if found else np.empty(0)
+    return 1000.0 * np.concatenate(found) if found else np.empty(0)
 
 
 def farthest_mm(
@@ -114,7 +106,7 @@ def farthest_mm(
         for role in roles
         if role in first and role in second
     ]
-    return MILLIMETERS * max(found) if found else None
+    return 1000.0 * max(found) if found else None
 
 
 def measured(
@@ -131,8 +123,8 @@ def measured(
     space = motion.to_world
     up, turn = space.rotation @ motion.stance.T, motion.facing
     turned = {role: path @ turn.T for role, path in source.items()}
-    arms = direction_errors_deg(turned, shown, ARM_BONES)
-    legs = direction_errors_deg(turned, shown, LEG_BONES)
+    arms = direction_errors_deg(turned, shown, (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"]))
+    legs = direction_errors_deg(turned, shown, (*LONG_BONES["leg.L"], *LONG_BONES["leg.R"]))
 
     def canonical(points: Array) -> Array:
         return np.asarray((points - space.location) @ up)

@@ -1,6 +1,7 @@
 """Rows of the panel that shows which bones play which role."""
 
 import bpy
+from bpy.types import Armature, Context, PropertyGroup, UILayout
 
 from ..bridge.character.read_character import needs_override
 from ..shell.panel import RowList, TakePanel, draw_progress, draw_sentence
@@ -14,9 +15,7 @@ LABEL_SHARE = 0.29  # share of the width that a role's name takes
 MOST_LINES = 5
 
 
-def draw_map(
-    layout: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
+def draw_map(layout: UILayout, context: Context, character: PropertyGroup) -> None:
     """Draw recognition, the map's file, what is doubtful, and the roles of each part of the body."""
     character_map = character.character_map
     column = layout.column()
@@ -39,9 +38,7 @@ def draw_map(
     layout.operator("keymark.mirror_roles", text="Mirror Left to Right", icon="MOD_MIRROR").side = "L"
 
 
-def _draw_parts(
-    layout: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
+def _draw_parts(layout: UILayout, context: Context, character: PropertyGroup) -> None:
     for part, roles in PARTS.items():
         shown = [
             character.character_map.roles[role] for role in roles if role in character.character_map.roles
@@ -58,7 +55,7 @@ def _draw_parts(
         _draw_controls(body, character, part, shown)
 
 
-def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyGroup]) -> None:
+def _draw_confidence(header: UILayout, shown: list[PropertyGroup]) -> None:
     found = [role for role in shown if any(entry.bone for entry in role.bones)]
     if not found:
         return
@@ -72,18 +69,13 @@ def _draw_confidence(header: bpy.types.UILayout, shown: list[bpy.types.PropertyG
     facts.label(text=source, translate=False)
 
 
-def is_marked(character: bpy.types.PropertyGroup, role: bpy.types.PropertyGroup) -> bool:
+def is_marked(character: PropertyGroup, role: PropertyGroup) -> bool:
     """Whether a role is doubtful, or one of its bones is not there any more."""
     bones = character.armature.data.bones
     return bool(role.doubt) or any(entry.bone and entry.bone not in bones for entry in role.bones)
 
 
-def _draw_role(
-    column: bpy.types.UILayout,
-    context: bpy.types.Context,
-    character: bpy.types.PropertyGroup,
-    role: bpy.types.PropertyGroup,
-) -> None:
+def _draw_role(column: UILayout, context: Context, character: PropertyGroup, role: PropertyGroup) -> None:
     bones = character.armature.data.bones
     for index, entry in enumerate(role.bones):
         split = column.split(factor=LABEL_SHARE, align=True)
@@ -103,7 +95,7 @@ def _draw_role(
         draw_sentence(column, context, why[:1].upper() + why[1:], "BLANK1", MOST_LINES)
 
 
-def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index: int) -> None:
+def _draw_buttons(row: UILayout, role: PropertyGroup, index: int) -> None:
     pick = row.operator("keymark.pick_bone", text="", icon="EYEDROPPER")
     pick.role, pick.index = role.name, index
     if is_chain(role.name) and not role.bones[index].bone and len(role.bones) > 1:
@@ -111,12 +103,7 @@ def _draw_buttons(row: bpy.types.UILayout, role: bpy.types.PropertyGroup, index:
         remove.role, remove.index = role.name, index
 
 
-def _draw_controls(
-    layout: bpy.types.UILayout,
-    character: bpy.types.PropertyGroup,
-    part: str,
-    shown: list[bpy.types.PropertyGroup],
-) -> None:
+def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown: list[PropertyGroup]) -> None:
     keyed = [(role, entry) for role in shown for entry in role.bones if entry.control]
     limb = character.character_map.limbs.get(part)
     controls = [name for name in ("goal", "pole", "toe") if limb is not None and getattr(limb, name)]
@@ -140,13 +127,7 @@ def _draw_controls(
         split.label(text=values, translate=False)
 
 
-def _draw_control(
-    column: bpy.types.UILayout,
-    armature: bpy.types.Armature,
-    owner: bpy.types.PropertyGroup,
-    name: str,
-    text: str,
-) -> None:
+def _draw_control(column: UILayout, armature: Armature, owner: PropertyGroup, name: str, text: str) -> None:
     split = column.split(factor=LABEL_SHARE, align=True)
     left = split.row()
     left.alignment = "RIGHT"
@@ -165,9 +146,7 @@ MOST_LINES_PANEL = 6  # lines of a sentence
 class KEYMARK_UL_characters(RowList, bpy.types.UIList):
     """Characters by their armatures; the icon tells whether one has the motion."""
 
-    def draw_row(
-        self, context: bpy.types.Context, layout: bpy.types.UILayout, item: bpy.types.PropertyGroup
-    ) -> None:
+    def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
         row = layout.row(align=True)
         done = any(result.action is not None for result in item.results)
         name = item.armature.name if item.armature is not None else "No Armature"
@@ -182,7 +161,7 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     bl_label = "Character"
     step = "character"
 
-    def draw_step(self, context: bpy.types.Context) -> None:
+    def draw_step(self, context: Context) -> None:
         take, character = active_take(context.scene), find_character(context.scene)
         if character is None:
             buttons = self.body.column()
@@ -215,9 +194,7 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
             _draw_results(column, context, character)
 
 
-def _draw_choice(
-    panel: KEYMARK_PT_character, take: bpy.types.PropertyGroup, character: bpy.types.PropertyGroup
-) -> bpy.types.UILayout:
+def _draw_choice(panel: KEYMARK_PT_character, take: PropertyGroup, character: PropertyGroup) -> UILayout:
     row = panel.body.row()
     single = len(take.characters) == 1
     if single:
@@ -236,9 +213,7 @@ def _draw_choice(
     return column
 
 
-def _draw_results(
-    column: bpy.types.UILayout, context: bpy.types.Context, character: bpy.types.PropertyGroup
-) -> None:
+def _draw_results(column: UILayout, context: Context, character: PropertyGroup) -> None:
     column.separator()
     rows = column.column(align=True)
     for index, result in enumerate(character.results):
@@ -269,7 +244,7 @@ class CharacterPart(TakePanel):
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, context: Context) -> bool:
         character = find_character(context.scene)
         return super().poll(context) and character is not None and character.armature is not None
 
@@ -279,7 +254,7 @@ class KEYMARK_PT_retarget_options(CharacterPart, bpy.types.Panel):
 
     bl_label = "Options"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         column, options = self.column(), active_character(context.scene).options
         for name in ("arms", "legs", "root_motion", "placement", "plant_feet", "reach_hands", "keys"):
             column.prop(options, name)
@@ -293,13 +268,13 @@ class KEYMARK_PT_character_map(CharacterPart, bpy.types.Panel):
 
     bl_label = "Bones"
 
-    def draw_header(self, context: bpy.types.Context) -> None:
+    def draw_header(self, context: Context) -> None:
         character = active_character(context.scene)
         doubtful = any(role.doubt for role in character.character_map.roles)
         if doubtful or len(character.doubts) or missing_roles(character):
             self.layout.label(text="", icon="ERROR")
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: Context) -> None:
         draw_map(self.layout, context, active_character(context.scene))
 
 

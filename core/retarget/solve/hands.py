@@ -15,6 +15,7 @@ from ...body.kinematics import SegmentMotion
 from ...body.posture import UP
 from ...body.skeleton import SIDES
 from ...numerics.vectors import unit
+from ..character import LONG_BONES
 from ..character_motion import HandGoal
 from .body_frames import distances_m, in_segment, part_shapes, places_by_part
 from .foot_shape import Ground
@@ -38,7 +39,6 @@ ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
 LEAST_HEADING = 0.02  # part of the back of the hand in the heading of fingers
-ARM_BONES = (("upper_arm", "forearm"), ("forearm", "hand"))
 ROUNDS = 4  # rounds in which two hands find a place that both reach
 
 
@@ -174,5 +174,5 @@ def _in_reach(arm: LimbPose, goal: Array) -> BoolArray:
 
 def _arm_ratio(body: RestBody, source: SegmentMotion) -> float:
     lengths = source.body.actor.segments_m
-    bones = [(f"{one}.{side}", f"{end}.{side}") for side in SIDES for one, end in ARM_BONES]
+    bones = (*LONG_BONES["arm.L"], *LONG_BONES["arm.R"])
     return sum(body.length_m(*ends) for ends in bones) / sum(lengths[start] for start, _ in bones)

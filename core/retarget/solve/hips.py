@@ -1,4 +1,4 @@
-"""Holds: stretches of frames in which a path is replaced, and its fading correction on either side."""
+"""Corrections that fade, signals over time, and what moves the hips and the way over the ground."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Hold:
         return self.first + len(self.offset) - 1
 
 
-def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array:
+def faded(holds: Sequence[Hold], time_s: Array) -> Array:
     """(F, 3) the corrections of holds, fading on either side without a jump in place or speed.
 
     Holds are in order and do not overlap; two that follow each other closely are joined by one cubic.
@@ -41,36 +41,26 @@ def faded(holds: Sequence[Hold], time_s: Array, fade_s: float = FADE_S) -> Array
         right = len(time_s) if after is None else after.first
         if right - left < 2:
             continue
-        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * fade_s
+        near = before is not None and after is not None and time_s[right] - time_s[left] <= 2.0 * FADE_S
+        between = slice(left + 1, right)
         if before is not None:
-            end = time_s[right] if near else time_s[left] + fade_s
-            share, span = _share(time_s[left + 1 : right], time_s[left], end)
-            offset[left + 1 : right] += _cubic(share, before.offset[-1], span * _slope(before, time_s, -1))
+            end = time_s[right] if near else time_s[left] + FADE_S
+            offset[between] += _fading(before, -1, time_s, between, end)
         if after is not None:
-            start = time_s[left] if near else time_s[right] - fade_s
-            share, span = _share(time_s[left + 1 : right], time_s[right], start)
-            offset[left + 1 : right] += _cubic(share, after.offset[0], span * _slope(after, time_s, 0))
+            start = time_s[left] if near else time_s[right] - FADE_S
+            offset[between] += _fading(after, 0, time_s, between, start)
     return offset
 
 
-def _share(times: Array, edge: float, end: float) -> tuple[Array, float]:
-    """Share of the fade at some times, up to 1, and its signed length [s]."""
-    return np.clip((times - edge) / (end - edge), 0.0, 1.0), end - edge
-
-
-def _cubic(share: Array, value: Array, slope: Array) -> Array:
-    """From a value with a slope to zero without one; `slope` is that over the whole fade."""
-    s = share[:, None]
-    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * value + s * slope))
-
-
-def _slope(hold: Hold, time_s: Array, edge: int) -> Array:
-    """(3,) rate of the correction at the hold's first (0) or last (-1) frame."""
-    if len(hold.offset) < 2:
-        return np.zeros(3)
-    first, second = (0, 1) if edge == 0 else (-2, -1)
-    times = time_s[hold.first : hold.last + 1]
-    return np.asarray((hold.offset[second] - hold.offset[first]) / (times[second] - times[first]))
+def _fading(hold: Hold, edge: int, time_s: Array, frames: slice, end: float) -> Array:
+    """A cubic from a hold's first (0) or last (-1) correction and its rate to zero at a time `end`."""
+    times, rate = time_s[hold.first : hold.last + 1], np.zeros(3)
+    if len(times) > 1:
+        one, other = (0, 1) if edge == 0 else (-2, -1)
+        rate = (hold.offset[other] - hold.offset[one]) / (times[other] - times[one])
+    span = end - times[edge]
+    s = np.clip((time_s[frames] - times[edge]) / span, 0.0, 1.0)[:, None]
+    return np.asarray((1.0 - s) ** 2 * ((1.0 + 2.0 * s) * hold.offset[edge] + s * span * rate))
 
 
 # --- Signals over time
@@ -96,7 +86,8 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
     """
     if len(values) < 3:
         return np.array(values)
-    even, step = _evenly(time_s)
+    even = np.linspace(time_s[0], time_s[-1], len(time_s))
+    step = max(float(even[1] - even[0]), 1e-6)
     columns = values.reshape(len(values), -1)
     sampled = columns_at(even, time_s, columns)
     reach = min(len(even) - 1, int(np.ceil(4.0 * deviation_s / step)))
@@ -106,8 +97,7 @@ def smoothed(values: Array, time_s: Array, deviation_s: float, ends_kept: bool =
         before, after = 2.0 * sampled[0] - before, 2.0 * sampled[-1] - after
     extended = np.concatenate([before, sampled, after])
     filtered = gaussian(extended, deviation_s / step)[reach : reach + len(even)]
-    back = columns_at(time_s, even, filtered)
-    return back.reshape(values.shape)
+    return columns_at(time_s, even, filtered).reshape(values.shape)
 
 
 def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
@@ -119,12 +109,6 @@ def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
     highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
     window = np.hanning(2 * frames + 3)[1:-1]
     return np.asarray(convolve1d(highest, window / window.sum(), mode="nearest"))
-
-
-def _evenly(time_s: Array) -> tuple[Array, float]:
-    """As many even times as there are frames, and the step between them [s]."""
-    even = np.linspace(time_s[0], time_s[-1], len(time_s))
-    return even, max(float(even[1] - even[0]), 1e-6)
 
 
 # --- Hips

@@ -8,6 +8,7 @@ forearm, hand ...), whatever the armature's hierarchy: feet that hang on a root 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from ...arrays import Array
 from ...body.skeleton import SIDES
 from ...errors import InputError
 from ...files.json_file import shown
-from ..character import LIMBS, MIDDLE, Character, joint_roles
+from ..character import LIMBS, LONG_BONES, MIDDLE, Character, joint_roles
 from ..character_motion import find_stance
 from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
@@ -90,10 +91,7 @@ class RestBody:
     @cached_property
     def leg_m(self) -> float:
         """Mean length of the legs, hip to ankle along the bones [m]."""
-        lengths = [
-            self.length_m(f"thigh.{s}", f"shin.{s}") + self.length_m(f"shin.{s}", f"foot.{s}") for s in SIDES
-        ]
-        return float(np.mean(lengths))
+        return 0.5 * sum(self.length_m(*ends) for side in SIDES for ends in LONG_BONES[f"leg.{side}"])
 
     @cached_property
     def hip_joints(self) -> Array:
@@ -145,7 +143,7 @@ class RestBody:
         extent = float(np.ptp([bone.head for bone in self.bones], axis=0).max())
         for limb in LIMBS:
             there = [role for role in joint_roles(limb) if role in self.first]
-            for role, below in zip(there, there[1:], strict=False):
+            for role, below in pairwise(there):
                 if not self.length_m(role, below) > SHORTEST_SHARE * extent:
                     raise InputError(
                         f"{self.character.name}: {self.bones[self.first[role]].name} ({role}) and "
@@ -198,21 +196,11 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
     return spine[-1]
 
 
-# --- What a rest pose says against its map
-
-
-CLEARLY = 0.05  # share of the leg's length by which toes lie clearly behind their ankle
-
-
 def rest_notes(body: RestBody) -> tuple[str, ...]:
     """Sentences without a full stop on a rest pose that the map cannot mean."""
     roles = [(f"foot.{side}", f"toe.{side}") for side in SIDES]
     behind = [float(body.joint(toe)[1] - body.joint(foot)[1]) for foot, toe in roles if toe in body.first]
-    if behind and min(behind) > CLEARLY * body.leg_m:
-        return (
-            (
-                f"The toes of '{body.character.name}' point backward by its character map; left and "
-                "right may be mistaken for each other there"
-            ),
-        )
-    return ()
+    if not behind or min(behind) <= 0.05 * body.leg_m:
+        return ()
+    doubt = f"The toes of '{body.character.name}' point backward by its character map; left and right may "
+    return (doubt + "be mistaken for each other there",)
