@@ -86,17 +86,13 @@ def _imported(file: CharacterFile, scene: bpy.types.Scene) -> dict[str, bpy.type
         if path.suffix.lower() == VRM:  # a GLB under another name
             path = Path(shutil.copyfile(path, Path(folder) / f"{path.stem}.glb"))
         try:
-            _run_importer(path)
+            if path.suffix.lower() == ".fbx":
+                bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
+            else:
+                bpy.ops.import_scene.gltf(filepath=str(path))
         except (RuntimeError, AttributeError, OSError) as error:
             raise _unreadable(file.path, error) from error
     return {_name_in_file(one.name, before): one for one in scene.objects}
-
-
-def _run_importer(path: Path) -> None:
-    if path.suffix.lower() == ".fbx":
-        bpy.ops.wm.fbx_import(filepath=str(path), use_anim=False)
-    else:
-        bpy.ops.import_scene.gltf(filepath=str(path))
 
 
 def _name_in_file(name: str, taken: Iterable[str]) -> str:

@@ -21,11 +21,11 @@ from keymark.core.body.kinematics import RIGID, segment_motion
 from keymark.core.body.posture import Posture, yaw_rotation
 from keymark.core.errors import InputError
 from keymark.core.finish.natural_extremities import natural_extremities
-from keymark.core.retarget.character import Character
+from keymark.core.retarget.character import LONG_BONES, Character
 from keymark.core.retarget.character_motion import Similarity
 from keymark.core.retarget.maps.character_map import CharacterMap, RoleBones
 from keymark.core.retarget.options import Placement, RetargetOptions, RootMotion
-from keymark.core.retarget.quality import ARM_BONES, LEG_BONES, direction_errors_deg
+from keymark.core.retarget.quality import direction_errors_deg
 from keymark.core.retarget.recognition.recognize import recognize
 
 FREE = RetargetOptions(plant_feet=False, reach_hands=False)
@@ -81,7 +81,7 @@ SHAPES = {
 def test_limbs_point_where_the_performers_do(shape: str) -> None:
     character, character_map = SHAPES[shape]()
     shown = joints(character_map, solved(character, character_map, steps(), FREE))
-    for bones in (ARM_BONES, LEG_BONES):
+    for bones in LONG_BONES.values():
         errors = direction_errors_deg(source_joints(steps()), shown, bones)
         assert errors.shape == (118, 4)
         assert errors.max() < 0.01
@@ -213,7 +213,7 @@ def test_roles_left_alone_go_with_what_carries_them() -> None:
     chest, arm = motion.poses["chest"], motion.poses["upper_arm.L"]
     local = np.linalg.solve(chest, arm)[:, :3, 3]
     np.testing.assert_allclose(local, local[:1].repeat(len(local), 0), atol=1e-9)
-    errors = direction_errors_deg(source_joints(steps()), joints(character_map, motion), ARM_BONES[:2])
+    errors = direction_errors_deg(source_joints(steps()), joints(character_map, motion), LONG_BONES["arm.L"])
     assert errors.max() < 0.01
 
 
@@ -277,7 +277,7 @@ def test_characters_of_other_conventions(name: str) -> None:
     assert figures.penetration_mm is not None and figures.penetration_mm < 0.1
     assert figures.legs_deg is not None and figures.legs_deg < 1.5
     free = joints(character_map, solved(character, character_map, steps(), FREE))
-    for bones in (ARM_BONES, LEG_BONES):
+    for bones in LONG_BONES.values():
         assert direction_errors_deg(source_joints(steps()), free, bones).max() < 0.01
 
 
