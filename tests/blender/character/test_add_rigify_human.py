@@ -7,6 +7,7 @@ import _add_rigify_human
 import bpy
 import pytest
 from _rigify import run_script
+from bpy.types import Object, PropertyGroup
 from keymark.operators.bridge.character import rigify_human
 from keymark.operators.character import add_character as add_rigify_human
 from keymark.operators.character.requirements import recognized
@@ -23,7 +24,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def height_m(rig: bpy.types.Object) -> float:
+def height_m(rig: Object) -> float:
     """Height of the top of the head above the floor."""
     return max((rig.matrix_world @ bone.tail_local).z for bone in rig.data.bones if bone.use_deform)
 
@@ -62,18 +63,13 @@ def test_without_a_take_there_is_nothing_to_add_it_to() -> None:
         bpy.ops.keymark.add_rigify_human()
 
 
-def test_a_blender_without_rigify_says_so(
-    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_blender_without_rigify_says_so(take: PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(add_rigify_human, "has_rigify", lambda: False)
     with pytest.raises(RuntimeError, match="comes without the add-on Rigify"):
         bpy.ops.keymark.add_rigify_human()
 
 
-def test_where_rigify_fails_nothing_is_left(
-    take: bpy.types.PropertyGroup, monkeypatch: pytest.MonkeyPatch
-) -> None:
-
+def test_where_rigify_fails_nothing_is_left(take: PropertyGroup, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail() -> None:
         bpy.ops.object.armature_add()
         raise RuntimeError("Error: Unknown rig type")

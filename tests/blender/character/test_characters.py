@@ -6,6 +6,7 @@ import bpy
 import pytest
 from _armatures import build_character
 from _characters import plain_character
+from bpy.types import Object, PropertyGroup
 from keymark.core.body.actor import Actor
 from keymark.core.body.kinematics import Body
 from keymark.core.retarget.character import Character
@@ -16,7 +17,7 @@ from keymark.operators.shell.takes import active_take, add_take
 pytestmark = pytest.mark.usefixtures("registered")
 
 
-def accepts(owner: bpy.types.PropertyGroup, name: str, candidate: bpy.types.Object) -> bool:
+def accepts(owner: PropertyGroup, name: str, candidate: Object) -> bool:
     """Whether the field of a pointer lists an object."""
     annotation = type(owner).__annotations__[name]
     return bool(annotation.keywords["poll"](owner, candidate))
@@ -27,9 +28,7 @@ def named(name: str) -> Character:
     return Character(name, plain_character().bones)
 
 
-def test_the_selected_armature_is_added_and_recognized(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_the_selected_armature_is_added_and_recognized(take: PropertyGroup, rig: Object) -> None:
     other = build_character(named("Other"))
     for each, selected in ((rig, True), (other, False)):
         each.select_set(selected)
@@ -43,9 +42,7 @@ def test_the_selected_armature_is_added_and_recognized(
     assert candidates(bpy.context.scene, bpy.context.view_layer) == [other]
 
 
-def test_the_only_armature_is_added_without_being_selected(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_the_only_armature_is_added_without_being_selected(take: PropertyGroup, rig: Object) -> None:
     rig.select_set(False)
     bpy.context.view_layer.objects.active = take.armature
     take.armature.select_set(True)
@@ -53,7 +50,7 @@ def test_the_only_armature_is_added_without_being_selected(
     assert take.characters[0].armature == rig
 
 
-def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.PropertyGroup) -> None:
+def test_without_a_choice_the_field_is_left_to_the_person(take: PropertyGroup) -> None:
     for name in ("One", "Two"):
         build_character(named(name)).select_set(False)
     bpy.context.view_layer.objects.active = None
@@ -63,9 +60,7 @@ def test_without_a_choice_the_field_is_left_to_the_person(take: bpy.types.Proper
         bpy.ops.keymark.retarget()
 
 
-def test_an_actor_is_no_character_and_a_character_no_actor(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_an_actor_is_no_character_and_a_character_no_actor(take: PropertyGroup, rig: Object) -> None:
     bpy.ops.keymark.add_character(armature=rig.name)
     character, mesh = take.characters[0], bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
     other = build_armature(bpy.context.scene, Body(Actor.from_stature(1.5)))
@@ -80,9 +75,7 @@ def test_an_actor_is_no_character_and_a_character_no_actor(
         bpy.ops.keymark.add_character(armature=take.armature.name)
 
 
-def test_a_script_that_gives_a_take_another_armature_is_told(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_a_script_that_gives_a_take_another_armature_is_told(take: PropertyGroup, rig: Object) -> None:
     take.armature = rig
     for operator in (bpy.ops.keymark.bake_motion, bpy.ops.keymark.show_action):
         with pytest.raises(
@@ -91,7 +84,7 @@ def test_a_script_that_gives_a_take_another_armature_is_told(
             operator()
 
 
-def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyGroup) -> None:
+def test_what_is_no_character_is_said_and_stays_chosen(take: PropertyGroup) -> None:
     bones = plain_character().bones[:2]
     post = build_character(Character("Post", bones))
     character = take.characters.add()
@@ -103,9 +96,7 @@ def test_what_is_no_character_is_said_and_stays_chosen(take: bpy.types.PropertyG
         bpy.ops.keymark.retarget()
 
 
-def test_several_characters_are_added_and_removed(
-    take: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_several_characters_are_added_and_removed(take: PropertyGroup, rig: Object) -> None:
     second = build_character(named("Second"))
     for each in (rig, second):
         bpy.ops.keymark.add_character(armature=each.name)
@@ -120,9 +111,7 @@ def test_several_characters_are_added_and_removed(
         bpy.ops.keymark.remove_character()
 
 
-def test_another_take_knows_what_was_corrected(
-    character: bpy.types.PropertyGroup, rig: bpy.types.Object
-) -> None:
+def test_another_take_knows_what_was_corrected(character: PropertyGroup, rig: Object) -> None:
     character.character_map.roles["hand.L"].bones[0].bone = "finger.L"
     other = add_take(bpy.context.scene, "Jump")
     other.characters.add().armature = rig
@@ -135,7 +124,7 @@ def test_a_character_without_a_take_asks_for_one() -> None:
         bpy.ops.keymark.add_character()
 
 
-def test_removed_and_renamed_things_are_said(character: bpy.types.PropertyGroup, tmp_path: Path) -> None:
+def test_removed_and_renamed_things_are_said(character: PropertyGroup, tmp_path: Path) -> None:
     armature = character.armature
     armature.data.bones["shin.L"].name = "Unterschenkel"
     with pytest.raises(RuntimeError, match=r"has no bone 'shin\.L' any more"):

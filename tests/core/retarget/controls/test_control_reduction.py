@@ -137,7 +137,6 @@ def test_a_tighter_tolerance_takes_more_keys() -> None:
 
 
 def test_feet_on_a_root_are_placed_and_turned() -> None:
-
     def free(plan: PlannedControl, space: ControlSpace) -> ControlSpace:
         if not plan.name.startswith("foot"):
             return space
@@ -180,7 +179,6 @@ def test_a_control_that_cannot_move_only_turns() -> None:
 
 
 def test_controls_are_ordered_by_what_carries_them() -> None:
-
     def control(name: str, turner: int, carrier: int) -> Control:
         space = ControlSpace(turner, np.eye(3), carrier, np.zeros(3), np.eye(3), 0.0, 0.0)
         return Control(PlannedControl(name, ControlKind.FK, name), "XYZ", space, turns=True)

@@ -83,7 +83,7 @@ def test_limbs_point_where_the_performers_do(shape: str) -> None:
     shown = joints(character_map, solved(character, character_map, steps(), FREE))
     for bones in LONG_BONES.values():
         errors = direction_errors_deg(source_joints(steps()), shown, bones)
-        assert errors.shape == (118, 4)
+        assert errors.shape == (118, 2)
         assert errors.max() < 0.01
 
 
