@@ -32,16 +32,12 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
         found = candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
-
-        names = [each.name for each in found]
+        names, own = [each.name for each in found], KEYMARK_OT_add_character.bl_idname
 
         def draw(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
-            """Draw an entry for each; Blender has freed the operator by then."""
-            for name in names:
-                operator = KEYMARK_OT_add_character.bl_idname
-                menu.layout.operator(
-                    operator, text=name, icon="ARMATURE_DATA", translate=False
-                ).armature = name
+            for name in names:  # Blender has freed the operator by then
+                entry = menu.layout.operator(own, text=name, icon="ARMATURE_DATA", translate=False)
+                entry.armature = name
 
         context.window_manager.popup_menu(draw, title=self.bl_label)
         return {"CANCELLED"}  # each entry is a step of its own
@@ -165,10 +161,10 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
         character = active_character(context.scene)
         original = character.armature
         instance = _instance_of(context.scene, original)
-        if instance is not None:
-            overridden = _override_instance(context, original, instance)
-        else:
+        if instance is None:
             overridden = make_override(context, original)
+        else:
+            overridden = _override_instance(context, original, instance)
         known = map_of(character.character_map)
         character.armature = overridden
         if known.roles:
@@ -200,18 +196,12 @@ def _override_instance(
 
 def _instance_of(scene: bpy.types.Scene, original: bpy.types.Object) -> bpy.types.Object | None:
     """The empty of the scene that shows the linked collection an object is in; None where there is none."""
-    if original.name in scene.objects:
-        return None
-    return next(
-        (
-            each
-            for each in scene.objects
-            if each.instance_type == "COLLECTION"
-            and each.instance_collection is not None
-            and original in each.instance_collection.all_objects[:]
-        ),
-        None,
-    )
+    shown = () if original.name in scene.objects else scene.objects
+    for each in shown:
+        collection = each.instance_collection if each.instance_type == "COLLECTION" else None
+        if collection is not None and original in collection.all_objects[:]:
+            return each
+    return None
 
 
 register, unregister = bpy.utils.register_classes_factory(

@@ -24,14 +24,12 @@ def bone_under(
     context: bpy.types.Context, armature_object: bpy.types.Object, mouse_x: int, mouse_y: int
 ) -> str | None:
     """Name of the visible bone nearest to the mouse [window px], in a 3D viewport; None where none is."""
-    for area in context.screen.areas:
-        if area.type != "VIEW_3D":
-            continue
-        for region in area.regions:
-            inside = 0 <= mouse_x - region.x < region.width and 0 <= mouse_y - region.y < region.height
-            if region.type == "WINDOW" and inside:
-                near = NEAR_PX * context.preferences.system.ui_scale
-                mouse = np.array([mouse_x - region.x, mouse_y - region.y], dtype=np.float64)
+    near = NEAR_PX * context.preferences.system.ui_scale
+    for area in (area for area in context.screen.areas if area.type == "VIEW_3D"):
+        for region in (region for region in area.regions if region.type == "WINDOW"):
+            x, y = mouse_x - region.x, mouse_y - region.y
+            if 0 <= x < region.width and 0 <= y < region.height:
+                mouse = np.array([x, y], dtype=np.float64)
                 return _nearest(context, armature_object, region, mouse, near)
     return None
 
@@ -88,9 +86,6 @@ def is_visible(pose_bone: bpy.types.PoseBone) -> bool:
 # --- Pick a role's bone by a click on it in the viewport
 
 
-TAKES_ACTIVE = {"RET", "NUMPAD_ENTER"}
-
-
 class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Click on the bone in the viewport"""
 
@@ -125,7 +120,7 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _watch(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if event.type in TAKES_ACTIVE and event.value == "PRESS":
+        if event.type in ("RET", "NUMPAD_ENTER") and event.value == "PRESS":
             return self._take(context, active_bone_of(active_character(context.scene)))
         clicked = event.type == "LEFTMOUSE" and event.value == "PRESS"
         if not clicked and event.type != "MOUSEMOVE":
@@ -152,13 +147,10 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     def _ask(self, context: bpy.types.Context, under: str) -> None:
         role = full_title(self.role)
         active = active_bone_of(active_character(context.scene))
-        if under:
-            words = f"{role.capitalize()}: {under}   |   Esc: Cancel"
-        elif active is not None:
-            words = f"Click on the bone: {role}   |   Enter: {active}, the active one   |   Esc: Cancel"
-        else:
-            words = f"Click on the bone: {role}   |   Esc: Cancel"
-        context.workspace.status_text_set(words)
+        words = f"{role.capitalize()}: {under}" if under else f"Click on the bone: {role}"
+        if not under and active is not None:
+            words += f"   |   Enter: {active}, the active one"
+        context.workspace.status_text_set(f"{words}   |   Esc: Cancel")
 
     def cancel(self, context: bpy.types.Context) -> None:
         if context.window is not None:

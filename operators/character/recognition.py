@@ -16,7 +16,7 @@ from .characters import (
     find_character,
     full_title,
     may_be_character,
-    other_with,
+    other_with_map,
 )
 from .map_conversion import clear_map, map_of, role_named, show_map
 from .map_properties import SOURCE_WORDS, is_chain
@@ -142,7 +142,7 @@ def armature_chosen(character: bpy.types.PropertyGroup) -> None:
     if character.armature is None:
         return
     drop_results_of_others(character)
-    known = other_with(character, character.armature)
+    known = other_with_map(character)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
         return

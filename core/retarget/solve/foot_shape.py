@@ -61,10 +61,11 @@ def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
     """The foot of a side at rest on ground of some height [m], from the map's soles or from the bones."""
     ankle = body.joint(f"foot.{side}")
     toe = body.joint(f"toe.{side}") if body.is_moved(f"toe.{side}") else None
+    soles = body.character_map.soles
     given = {
-        part: _given_sole(body, f"{part}.{side}")
+        part: np.asarray(body.character.scale * np.array(soles[f"{part}.{side}"]) @ body.stance.T)
         for part in ("foot", "toe")
-        if f"{part}.{side}" in body.character_map.soles
+        if f"{part}.{side}" in soles
     }
     if "foot" not in given:
         given = _sole_of_bones(body, side, ankle, toe, floor_m)
@@ -72,16 +73,12 @@ def foot_shape(body: RestBody, side: str, floor_m: float) -> FootShape:
     ahead = _ahead(foot - ankle if toe is None else (toe - ankle)[None])
     front = foot[np.argmax((foot - ankle) @ ahead)] if toe is None else toe
     heel = foot[np.argmin((foot - ankle) @ ahead)]
-    level = np.array([1.0, 1.0, 0.0])
-    ground = np.array([0.0, 0.0, float(foot[:, 2].min())])
-    middle = ankle + ((heel - ankle) @ ahead) * ahead
-    return FootShape(
-        foot - ankle,
-        np.empty((0, 3)) if toe is None else given.get("toe", np.empty((0, 3))) - toe,
-        None if toe is None else toe - ankle,
-        front * level + ground - ankle,
-        middle * level + ground - ankle,
-    )
+    middle, low = ankle + ((heel - ankle) @ ahead) * ahead, float(foot[:, 2].min())
+    front, heel = (np.array([place[0], place[1], low]) - ankle for place in (front, middle))
+    none = np.empty((0, 3))
+    if toe is None:
+        return FootShape(foot - ankle, none, None, front, heel)
+    return FootShape(foot - ankle, given.get("toe", none) - toe, toe - ankle, front, heel)
 
 
 def sole_points(body: RestBody, shapes: Mapping[str, FootShape]) -> dict[str, Array]:
@@ -93,10 +90,6 @@ def sole_points(body: RestBody, shapes: Mapping[str, FootShape]) -> dict[str, Ar
         if shape.toe_joint is not None and len(shape.toe):
             found[f"toe.{side}"] = ankle + shape.toe_joint + shape.toe
     return {role: points @ body.stance / body.character.scale for role, points in found.items()}
-
-
-def _given_sole(body: RestBody, role: str) -> Array:
-    return np.asarray(body.character.scale * np.array(body.character_map.soles[role]) @ body.stance.T)
 
 
 def _sole_of_bones(
@@ -111,8 +104,7 @@ def _sole_of_bones(
     heel = ankle - HEEL_BEHIND * length * ahead
     ball = ankle + 0.6 * length * ahead if toe is None else toe
     parts = {"foot": [heel + 0.7 * across, heel - 0.7 * across, ball + across, ball - across], "toe": [tip]}
-    ground = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, floor_m])
-    return {part: np.stack(points) * ground[0] + ground[1] for part, points in parts.items()}
+    return {part: np.stack(points) * [1.0, 1.0, 0.0] + [0.0, 0.0, floor_m] for part, points in parts.items()}
 
 
 def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:

@@ -174,26 +174,21 @@ def _carrier(character: Character, bones: list[RestBone], role: str, name: str) 
     Along a limb it is the one before. Where a limb or the neck begins, it is the bone of the trunk that the
     armature hangs it on, else the upper end of what is there below it.
     """
-    if not bones:
-        return -1
-    part, _, side = role.partition(".")
-    same_limb = [index for index, bone in enumerate(bones) if side and bone.role.endswith(f".{side}")]
-    limb = next((roles for roles in LIMBS.values() if role in roles), ())
-    inner = [index for index in same_limb if bones[index].role in limb]
+    if not bones or role in ("spine", "neck", "head"):
+        return len(bones) - 1
+    limb = next(roles for roles in LIMBS.values() if role in roles)
+    inner = [index for index, bone in enumerate(bones) if bone.role in limb]
     if inner:
         return inner[-1]
     trunk = {bone.name: index for index, bone in enumerate(bones) if bone.role in MIDDLE}
-    if part in ("spine", "neck", "head"):
-        return len(bones) - 1
     above = character.bone(name).parent
     while above >= 0:
         if character.bones[above].name in trunk:
             return trunk[character.bones[above].name]
         above = character.bones[above].parent
-    if part == "thigh":
+    if role.startswith("thigh"):
         return 0
-    spine = [index for index in trunk.values() if bones[index].role in ("hips", "spine")]
-    return spine[-1]
+    return [index for index in trunk.values() if bones[index].role in ("hips", "spine")][-1]
 
 
 def rest_notes(body: RestBody) -> tuple[str, ...]:
