@@ -51,7 +51,7 @@ class Solution:
         ground: Ground,
     ) -> "Solution":
         """The motion by the performer's directions alone."""
-        turn = stage.turned(source.turn)
+        turn = {name: stage.turn @ own for name, own in source.turn.items()}
         for side in SIDES:
             turn[f"foot.{side}"] = foot_turns(source, stage, ground, side)
         middle = stage.joints(0.5 * (source.start["thigh.L"] + source.start["thigh.R"]))
