@@ -133,7 +133,8 @@ def _upright(up: Array, middle: Mapping[str, Array]) -> Array:
 
 def _mean_direction(ways: list[Array]) -> Array | None:
     """(3,) the mean of the directions of ways (3,); None where they have none."""
-    total = np.sum([way / max(np.linalg.norm(way), 1e-9) for way in ways], axis=0) if ways else np.zeros(3)
+    units = [way / max(float(np.linalg.norm(way)), 1e-9) for way in ways]
+    total = np.sum(units, axis=0) if units else np.zeros(3)
     length = float(np.linalg.norm(total))
     return np.asarray(total / length) if length > 1e-9 else None
 

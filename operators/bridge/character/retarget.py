@@ -42,7 +42,8 @@ def complete_map(
     def there(one: Setting | Switch) -> bool:
         return isinstance(bones[one.bone].get(one.property), int | float)
 
-    used = [*character_map.settings, *(own.switch for own in character_map.ik.values() if own.switch)]
+    used: list[Setting | Switch] = [*character_map.settings]
+    used += [own.switch for own in character_map.ik.values() if own.switch is not None]
     notes = tuple(
         f"Bone '{one.bone}' has no property '{one.property}' that could be keyed; the rig may be of another "
         f"version than the map '{character_map.title}'"
