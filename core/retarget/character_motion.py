@@ -81,9 +81,6 @@ class CharacterMotion:
 
 
 UP_SNAP_DEG = 15.0  # a body leans by a few degrees at rest; an axis this near to its length is up
-SIDE_SNAP_DEG = 3.0  # an axis this near to the line from side to side is that line
-BENT_DEG = 30.0
-"""Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not upright."""
 
 
 def find_stance(character: Character, character_map: CharacterMap) -> Array:
@@ -110,7 +107,8 @@ def find_stance(character: Character, character_map: CharacterMap) -> Array:
     left = left - up * float(left @ up)
     if not np.linalg.norm(left) > 1e-9:
         return np.eye(3)
-    left = _snapped(left / np.linalg.norm(left), SIDE_SNAP_DEG)
+    # An axis this near to the line from side to side is that line.
+    left = _snapped(left / np.linalg.norm(left), 3.0)
     left = left - up * float(left @ up)
     left /= np.linalg.norm(left)
     return np.stack([left, np.cross(up, left), up])
@@ -125,7 +123,9 @@ def _upright(up: Array, middle: Mapping[str, Array]) -> Array:
     )
     if snapped is not up or trunk is None or legs[0] is None:
         return snapped
-    if float(trunk @ legs[0]) > np.cos(np.radians(BENT_DEG)):
+    # Angle of the legs to the trunk from which a body sits, crouches or bows: its length is then not
+    # upright.
+    if float(trunk @ legs[0]) > np.cos(np.radians(30.0)):
         return up
     axis, near = _snapped(up, 90.0), np.cos(np.radians(UP_SNAP_DEG))
     return axis if any(part is not None and float(part @ axis) >= near for part in (trunk, *legs)) else up

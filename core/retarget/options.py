@@ -48,9 +48,6 @@ class RetargetOptions:
 # --- Options of retargeting from the words of files and of the command line
 
 
-MM = 1000.0
-
-
 def retarget_options(words: CharacterOptions) -> RetargetOptions:
     """The options that words ask for."""
     return RetargetOptions(
@@ -60,5 +57,5 @@ def retarget_options(words: CharacterOptions) -> RetargetOptions:
         legs=LimbKeys(words.legs),
         plant_feet=words.plant_feet,
         reach_hands=words.reach_hands,
-        tolerance_m=words.tolerance_mm / MM if words.tolerance_mm > 0.0 else None,
+        tolerance_m=words.tolerance_mm / 1000.0 if words.tolerance_mm > 0.0 else None,
     )

@@ -10,8 +10,6 @@ from ...arrays import Array
 from .control_plan import ControlKind, PlannedControl
 from .control_spaces import NOTHING, ControlSpace, unscaled
 
-NEEDED = 0.005
-"""Distance [shares of the character's size] from which a bone that usually only turns is moved as well."""
 ALWAYS_MOVED = (ControlKind.HIPS, ControlKind.GOAL, ControlKind.POLE, ControlKind.ROOT)
 """Kinds of controls that are placed wherever they can be."""
 
@@ -122,4 +120,5 @@ def control_channels(
 def _is_moved(control: Control, apart: Array, size: float) -> bool:
     if control.plan.kind in ALWAYS_MOVED or control.displaced:
         return True
-    return bool(np.linalg.norm(apart, axis=-1).max() > NEEDED * size)
+    # Distance [shares of the character's size] from which a bone that usually only turns is moved as well.
+    return bool(np.linalg.norm(apart, axis=-1).max() > 0.005 * size)

@@ -15,8 +15,6 @@ from ...body import rotations
 
 NOTHING = -1  # instead of the index of a control: the armature itself
 RIGID = 1e-3  # residual [rad, or shares of the character's size] below which a space is rigid
-MOVABLE = 1e-3  # least length of the axes of location channels that do something
-LEAST_LENGTH = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +40,8 @@ class ControlSpace:
     @property
     def movable(self) -> bool:
         """Whether its location channels place it."""
-        return bool(np.linalg.svd(self.axes, compute_uv=False)[-1] > MOVABLE)
+        # Least length of the axes of location channels that do something.
+        return bool(np.linalg.svd(self.axes, compute_uv=False)[-1] > 1e-3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +86,7 @@ def in_axes_of(turns: Array, control: int, values: Array) -> Array:
 
 def unscaled(matrices: Array) -> Array:
     """(..., 3, 3) with columns of length one."""
-    return np.asarray(matrices / np.maximum(np.linalg.norm(matrices, axis=-2, keepdims=True), LEAST_LENGTH))
+    return np.asarray(matrices / np.maximum(np.linalg.norm(matrices, axis=-2, keepdims=True), 1e-12))
 
 
 def constant_turn(turns: Array) -> tuple[Array, float]:

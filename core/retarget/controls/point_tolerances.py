@@ -14,8 +14,6 @@ from ..maps.character_map import CharacterMap
 
 LEVER = 0.3  # distance of a point that shows a bone's turn about its own length, in lengths of the bone
 END = 0.5  # length of a limb's last part, in lengths of the part before it
-TRUNK = 0.15  # distance of the points that show how a bone of the trunk turns, in lengths from hips to head
-LEAST_LENGTH = 1e-9
 
 
 class PointKind(Enum):
@@ -45,7 +43,8 @@ def held_points(
 
 def _trunk_points(character: Character, character_map: CharacterMap) -> list[HeldPoint]:
     bones = [character.bone(name) for role in MIDDLE for name in character_map.bones(role)]
-    size = TRUNK * float(np.ptp([bone.head for bone in bones], axis=0).max()) if bones else 0.0
+    # Distance of the points that show how a bone of the trunk turns, in lengths from hips to head.
+    size = 0.15 * float(np.ptp([bone.head for bone in bones], axis=0).max()) if bones else 0.0
     return [
         HeldPoint(bone.name, place, PointKind.BODY, None)
         for bone in bones
@@ -65,7 +64,7 @@ def _limb_points(
             last = number + 1 == len(bones)
             along = (bone.tail if last else bones[number + 1].head) - bone.head
             own = float(np.linalg.norm(along))
-            if last and own > LEAST_LENGTH:  # tails may lie anywhere: their direction is as good as any
+            if last and own > 1e-9:  # tails may lie anywhere: their direction is as good as any
                 along = along * (END * length / own)
             length = float(np.linalg.norm(along))
             end = bone.head + along
@@ -84,8 +83,6 @@ def _local(rest: Array, place: Array) -> Array:
 # --- How far key reduction may move a character's points
 
 
-NEAR_FLOOR_M = 0.03  # A sole this near to its lowest place nearby must not pass the floor
-NEIGHBORHOOD_S = 1.0
 FLOOR_M = 0.0015  # largest error of a sole near the floor [m]
 SHOWN_REST_M = 0.00008  # largest error of a resting foot that is shown [m]: it must not slide
 SWITCH_M = 0.0008  # largest distance of wrists and ankles between IK and FK [m]
@@ -132,8 +129,9 @@ class ToleranceRules:
 
     def _near_floor(self, path: Array) -> BoolArray:
         height = path @ self.up
-        low = [height[np.abs(self.time_s - now) <= NEIGHBORHOOD_S].min() for now in self.time_s]
-        return np.asarray(height - low < NEAR_FLOOR_M)
+        low = [height[np.abs(self.time_s - now) <= 1.0].min() for now in self.time_s]
+        # A sole this near to its lowest place nearby must not pass the floor.
+        return np.asarray(height - low < 0.03)
 
 
 def reach_tolerance_m(joints: tuple[Array, Array, Array], general_m: float) -> Array:

@@ -30,7 +30,6 @@ from .point_tolerances import (
     reach_tolerance_m,
 )
 
-BODY_SHARE = 0.5  # share of the work that the body's controls are, where others follow
 NO_POINTS = np.zeros((0, 3))
 Toleranced = tuple[Array, Callable[[Array], Array]]
 """A point (3,) in its control's axes [m], and its tolerance (F,) from its path (F, 3) in the armature's."""
@@ -56,7 +55,8 @@ def reduce_controls(
     shown: dict[int, ControlChannels] = {}
     done = 0.0
     if body:
-        done = BODY_SHARE if following else 1.0
+        # Share of the work that the body's controls are, where others follow.
+        done = 0.5 if following else 1.0
         points = _body_points(motion, rules, body, {group.leg for group in following})
         part = _reduced(motion, motion.channels, times, rules.general_m, of, points)
         keyed, shown = yield from scaled(part, 0.0, done)

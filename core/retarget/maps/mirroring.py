@@ -12,7 +12,6 @@ from .character_map import CharacterMap, RoleBones
 
 WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"), ("L", "R"), ("l", "r"), ("左", "右"))
 """How names tell the sides."""
-NEAR = 0.03  # share of the character's extent by which a mirrored bone may lie off
 Partner = Callable[[str | None], str | None]
 """The bone of the other side that mirrors a bone; None where there is none."""
 
@@ -69,7 +68,8 @@ def _partners(character: Character, used: set[str]) -> Partner:
                 off = float(np.linalg.norm(other.head - mirrored(own.head, *plane[:2])))
                 ends = float(np.linalg.norm(other.tail - mirrored(own.tail, *plane[:2])))
             far = other.name not in named
-            lost = far and (plane is None or off > NEAR * bones.size)
+            # Share of the character's extent by which a mirrored bone may lie off.
+            lost = far and (plane is None or off > 0.03 * bones.size)
             if other.name != name and other.name not in used and not lost:
                 ranks[other.name] = (far, off + ends)  # bones at one joint, as twist bones, differ in tails
         return min(ranks, key=lambda other: ranks[other], default=None)

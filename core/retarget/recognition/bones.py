@@ -12,10 +12,6 @@ from .names import NameReading, read_name
 
 SAME_PLACE, NEAR_PLACE = 0.003, 0.03
 """Points closer than this share of the figure's size are one; and are meant to be one."""
-LARGEST_END = 0.2  # A foot or a hand with all below it reaches no farther than this, in sizes
-MEETING_TAILS = 0.5  # least share of bones whose tail meets a child's head where tails say something
-ONWARD = 0.6  # least cosine between a limb's last bone and the way to a bone that continues it
-UNEVEN = 3.0  # neighboring bones of a limb differ in length by no more than this factor
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +92,8 @@ def _tails_tell(character: Character, size: float) -> bool:
         for bone, children in zip(character.bones, character.children, strict=True)
         if children
     ]
-    return bool(met and sum(met) >= MEETING_TAILS * len(met))
+    # Least share of bones whose tail meets a child's head where tails say something.
+    return bool(met and sum(met) >= 0.5 * len(met))
 
 
 def _nearest_parents(
@@ -151,7 +148,8 @@ def _joined(
             reach = np.linalg.norm(head[own] - head[bone], axis=1).max()
             ends = np.linalg.norm(np.stack([head[above], tail[above]]) - head[bone], axis=1)
             hub = parent[above] < 0 or 2 * _below(parent, above).sum() >= len(parent)
-            if reach > LARGEST_END * size or not hub or (ends < NEAR_PLACE * size).any():
+            # A foot or a hand with all below it reaches no farther than this, in sizes.
+            if reach > 0.2 * size or not hub or (ends < NEAR_PLACE * size).any():
                 continue
         parent[bone] = _limb_before(bone, own, head, tail, parent, readings, size)
     return parent
@@ -191,7 +189,9 @@ def _limb_before(
     for end in np.flatnonzero(limb & hangs & leaf & ~other & (parent >= 0)):
         came, goes = head[end] - head[parent[end]], head[bone] - head[end]
         lengths = sorted((float(np.linalg.norm(came)), float(np.linalg.norm(goes))))
-        if lengths[0] * UNEVEN > lengths[1] and came @ goes > ONWARD * lengths[0] * lengths[1]:
+        # Least cosine between a limb's last bone and the way to a bone that continues it.
+        # Neighboring bones of a limb differ in length by no more than this factor.
+        if lengths[0] * 3.0 > lengths[1] and came @ goes > 0.6 * lengths[0] * lengths[1]:
             onward.append(int(end))
     return min(onward, key=lambda end: way[end], default=above)
 

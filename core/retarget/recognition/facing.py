@@ -61,7 +61,6 @@ def _bulge(first: Array, middle: Array, last: Array) -> float:
 # --- The bone that carries the whole character
 
 
-ON_GROUND = 0.15  # A root's head is no higher above the feet than this share of the hips' height
 ROOT_WORDS = frozenset({"root", "master", "traj", "origin", "reference", "全ての親", "world", "motion"})
 
 
@@ -82,7 +81,8 @@ def find_root(character: Character, character_map: CharacterMap, up: Array) -> s
     moving = next((name for name in character_map.keyed_bones("hips") if name is not None), hips)
     for bone in _ancestors(character, character.index[moving]):
         carries = all(bone in each for each in above)
-        low = float(character.bones[bone].head @ up) - ground < ON_GROUND * height
+        # A root's head is no higher above the feet than this share of the hips' height.
+        low = float(character.bones[bone].head @ up) - ground < 0.15 * height
         named = not ROOT_WORDS.isdisjoint(read_name(character.bones[bone].name).words)
         if carries and (low or named):
             return character.bones[bone].name

@@ -14,12 +14,10 @@ from .names import CLEAR
 from .symmetry import Frame
 
 NAMES_WEIGHT = 1.3  # names are trusted so much more than a measure of place
-LONGEST_CHAIN = 16  # bones upward from a limb's end among which its other bones are sought
 SHORTEST_LIMB, SHORT_LEG = 0.08, 0.4
 """Shortest limb; shortest leg whose foot is taken to be smaller with it: in sizes."""
 MANY, FEW = 150, 40
 """Best limbs of a kind that are looked at closely, and that are weighed against those of the other kind."""
-CLOSE = 12.0  # frames whose limbs fit worse than the best frame's by more than this are passed over
 NO_END, NO_PART, NO_HEAD = -3.0, -4.0, -5.0
 """Scores of an arm without a hand, a limb without toe or shoulder though bones are there, and no head."""
 SAME_JOINT = 0.02  # A bone this near to its parent, in heights of the trunk, begins where that does
@@ -62,7 +60,8 @@ def best_figure(frames: list[Frame]) -> Figure | None:
         + (_arm_fits(frame, chains) + _names_of(frame, chains, ARM[1:])).max()
         for frame in frames
     ]
-    close = [frame for frame, fit in zip(frames, quick, strict=True) if fit > max(quick) - CLOSE]
+    # Frames whose limbs fit worse than the best frame's by more than this are passed over.
+    close = [frame for frame, fit in zip(frames, quick, strict=True) if fit > max(quick) - 12.0]
     figures = [figure for frame in close if (figure := _figure(frame, chains)) is not None]
     return max(figures, key=lambda figure: figure.score, default=None)
 
@@ -78,7 +77,8 @@ def _find_chains(frame: Frame) -> _Chains:
             if frame.middle[bone]:
                 attached = bone
                 break
-            if frame.partner[bone] < 0 or len(above) == LONGEST_CHAIN:
+            # Bones upward from a limb's end among which its other bones are sought.
+            if frame.partner[bone] < 0 or len(above) == 16:
                 break
             above.append(bone)
         for second, middle in enumerate(above):

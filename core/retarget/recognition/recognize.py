@@ -22,13 +22,11 @@ from .symmetry import Frame, find_frames
 AGREED, NAMED, UNSEEN, PLACED, AGAINST = 0.99, 0.95, 0.9, 0.7, 0.6
 """Confidence of a role: of a preset and confirmed by its place, of a name, of a preset alone, of a place, and
 where something speaks against it."""
-SURE_SIDES = 0.9  # confidence from which left and right are not doubted
 SAME_JOINT = 0.03  # heads this near to each other, in sizes, are one joint
 LEAST_UPRIGHT, LEAST_LEG_DOWN = 0.6, 0.7  # least cosine between the trunk and up, and between a leg and down
 HANDS_ABOVE = 0.1  # hands are at least so many lengths of a leg above the ankles
 LEAST_FIT, LEAST_FIT_NAMED = -12.0, -26.0
 """Least fit of a figure's places, and where names speak for its arms and legs."""
-CLEAR_FIT = -6.0  # fit from which no other plane of symmetry is tried
 LIMB_WORDS = {"upper_arm": "arm", "forearm": "forearm", "thigh": "leg", "shin": "shin", "foot": "foot"}
 """Parts of limbs that a character must have, in words."""
 VALID = "a character stands on two legs and has two arms"
@@ -95,7 +93,8 @@ def _best_figure(character: Character) -> tuple[Figure | None, Frame | None, str
             reason = reason or why
             if figure is not None and not why and (best is None or figure.score > best.score):
                 best = figure
-            if best is not None and best.fit > CLEAR_FIT:
+            # Fit from which no other plane of symmetry is tried.
+            if best is not None and best.fit > -6.0:
                 break
         if best is not None:
             return best, first, ""
@@ -150,7 +149,8 @@ def _side_doubts(facing: Facing) -> list[str]:
         return [doubt + "point the other way"]
     if against:
         return ["left and right are taken from the names of the bones, although the feet point the other way"]
-    if facing.confidence < SURE_SIDES:
+    # Confidence from which left and right are not doubted.
+    if facing.confidence < 0.9:
         doubt = "left and right may be swapped for all roles of a side: names, feet, knees and elbows hardly "
         return [doubt + "tell where the character faces"]
     return []

@@ -12,10 +12,7 @@ from .bones import Bones
 
 SAME = 0.02
 """A mirrored head lies this near to its counterpart, a head beside the plane this far from it, in sizes."""
-LOOSE = 0.12  # two branches may mirror each other although they are this far, in sizes, from doing so
 MOST_PLANES, MOST_SYMMETRIES = 60, 3  # planes that are tried, and that are yielded
-ALIKE = 0.98  # cosine between normals of planes from which they are taken for one
-LEVEL = 0.2  # largest cosine between an axis that may point up and the way from side to side
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +75,8 @@ def find_frames(bones: Bones) -> Iterator[list[Frame]]:
     for normal, offset, partner in find_planes(bones):
         found = []
         for axis in np.eye(3)[[2, 1, 0]]:
-            if abs(float(axis @ normal)) < LEVEL:
+            # Largest cosine between an axis that may point up and the way from side to side.
+            if abs(float(axis @ normal)) < 0.2:
                 up = axis - normal * float(axis @ normal)
                 up /= np.linalg.norm(up)
                 found += [Frame(bones, normal, offset, partner, sign * up) for sign in (1.0, -1.0)]
@@ -93,7 +91,8 @@ def find_planes(bones: Bones) -> Iterator[tuple[Array, float, IndexArray]]:
     planes.sort(key=lambda plane: -_score(bones, tree, *plane))
     taken: list[Array] = []
     for normal, offset in planes:
-        if any(abs(float(normal @ other)) > ALIKE for other in taken):
+        # Cosine between normals of planes from which they are taken for one.
+        if any(abs(float(normal @ other)) > 0.98 for other in taken):
             continue
         taken.append(normal)
         for _ in range(2):
@@ -212,7 +211,8 @@ def _match(those: list[int], others: list[int] | None, cost: Array, partner: Ind
     part = cost[np.ix_(rows, columns)]
     for flat in np.argsort(part, axis=None, kind="stable"):
         a, b = (int(each) for each in np.unravel_index(flat, part.shape))
-        if not part[a, b] < LOOSE:
+        # Two branches may mirror each other although they are this far, in sizes, from doing so.
+        if not part[a, b] < 0.12:
             return
         if partner[rows[a]] < 0 and partner[columns[b]] < 0:
             partner[rows[a]], partner[columns[b]] = columns[b], rows[a]

@@ -25,8 +25,6 @@ from .two_bone import smallest_rotation
 
 CLEAR_BEND_RAD = (np.radians(12.0), np.radians(30.0))
 """Bend of a resting elbow or knee from which its plane begins to count, and counts in full."""
-LARGEST_TWIST_RAD = np.radians(75.0)
-"""A resting bend farther than that from the hinge's own direction says nothing of it."""
 
 
 def rest_alignment(body: RestBody) -> Mapping[str, Array]:
@@ -72,7 +70,8 @@ def _with_hinge(first: Array, second: Array, along: Array, hinge: Array) -> Arra
     bend = float(np.arctan2(np.linalg.norm(axis), first @ second))
     axis = unit(axis)
     twist = float(np.arctan2(rotations.cross(axis, hinge) @ along, axis @ hinge))
-    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < LARGEST_TWIST_RAD)
+    # A resting bend farther than that from the hinge's own direction says nothing of it.
+    clear = float(ease(np.array(bend), *CLEAR_BEND_RAD)) * float(abs(twist) < np.radians(75.0))
     return rotations.hinge(along, np.array(clear * twist))
 
 
@@ -126,7 +125,6 @@ def joint_places(body: RestBody, turns: list[Array]) -> list[Array]:
 
 HEAD_HEIGHT = 0.10  # from the head's joint to the crown, as a share of stature
 LEG_SHARE = 0.491  # the legs' share of stature (Drillis & Contini 1966)
-PROPORTION_RANGE = (0.5, 2.5)  # range of a width over what the character's size alone would give
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +147,8 @@ def part_shapes(body: RestBody, source: SegmentMotion, size: float) -> tuple[Par
 
     def width(part: str, own_m: float) -> float:
         ratio = np.linalg.norm(body.joint(f"{part}.L") - body.joint(f"{part}.R")) / own_m
-        return float(np.clip(ratio, *np.multiply(PROPORTION_RANGE, size)))
+        # Range of a width over what the character's size alone would give.
+        return float(np.clip(ratio, *np.multiply((0.5, 2.5), size)))
 
     trunk = float(np.linalg.norm(body.shoulder_joints - body.hip_joints)) / lengths["trunk"]
     shoulders, hips = width("upper_arm", lengths["shoulder_width"]), width("thigh", lengths["hip_width"])

@@ -35,7 +35,6 @@ LARGEST_ROLL_RAD = np.radians(20.0)
 """Largest change of a foot's pitch for a front that is nearer to the ankle than the performer's; a heel that
 rises higher than that front allows leaves the ground with it."""
 LARGEST_CHANGE_RAD = np.radians(45.0)  # largest change of a foot's pitch for a foot of another shape
-BALL_AHEAD = 0.62  # place of the ball between ankle and tip of the performer's foot
 LONGEST_ROLL_S = 0.5
 MOST_TOE_BEND_RAD = np.radians(75.0)
 
@@ -186,7 +185,8 @@ def _still(source: SegmentMotion, ground: Ground, side: str) -> tuple[BoolArray,
     """(F,) whether the heel stands still on the ground with the toes up, and the front with the heel up."""
     turn, ankle = source.turn[f"foot.{side}"], source.start[f"foot.{side}"]
     heel, tip = (ankle + turn @ offset for offset in sole_offsets(source.body)[SIDES.index(side)])
-    ball = ankle + BALL_AHEAD * (tip - ankle)
+    # Place of the ball between ankle and tip of the performer's foot.
+    ball = ankle + 0.62 * (tip - ankle)
     ground_m = ground.height_m[:, SIDES.index(side)]
     pitch = turn[:, 2, 1]
     slow = [speeds(path, source.time_s) < RELEASE_SPEED_M_S for path in (heel, tip, ball)]

@@ -21,9 +21,6 @@ TOE_THICKNESS = 0.02  # height of joints at the toes over the sole, as a share o
 ANKLE_HEIGHT = 0.08
 """Height of the ankle over the sole, as a share of the leg: 0.039 of a stature of which the leg is 0.49
 (Winter 2009, *Biomechanics and Motor Control of Human Movement*)."""
-FOOT_AHEAD = 0.21  # length from ankle to toe tip along the ground, as a share of the leg, where no bone tells
-TOE_BEYOND = 0.4  # length of the toes, as a share of that from ankle to ball, where no bone tells
-HALF_WIDTH = 0.2  # half-width of a sole, as a share of the length from ankle to tip
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +97,8 @@ def _sole_of_bones(
     along = (tip - ankle) * [1.0, 1.0, 0.0]
     length = float(np.linalg.norm(along))
     ahead = along / length
-    across = HALF_WIDTH * length * np.array([-ahead[1], ahead[0], 0.0])
+    # Half-width of a sole, as a share of the length from ankle to tip.
+    across = 0.2 * length * np.array([-ahead[1], ahead[0], 0.0])
     heel = ankle - HEEL_BEHIND * length * ahead
     ball = ankle + 0.6 * length * ahead if toe is None else toe
     parts = {"foot": [heel + 0.7 * across, heel - 0.7 * across, ball + across, ball - across], "toe": [tip]}
@@ -113,11 +111,13 @@ def _tip(body: RestBody, side: str, ankle: Array, toe: Array | None) -> Array:
         tip = body.tip(f"toe.{side}")
         if tip is not None and (tip - toe) @ ball > 0.0:
             return tip
-        return np.asarray(toe + TOE_BEYOND * ball)
+        # Length of the toes, as a share of that from ankle to ball, where no bone tells.
+        return np.asarray(toe + 0.4 * ball)
     beyond = [point for point in _beyond_ankle(body, side) if point[1] < ankle[1]]
     if beyond:
         return min(beyond, key=lambda point: float(point[1]))
-    return np.asarray(ankle + FOOT_AHEAD * body.leg_m * np.array([0.0, -1.0, 0.0]))
+    # Length from ankle to toe tip along the ground, as a share of the leg, where no bone tells.
+    return np.asarray(ankle + 0.21 * body.leg_m * np.array([0.0, -1.0, 0.0]))
 
 
 def _beyond_ankle(body: RestBody, side: str) -> list[Array]:
@@ -149,13 +149,11 @@ def _ahead(ways: Array) -> Array:
 
 
 SAME_LEVEL_M = 0.03
-"""Rests whose heights follow each other within this are on one level: the noise of an estimate ..."""
-LEVEL_RANGE_M = 0.05  # ... if all of them lie within this; a slope is no level.
+"""Rests whose heights follow each other within this are on one level: the noise of an estimate."""
 SCENE_GROUND_M = 0.025
 """A level that near to the scene's ground, z = 0, is it: no ankle's height over its sole is known better."""
 CHANGE_S = 0.15
 """Time in which the ground under a moving foot changes its height, after a rest and before the next one."""
-LOW_SHARE = 5.0  # percentile of the ankles' heights that stands for rest where no foot rests
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +177,8 @@ def find_ground(source: SegmentMotion) -> Ground:
     depth = np.stack([_depth_m(source, side) for side in SIDES], axis=1)
     flat = float(-sole_offsets(source.body)[..., 2].min(axis=1).mean())
     if not rests:
-        low = float(np.percentile(ankles[..., 2].min(axis=1), LOW_SHARE))
+        # Percentile of the ankles' heights that stands for rest where no foot rests.
+        low = float(np.percentile(ankles[..., 2].min(axis=1), 5.0))
         level = _level_m(low - flat)
         return Ground((), np.full(ankles.shape[:2], level), max(low - level, 0.5 * flat))
     heights = np.array(
@@ -220,7 +219,8 @@ def _leveled(heights: Array) -> list[float]:
     groups = np.split(order, np.flatnonzero(np.diff(heights[order]) > SAME_LEVEL_M) + 1)
     levels = np.array(heights)
     for group in groups:
-        if np.ptp(heights[group]) <= LEVEL_RANGE_M:
+        # A slope is no level.
+        if np.ptp(heights[group]) <= 0.05:
             levels[group] = heights[group].mean()
     return [_level_m(float(level)) for level in levels]
 

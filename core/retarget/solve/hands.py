@@ -38,8 +38,6 @@ CHANGE_S = 0.1  # standard deviation in time of the smoothing of what counts how
 ARM_SOFT = 0.97  # share of its length from which an arm resists being stretched
 FULL_SHARE = 0.2
 """Share of a goal from which the arm is solved for it; below, it is between that and its directions."""
-LEAST_HEADING = 0.02  # part of the back of the hand in the heading of fingers
-ROUNDS = 4  # rounds in which two hands find a place that both reach
 
 
 def _near_part(source: SegmentMotion, segment: str, hand: Sequence[Array]) -> Array:
@@ -140,7 +138,8 @@ def above_floor(turn: Array, wrist_m: Array, along: Array) -> Array:
     fingers = turn @ (along / length_m)
     least = np.clip(-wrist_m / length_m, -1.0, 0.0)
     # Fingers that point straight down have no heading of their own: they bend toward the back of the hand.
-    level = (fingers + LEAST_HEADING * turn[..., 2]) * [1.0, 1.0, 0.0]
+    # Part of the back of the hand in the heading of fingers.
+    level = (fingers + 0.02 * turn[..., 2]) * [1.0, 1.0, 0.0]
     level = unit(level) * np.sqrt(1.0 - least**2)[:, None] + least[:, None] * UP
     bent = smallest_rotation(fingers, unit(level)) @ turn
     return np.where((fingers[:, 2] < least)[:, None, None], bent, turn)
@@ -151,7 +150,8 @@ def _brought_together(
 ) -> dict[str, Array]:
     """Goals of two hands at their distance from each other, about a point that both reach."""
     found = dict(goals)
-    for _ in range(ROUNDS):
+    # Rounds in which two hands find a place that both reach.
+    for _ in range(4):
         reached = {side: _reachable(arms[side], found[side]) for side in SIDES}
         middle = 0.5 * (reached["L"] + reached["R"])
         for side, sign in (("L", -0.5), ("R", 0.5)):

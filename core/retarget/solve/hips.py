@@ -119,12 +119,6 @@ SINK_S = 0.12  # time over which the hips go down and up again
 CARRY_S = 0.08  # standard deviation in time of the smoothing of what they are moved by with the feet
 MOMENT_S = 0.07  # standard deviation in time of the smoothing of how far a limb may be stretched
 DEEPEST_SHARE = 0.08  # farthest that they go down or up, as a share of the legs' length
-STANDING_SHARE = 0.04
-"""Height of an ankle over its height on the ground, as a share of the leg, from which it does not stand."""
-STRAIGHT = 0.01
-"""What a leg is longer than the way between its ends, as a share, when it counts as nearly straight."""
-LEAST_WEIGHT = 1.0
-"""What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100."""
 
 
 def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, time_s: Array) -> Array:
@@ -140,7 +134,8 @@ def needed_drop_m(limb: LimbPose, goal: Array, needed: BoolArray, soft: float, t
 
 def straightness(limb: LimbPose) -> Array:
     """(F,) how much a limb bends for a little way: a weight, large where it is nearly straight."""
-    return np.asarray(1.0 / (STRAIGHT + np.maximum(1.0 - limb.extension_m / limb.length_m, 0.0)))
+    # What a leg is longer than the way between its ends, as a share, when it counts as nearly straight.
+    return np.asarray(1.0 / (0.01 + np.maximum(1.0 - limb.extension_m / limb.length_m, 0.0)))
 
 
 def raised_m(
@@ -150,9 +145,12 @@ def raised_m(
 
     `over_m` (F,) is how much higher the ankles (F, 3) shall be than ankles on the ground.
     """
-    total, weights = np.zeros(len(time_s)), np.full(len(time_s), LEAST_WEIGHT)
+    # What standing legs are weighed against: a bent leg that stands has about 20, a straight one 100.
+    total, weights = np.zeros(len(time_s)), np.full(len(time_s), 1.0)
     for leg, ankle, over in zip(legs, ankles, over_m, strict=True):
-        weight = straightness(leg) * (1.0 - ease(over, 0.0, STANDING_SHARE * leg_m))
+        # Height of an ankle over its height on the ground, as a share of the leg, from which it does not
+        # stand.
+        weight = straightness(leg) * (1.0 - ease(over, 0.0, 0.04 * leg_m))
         total += weight * (ankle - leg.end)[:, 2]
         weights += weight
     limit = DEEPEST_SHARE * leg_m

@@ -22,8 +22,6 @@ from ..maps.character_map import CharacterMap
 from ..maps.map_registry import check_map
 
 SHORTEST_SHARE = 0.005  # least length of a long bone, as a share of the body's extent
-MEETING_SHARE = 0.02
-"""Distance from a tail to a child's head that still counts as met, as a share of the bone's length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,9 +105,10 @@ class RestBody:
     def tails_are_meant(self) -> bool:
         """Whether most bones end at a child's head, so that the tails of the others mean something too."""
         character = self.character
+        # Distance from a tail to a child's head that still counts as met, as a share of the bone's length.
         met = [
             min(float(np.linalg.norm(bone.tail - character.bones[child].head)) for child in children)
-            <= MEETING_SHARE * float(np.linalg.norm(bone.tail - bone.head))
+            <= 0.02 * float(np.linalg.norm(bone.tail - bone.head))
             for bone, children in zip(character.bones, character.children, strict=True)
             if children
         ]

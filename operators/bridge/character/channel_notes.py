@@ -14,7 +14,6 @@ from .controls import active_constraints, drivers
 CARRYING = ("CHILD_OF", "ARMATURE")
 """Constraints that carry a bone as a parent does: its own channels still count."""
 MOST_NAMES = 3  # bones that a sentence names; more are counted
-NOTICEABLE_M = 0.005
 ADRIFT = 0.01
 """Distance, in sizes of the character, that random poses move a control from where its carrier has it."""
 
@@ -76,7 +75,7 @@ def _held_back(motion: ControlMotion) -> list[str]:
     found = []
     for control, channels in zip(motion.controls, motion.channels, strict=True):
         off = np.linalg.norm(channels.place - motion.wanted[control.name][:, :3, 3], axis=-1).max()
-        if not control.space.movable and motion.scale * off > NOTICEABLE_M:
+        if not control.space.movable and motion.scale * off > 0.005:
             found.append(control.name)
     return found
 

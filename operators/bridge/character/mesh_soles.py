@@ -20,7 +20,6 @@ LOWEST, HIGHEST = 0.01, 0.3  # height of an ankle over its sole, in lengths of t
 HEEL = 0.01  # least length of a foot's sole on either side of the ankle, in lengths of the leg
 DIRECTIONS = 8  # directions along the ground in which a sole's outermost vertices are kept
 MOST_VERTICES = 400_000  # vertices of a mesh that is looked at
-MOST_STEPS = 64
 
 
 def mesh_soles(
@@ -75,7 +74,7 @@ def _leading_roles(armature_object: bpy.types.Object, character_map: CharacterMa
     found: dict[str, str] = {}
     for bone in armature_object.pose.bones:
         at: bpy.types.PoseBone | None = bone
-        for _ in range(MOST_STEPS):
+        for _ in range(64):
             if at is None or at.name in role_of:
                 break
             copied = [

@@ -32,11 +32,7 @@ from .controls import (
 )
 from .write_retargeted import ONE, scaled_bones
 
-SEED = 4
 STILL, MOVED = 3, 4  # poses at random, without and with locations
-TURN_RAD = 0.4  # standard deviation of random turns about each axis
-MOVE_SHARE = 0.1  # standard deviation of random locations, in sizes of the character
-DISPLACED = 1e-5  # location of a control that counts as one, in sizes of the character
 FOLLOWS_RAD, FOLLOWS = 0.02, 0.01
 """Turn, and distance in sizes, up to which a bone follows its control as it was seen to; else as at rest."""
 STRAIGHT = 0.005
@@ -64,7 +60,8 @@ def probe_controls(
     notes: list[str] = []
     in_fk = fk_shown(character_map)
     bones = armature_object.pose.bones
-    displaced = {plan.name for plan in planned if bones[plan.name].location.length > DISPLACED * size}
+    # Location of a control that counts as one, in sizes of the character.
+    displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
     with posing(armature_object, list(in_fk)):
         set_properties(armature_object, in_fk)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
@@ -107,16 +104,18 @@ def _posed_at_random(
     armature_object: bpy.types.Object, planned: Sequence[PlannedControl], size: float
 ) -> tuple[PosedControls, Array]:
     """The controls as posed at random, the same in every run, and poses (S, C, 4, 4) of their bones."""
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(4)
     names, count = [plan.name for plan in planned], len(planned)
     channels, shown = [], []
     for sample in range(STILL + MOVED):
         matrices = np.tile(np.eye(4), (count, 1, 1))
-        turns = rng.normal(0.0, TURN_RAD, (count, 3))
+        # Standard deviation of random turns about each axis.
+        turns = rng.normal(0.0, 0.4, (count, 3))
         if count:
             matrices[:, :3, :3] = Rotation.from_rotvec(turns).as_matrix()
         if sample >= STILL:
-            matrices[:, :3, 3] = rng.normal(0.0, MOVE_SHARE * size, (count, 3))
+            # Standard deviation of random locations, in sizes of the character.
+            matrices[:, :3, 3] = rng.normal(0.0, 0.1 * size, (count, 3))
         set_channels(armature_object, dict(zip(names, matrices, strict=True)))
         own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
         channels.append(own[:count])

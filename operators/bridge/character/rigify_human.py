@@ -28,7 +28,6 @@ TRUNK = {
     "spine.004": 0.06,
     "spine.006": 0.09,
 }
-OTHERS = 0.05
 COLORS = {"L": (0.0, 0.17, 0.45, 1.0), "R": (0.66, 0.11, 0.0, 1.0), "": (0.5, 0.47, 0.45, 1.0)}
 SEGMENTS = 16
 
@@ -95,7 +94,7 @@ def _add_body(rig: bpy.types.Object, size: float) -> None:
     for bone in (bone for bone in rig.data.bones if bone.use_deform):
         group = body.vertex_groups.new(name=bone.name)
         part, _, side = bone.name.removeprefix("DEF-").partition(".")
-        width = size * (TRUNK.get(bone.name.removeprefix("DEF-")) or WIDTHS.get(part, OTHERS))
+        width = size * (TRUNK.get(bone.name.removeprefix("DEF-")) or WIDTHS.get(part, 0.05))
         along = bone.tail_local - bone.head_local
         axes = bone.matrix_local.to_3x3()
         turn = Matrix.LocRotScale(

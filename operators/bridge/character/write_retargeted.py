@@ -21,7 +21,6 @@ from .channel_notes import driven_channels, keyed_paths
 from .controls import Property, Value, property_path
 
 ONE = (1.0, 1.0, 1.0)
-NOTICEABLE = 1e-3
 
 
 def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tuple[str, ...]:
@@ -30,7 +29,7 @@ def scaled_bones(armature_object: bpy.types.Object, names: Iterable[str]) -> tup
     for name in names:
         bone = armature_object.pose.bones[name]
         for one in (bone, *bone.parent_recursive):
-            if max(abs(value - 1.0) for value in one.scale) > NOTICEABLE:
+            if max(abs(value - 1.0) for value in one.scale) > 1e-3:
                 found[one.name] = None
     return tuple(found)
 
